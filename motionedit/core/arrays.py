@@ -1,0 +1,20 @@
+"""Names for the array types that signatures use; shapes stand in the docstrings."""
+
+from __future__ import annotations
+
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.intp]
+BoolArray = NDArray[np.bool_]
+
+_Array = TypeVar("_Array", bound=NDArray[Any])
+
+
+def frozen(array: _Array) -> _Array:
+    """Return the array itself, made read-only: a data class holds no array that can change under it."""
+    array.setflags(write=False)
+    return array

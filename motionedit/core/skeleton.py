@@ -1,0 +1,113 @@
+"""The skeleton: a tree of joints with offsets, channels and end sites, and the joints grouped by depth."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core.arrays import frozen
+
+if TYPE_CHECKING:
+    from motionedit.core.arrays import FloatArray, IntArray
+
+
+@dataclass(frozen=True, eq=False)
+class EndSite:
+    """The end of a chain: a point fixed in its joint's frame.
+
+    `joint` is the joint's index, `offset` has shape (3,) in clip units.
+    """
+
+    joint: int
+    offset: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Skeleton:
+    """A tree of J joints in file order, so that a parent stands before its children.
+
+    Attributes
+    ----------
+    names : J strings
+        As in the file; they need not be unique (see `index`).
+    parents : shape (J,)
+        Index of each joint's parent, -1 for the root.
+    offsets : shape (J, 3), clip units
+        From the parent's origin, in the parent's frame.
+    channels : J tuples
+        Such as ``("Xposition", "Zrotation")``, in file order and canonical spelling; may be empty.
+    end_sites : tuple of EndSite
+        In file order; a joint may have none or several.
+    """
+
+    names: tuple[str, ...]
+    parents: IntArray
+    offsets: FloatArray
+    channels: tuple[tuple[str, ...], ...]
+    end_sites: tuple[EndSite, ...] = ()
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    @property
+    def channel_count(self) -> int:
+        """Number of values in a row of the file."""
+        return sum(len(names) for names in self.channels)
+
+    @cached_property
+    def channel_starts(self) -> IntArray:
+        """Column of each joint's first channel, shape (J,)."""
+        counts = [len(names) for names in self.channels]
+        return frozen(np.concatenate(([0], np.cumsum(counts)[:-1])).astype(np.intp))
+
+    @cached_property
+    def rotation_axes(self) -> tuple[tuple[int, ...], ...]:
+        """Euler axes of each joint in channel order: (2, 0, 1) for ZXY, () for none."""
+        return tuple(
+            tuple("XYZ".index(name[0]) for name in names if name.endswith("rotation"))
+            for names in self.channels
+        )
+
+    @cached_property
+    def position_axes(self) -> tuple[tuple[int, ...], ...]:
+        """Axes of each joint that position channels replace in OFFSET, in channel order."""
+        return tuple(
+            tuple("XYZ".index(name[0]) for name in names if name.endswith("position"))
+            for names in self.channels
+        )
+
+    @cached_property
+    def translated(self) -> IntArray:
+        """Indices of the P joints that have position channels, shape (P,)."""
+        return frozen(np.array([j for j, axes in enumerate(self.position_axes) if axes], dtype=np.intp))
+
+    @cached_property
+    def levels(self) -> tuple[IntArray, ...]:
+        """Joint indices by depth, the root first: forward kinematics goes level by level."""
+        depth = np.zeros(len(self), dtype=np.intp)
+        for j in range(1, len(self)):
+            depth[j] = depth[self.parents[j]] + 1
+        return tuple(frozen(np.flatnonzero(depth == d)) for d in range(int(depth.max()) + 1))
+
+    @cached_property
+    def children(self) -> tuple[tuple[int, ...], ...]:
+        """Indices of each joint's children, in file order."""
+        lists: list[list[int]] = [[] for _ in self.names]
+        for j, parent in enumerate(self.parents):
+            if parent >= 0:
+                lists[parent].append(j)
+        return tuple(map(tuple, lists))
+
+    def chain(self, joint: int) -> IntArray:
+        """Return the joints from the root down to `joint`, both in."""
+        path = [joint]
+        while self.parents[path[-1]] >= 0:
+            path.append(int(self.parents[path[-1]]))
+        return np.array(path[::-1], dtype=np.intp)
+
+    def indices(self, name: str) -> tuple[int, ...]:
+        """Return every joint of that name: none, one, or several where the file repeats a name."""
+        return tuple(j for j, other in enumerate(self.names) if other == name)

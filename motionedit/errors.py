@@ -1,0 +1,83 @@
+"""The exception tree: what went wrong, in which file, at which line, under which key, and the exit code it means."""
+
+from __future__ import annotations
+
+EXIT_DONE = 0
+EXIT_CLIP_FAILED = 1
+EXIT_USAGE = 2
+EXIT_OUT_OF_TOLERANCE = 3
+EXIT_INTERRUPTED = 130
+
+
+class MotionEditError(Exception):
+    """Root of all errors that a user can cause; `str()` is one line, ``FILE:LINE: KEY: what; remedy``.
+
+    Parameters
+    ----------
+    message : str
+        What is wrong and what would be right, on one line.
+    file, line, key
+        Where it was found; each is left out of the line when unknown. Lines count from 1.
+    """
+
+    exit_code = EXIT_CLIP_FAILED
+
+    def __init__(
+        self, message: str, *, file: str | None = None, line: int | None = None, key: str | None = None
+    ) -> None:
+        super().__init__(message, file, line, key)
+        self.message = message
+        self.file = file
+        self.line = line
+        self.key = key
+
+    def __reduce__(self) -> tuple[object, ...]:
+        # Keyword-only arguments do not survive the default pickling between worker processes.
+        return _rebuild, (type(self), self.message, self.file, self.line, self.key)
+
+    def __str__(self) -> str:
+        place = self.file or ""
+        if self.file and self.line is not None:
+            place = f"{self.file}:{self.line}"
+        return ": ".join(part for part in (place, self.key, self.message) if part)
+
+
+def _rebuild(
+    kind: type[MotionEditError], message: str, file: str | None, line: int | None, key: str | None
+) -> MotionEditError:
+    return kind(message, file=file, line=line, key=key)
+
+
+class UsageError(MotionEditError):
+    """The command line itself asks for something that cannot be: nothing was started."""
+
+    exit_code = EXIT_USAGE
+
+
+class SpecError(MotionEditError):
+    """One fault of a spec file: nothing was started."""
+
+    exit_code = EXIT_USAGE
+
+
+class ModelError(MotionEditError):
+    """A model or normalization file that cannot be used: nothing was started."""
+
+    exit_code = EXIT_USAGE
+
+
+class ClipError(MotionEditError):
+    """A clip that cannot be worked on; other clips go on."""
+
+
+class BvhError(ClipError):
+    """A BVH file that cannot be read, or would not be read back."""
+
+
+class MotionEditErrors(ExceptionGroup[MotionEditError]):
+    """Several faults found together, such as all those of one spec file."""
+
+    @property
+    def exit_code(self) -> int:
+        """The highest exit code among the faults."""
+        return max(error.exit_code for error in self.exceptions if isinstance(error, MotionEditError))
