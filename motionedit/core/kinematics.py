@@ -54,6 +54,19 @@ def forward(motion: Motion) -> WorldPoses:
     return WorldPoses(positions, rotations)
 
 
+def forward_of(motion: Motion, joint: int) -> tuple[FloatArray, FloatArray]:
+    """Return world positions (F, 3) and rotations (F, 4) of one joint, walking its own chain alone."""
+    skeleton = motion.skeleton
+    place = {int(j): p for p, j in enumerate(skeleton.translated)}
+    positions = np.zeros((len(motion), 3))
+    rotations = np.broadcast_to(rot.IDENTITY, (len(motion), 4))
+    for j in skeleton.chain(joint):
+        local = motion.translations[:, place[int(j)]] if int(j) in place else skeleton.offsets[j]
+        positions = positions + rot.rotate(rotations, local)
+        rotations = rot.multiply(rotations, motion.rotations[:, j])
+    return positions, rotations
+
+
 def effector_positions(poses: WorldPoses, effector: Effector) -> FloatArray:
     """Return the world positions of an effector, shape (F, 3)."""
     j = effector.joint

@@ -1,0 +1,98 @@
+"""Alignment of clips on the ground: one heading, one place ([PC] databases need it; edits undo it)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core import rotations as rot
+from motionedit.core.arrays import frozen
+from motionedit.core.kinematics import forward_of
+from motionedit.core.motion import Motion
+
+if TYPE_CHECKING:
+    from motionedit.core.arrays import FloatArray
+    from motionedit.core.ground import Frame
+
+
+@dataclass(frozen=True, eq=False)
+class Alignment:
+    """The rigid motion on the ground x_aligned = R (x - origin).
+
+    Attributes
+    ----------
+    rotation : shape (4,)
+        Quaternion of R, a turn about the up axis.
+    origin : shape (3,), clip units
+        Without a component along up.
+    """
+
+    rotation: FloatArray
+    origin: FloatArray
+
+    def apply(self, points: FloatArray) -> FloatArray:
+        """Return world points in the aligned frame, shape (..., 3)."""
+        return rot.rotate(self.rotation, points - self.origin)
+
+    def undo(self, points: FloatArray) -> FloatArray:
+        """Return aligned points in the world, shape (..., 3)."""
+        return rot.rotate(rot.conjugate(self.rotation), points) + self.origin
+
+
+NO_ALIGNMENT = Alignment(rot.IDENTITY, frozen(np.zeros(3)))
+
+
+def canonical_axes(up: FloatArray) -> FloatArray:
+    """Return where an aligned clip's left, up and forward point, rows of a matrix, shape (3, 3).
+
+    Left is the first coordinate axis that is not up, forward is left x up: with y up, left is x and forward z.
+    """
+    left = np.eye(3)[1 if abs(up[0]) > 0.5 else 0]
+    return np.stack((left, up, np.cross(left, up)))
+
+
+def align_to(frame: Frame, *, heading: bool, position: bool) -> Alignment:
+    """Return the alignment that brings a heading frame to the canonical axes and its origin to the file's."""
+    rotation = rot.from_matrix(canonical_axes(frame.up).T @ frame.axes) if heading else rot.IDENTITY
+    origin = frame.origin - (frame.origin @ frame.up) * frame.up if position else np.zeros(3)
+    return Alignment(frozen(rotation), frozen(origin))
+
+
+@dataclass(frozen=True, eq=False)
+class TravelPath:
+    """World transform of the joint that carries the travel: `positions` (F, 3), `rotations` (F, 4)."""
+
+    positions: FloatArray
+    rotations: FloatArray
+
+
+def travel_path(motion: Motion, travel: int) -> TravelPath:
+    """Return the world path of the joint that carries the travel."""
+    positions, rotations = forward_of(motion, travel)
+    return TravelPath(positions, rotations)
+
+
+def with_travel_path(motion: Motion, travel: int, path: TravelPath) -> Motion:
+    """Return the motion whose travel-carrying joint follows a world path; the joints above it stay as they are."""
+    skeleton = motion.skeleton
+    parent = int(skeleton.parents[travel])
+    positions, rotations = path.positions, path.rotations
+    if parent >= 0:
+        p_parent, q_parent = forward_of(motion, parent)
+        q_inverse = rot.conjugate(q_parent)
+        positions = rot.rotate(q_inverse, positions - p_parent)
+        rotations = rot.multiply(q_inverse, rotations)
+    new_rotations = motion.rotations.copy()
+    new_rotations[:, travel] = rotations
+    new_translations = motion.translations.copy()
+    new_translations[:, np.flatnonzero(skeleton.translated == travel)] = positions[:, None]
+    return Motion(skeleton, frozen(new_rotations), frozen(new_translations), motion.frame_time)
+
+
+def aligned(motion: Motion, alignment: Alignment, *, travel: int) -> Motion:
+    """Return the motion moved into the aligned frame."""
+    path = travel_path(motion, travel)
+    moved = TravelPath(alignment.apply(path.positions), rot.multiply(alignment.rotation, path.rotations))
+    return with_travel_path(motion, travel, moved)

@@ -1,0 +1,129 @@
+"""Curves through samples: monotone cubic, natural cubic spline on a uniform grid, and a Gaussian low-pass.
+
+scipy has the first two, but takes longer to import than a whole edit lasts; the tests hold ours against it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from motionedit.core.arrays import FloatArray
+
+# A Gaussian is cut at this many standard deviations.
+KERNEL_RADIUS = 3.0
+
+
+def monotone_cubic(x: FloatArray, y: FloatArray, at: FloatArray) -> FloatArray:
+    """Return the monotone cubic through the points (x, y), clamped outside, shape of `at`.
+
+    Fritsch-Carlson slopes in the weighted harmonic form (PCHIP): an increasing y stays increasing between its
+    points, and the curve's slope is continuous.
+
+    Parameters
+    ----------
+    x, y : shape (K,), K >= 2, x strictly increasing
+    """
+    h = np.diff(x)
+    secant = np.diff(y) / h
+    slope = np.empty_like(y)
+    if len(x) == 2:
+        slope[:] = secant[0]
+    else:
+        left, right = secant[:-1], secant[1:]
+        w1, w2 = 2.0 * h[1:] + h[:-1], h[1:] + 2.0 * h[:-1]
+        flat = left * right <= 0.0
+        safe_left, safe_right = np.where(flat, 1.0, left), np.where(flat, 1.0, right)
+        slope[1:-1] = np.where(flat, 0.0, (w1 + w2) / (w1 / safe_left + w2 / safe_right))
+        slope[0] = _end_slope(h[0], h[1], secant[0], secant[1])
+        slope[-1] = _end_slope(h[-1], h[-2], secant[-1], secant[-2])
+    at = np.clip(at, x[0], x[-1])
+    i = np.clip(np.searchsorted(x, at, side="right") - 1, 0, len(x) - 2)
+    t = (at - x[i]) / h[i]
+    u = 1.0 - t
+    curve: FloatArray = (
+        (1.0 + 2.0 * t) * u * u * y[i]
+        + t * u * u * h[i] * slope[i]
+        + t * t * (3.0 - 2.0 * t) * y[i + 1]
+        - t * t * u * h[i] * slope[i + 1]
+    )
+    return curve
+
+
+def _end_slope(h0: float, h1: float, d0: float, d1: float) -> float:
+    """Return the one-sided three-point slope, limited so that the end keeps its shape."""
+    slope = ((2.0 * h0 + h1) * d0 - h0 * d1) / (h0 + h1)
+    if slope * d0 <= 0.0:
+        return 0.0
+    if d0 * d1 < 0.0 and abs(slope) > 3.0 * abs(d0):
+        return 3.0 * d0
+    return slope
+
+
+def natural_spline(rows: FloatArray, at: FloatArray) -> FloatArray:
+    """Return the natural cubic spline through rows at 0, 1, ..., F - 1, shape (len(at), ...).
+
+    Parameters
+    ----------
+    rows : shape (F, ...)
+    at : shape (N,)
+        Places on the grid; those outside are clamped, never extrapolated.
+    """
+    last = len(rows) - 1
+    at = np.clip(at, 0.0, last)
+    if last == 0:
+        return np.repeat(rows, len(at), axis=0)
+    i = np.minimum(at.astype(np.intp), last - 1)
+    t = (at - i).reshape(-1, *(1,) * (rows.ndim - 1))
+    u = 1.0 - t
+    M = _second_derivatives(rows)
+    spline: FloatArray = u * rows[i] + t * rows[i + 1] + ((u**3 - u) * M[i] + (t**3 - t) * M[i + 1]) / 6.0
+    return spline
+
+
+def _second_derivatives(rows: FloatArray) -> FloatArray:
+    """Solve M[i-1] + 4 M[i] + M[i+1] = 6 (second difference), M = 0 at both ends.
+
+    The matrix is diagonal in the sine basis (eigenvalues 4 + 2 cos(pi k / (F - 1))), so an FFT of the odd
+    extension solves all columns at once.
+    """
+    last = len(rows) - 1
+    M = np.zeros_like(rows)
+    if last >= 2:
+        second = 6.0 * (rows[2:] - 2.0 * rows[1:-1] + rows[:-2])
+        odd = np.zeros((2 * last, *rows.shape[1:]))
+        odd[1:last] = second
+        odd[last + 1 :] = -second[::-1]
+        spectrum = np.fft.rfft(odd, axis=0)
+        eigenvalues = 4.0 + 2.0 * np.cos(np.pi * np.arange(last + 1) / last)
+        spectrum /= eigenvalues.reshape(-1, *(1,) * (rows.ndim - 1))
+        M[1:last] = np.fft.irfft(spectrum, n=2 * last, axis=0)[1:last]
+    return M
+
+
+def low_pass(rows: FloatArray, *, sigma: float) -> FloatArray:
+    """Return rows smoothed over frames by a zero-phase Gaussian, shape (F, ...).
+
+    The ends are reflected through the end point (odd reflection), so a straight line stays as it is.
+
+    Parameters
+    ----------
+    rows : shape (F, ...)
+    sigma : float
+        Standard deviation in frames; 0 changes nothing.
+    """
+    radius = min(int(np.ceil(KERNEL_RADIUS * sigma)), len(rows) - 1)
+    if radius < 1:
+        return rows.copy()
+    offsets = np.arange(-radius, radius + 1)
+    kernel = np.exp(-0.5 * (offsets / sigma) ** 2)
+    kernel /= kernel.sum()
+    head = 2.0 * rows[:1] - rows[radius:0:-1]
+    tail = 2.0 * rows[-1:] - rows[-2 : -radius - 2 : -1]
+    padded = np.concatenate((head, rows, tail))
+    smooth = np.zeros_like(rows)
+    for k, weight in enumerate(kernel):
+        smooth += weight * padded[k : k + len(rows)]
+    return smooth

@@ -1,0 +1,87 @@
+"""The time warp between a clip's frames and the common timeline ([PC] eq. 12 to 14)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core.timeline.interpolation import monotone_cubic
+from motionedit.errors import ClipError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from motionedit.core.arrays import FloatArray
+
+
+@dataclass(frozen=True)
+class Timeline:
+    """The common time of a database: F frames at one rate, with the events' places.
+
+    Attributes
+    ----------
+    frames : int
+        F, eq. (13) with one more for the last sample.
+    frame_rate : float
+        Hz.
+    events : tuple of (name, frame)
+        Mean key frames, eq. (14), increasing.
+    """
+
+    frames: int
+    frame_rate: float
+    events: tuple[tuple[str, int], ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class TimeWarp:
+    """Knots that pair frames of a clip with frames of the timeline, both strictly increasing, shape (K,)."""
+
+    source: FloatArray
+    timeline: FloatArray
+
+    def to_source(self, frames: FloatArray) -> FloatArray:
+        """Return the clip's frames of timeline frames: piecewise linear, both stages of [PC] section 5 in one."""
+        return np.interp(frames, self.timeline, self.source)
+
+    def to_timeline(self, frames: FloatArray) -> FloatArray:
+        """Return the places s(f) on the timeline of clip frames, clamped outside.
+
+        Monotone cubic: a kink of s at an event would be a kink of the edit.
+        """
+        return monotone_cubic(self.source, self.timeline, frames)
+
+
+def make_warp(timeline: Timeline, *, first: int, last: int, events: Mapping[str, float], label: str) -> TimeWarp:
+    """Return the warp of a clip.
+
+    Parameters
+    ----------
+    first, last : int
+        The clip's frames that the timeline spans: after a rest pose, to the end.
+    events : mapping
+        The clip's frame of every event of the timeline; parts of a frame are welcome.
+
+    Raises
+    ------
+    ClipError
+        If first frame, events in the timeline's order and last frame do not increase strictly.
+    """
+    source = [float(first), *(float(events[name]) for name, _ in timeline.events), float(last)]
+    names = ["its first frame", *(f"'{name}'" for name, _ in timeline.events), "its last frame"]
+    for i in range(1, len(source)):
+        if not source[i] > source[i - 1]:
+            message = (
+                f"{names[i]} at frame {source[i]:g} is not after {names[i - 1]} at frame {source[i - 1]:g}; "
+                "events must follow each other inside the clip, in the same order in every clip"
+            )
+            raise ClipError(message, file=label)
+    frames = [0.0, *(float(frame) for _, frame in timeline.events), float(timeline.frames - 1)]
+    return TimeWarp(np.array(source), np.array(frames))
+
+
+def round_half_up(value: float) -> int:
+    """Return the nearest integer, halves up: the rule of every time in a spec."""
+    return int(np.floor(value + 0.5))
