@@ -9,6 +9,7 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
+from motionedit.core.ground import reference_axes
 from motionedit.core.kinematics import forward_of
 from motionedit.core.motion import Motion
 
@@ -44,18 +45,9 @@ class Alignment:
 NO_ALIGNMENT = Alignment(rot.IDENTITY, frozen(np.zeros(3)))
 
 
-def canonical_axes(up: FloatArray) -> FloatArray:
-    """Return where an aligned clip's left, up and forward point, rows of a matrix, shape (3, 3).
-
-    Left is the first coordinate axis that is not up, forward is left x up: with y up, left is x and forward z.
-    """
-    left = np.eye(3)[1 if abs(up[0]) > 0.5 else 0]
-    return np.stack((left, up, np.cross(left, up)))
-
-
 def align_to(frame: Frame, *, heading: bool, position: bool) -> Alignment:
-    """Return the alignment that brings a heading frame to the canonical axes and its origin to the file's."""
-    rotation = rot.from_matrix(canonical_axes(frame.up).T @ frame.axes) if heading else rot.IDENTITY
+    """Return the alignment that brings a heading frame to heading 0 and its origin to the file's."""
+    rotation = rot.from_matrix(reference_axes(frame.up).T @ frame.axes) if heading else rot.IDENTITY
     origin = frame.origin - (frame.origin @ frame.up) * frame.up if position else np.zeros(3)
     return Alignment(frozen(rotation), frozen(origin))
 
