@@ -1,0 +1,109 @@
+"""The program `motionedit`: its commands, loaded one by one as they are asked for."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import sys
+from typing import Any, NoReturn
+
+import click
+
+from motionedit import __version__
+from motionedit.cli.boundary import Interrupted, run_guarded, show_unexpected
+from motionedit.cli.verbosity import verbosity_of, verbosity_options
+
+# In the order of work. Help must not load the commands, so their first lines stand here; a test compares them.
+COMMANDS = {
+    "normalize": "Bring clips of one behaviour onto one timeline.",
+    "fit-pca": "Fit a motion PCA model to normalized clips.",
+    "edit-pc": "Edit clips within the style of a PCA model.",
+    "edit-prioritized": "Edit clips by constraints in priority layers.",
+    "info": "Show what is in a clip.",
+    "diff": "Tell whether two clips or folders hold the same motion.",
+    "preview": "Draw clips, overlaid, as a page or a picture.",
+    "schema": "Print the JSON Schema of a command's spec.",
+}
+
+# One thread each, or small solves get many times slower and bytes could depend on the number of cores.
+_BLAS_THREADS = (
+    "OPENBLAS_NUM_THREADS",
+    "OMP_NUM_THREADS",
+    "MKL_NUM_THREADS",
+    "BLIS_NUM_THREADS",
+    "VECLIB_MAXIMUM_THREADS",
+)
+
+
+class _Program(click.Group):
+    """A group that knows its commands by name, and turns every error into one line and an exit code."""
+
+    def main(self, *args: Any, **extra: Any) -> NoReturn:  # noqa: ANN401  as click's own
+        """Run one command line and exit with its code."""
+        for name in _BLAS_THREADS:
+            os.environ[name] = "1"
+        extra.update(standalone_mode=False, prog_name="motionedit")
+        sys.exit(run_guarded(lambda: super(_Program, self).main(*args, **extra)))
+
+    def invoke(self, ctx: click.Context) -> Any:  # noqa: ANN401  as click's own
+        """Run the command; here its verbosity is known, which says how much of a fault of ours is shown."""
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt as error:
+            raise Interrupted from error
+        except Exception as error:
+            show_unexpected(error, verbosity=verbosity_of(ctx))
+            raise
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Return the commands in the order of work."""
+        del ctx
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Return a command from its own module, loaded now."""
+        del ctx
+        if cmd_name not in COMMANDS:
+            return None
+        module = importlib.import_module(f"motionedit.cli.{cmd_name.replace('-', '_')}")
+        command: click.Command = module.command
+        return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Return the command that the arguments begin with, or suggest the nearest one."""
+        if args[0] not in COMMANDS and not args[0].startswith("-") and not ctx.resilient_parsing:
+            import difflib
+
+            near = difflib.get_close_matches(args[0], COMMANDS, n=1)
+            hint = f"did you mean '{near[0]}'?" if near else f"one of: {', '.join(COMMANDS)}"
+            raise click.UsageError(f"no command '{args[0]}'; {hint}")
+        return super().resolve_command(ctx, args)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """List the commands with their first lines, without loading them."""
+        del ctx
+        with formatter.section("Commands"):
+            formatter.write_dl(list(COMMANDS.items()))
+
+
+@click.group(
+    cls=_Program,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    invoke_without_command=True,
+    epilog="""\b
+    Example:
+      motionedit edit-prioritized walks/ -s step.yaml -o edited/""",
+)
+@click.version_option(__version__, message="%(prog)s %(version)s")
+@verbosity_options
+@click.pass_context
+def main(ctx: click.Context) -> None:
+    """Edit BVH motion clips in batches: constraints in YAML in, edited clips out.
+
+    'motionedit COMMAND --help' tells what a command takes.
+    """
+    if ctx.invoked_subcommand is None:
+        click.echo(ctx.get_help(), err=True)
+        ctx.exit(2)

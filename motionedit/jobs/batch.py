@@ -1,0 +1,346 @@
+"""A run over many clips: each is read, worked on, verified and written where its worker is; results come in order."""
+
+from __future__ import annotations
+
+import sys
+import time
+from contextlib import closing
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+
+from motionedit.errors import (
+    EXIT_CLIP_FAILED,
+    EXIT_DONE,
+    EXIT_OUT_OF_TOLERANCE,
+    EXIT_USAGE,
+    ClipError,
+    MotionEditError,
+    MotionEditErrors,
+)
+from motionedit.jobs.files import atomic_write, clean_leftovers
+from motionedit.jobs.plan import ClipTask, RunOptions, find_clips, no_progress, plan
+from motionedit.jobs.pool import results_in_order
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from motionedit.core.bvh import Clip
+    from motionedit.core.motion import Motion
+
+__all__ = [
+    "BatchResult",
+    "ClipTask",
+    "Outcome",
+    "RunOptions",
+    "Work",
+    "atomic_write",
+    "clean_leftovers",
+    "find_clips",
+    "flatten",
+    "map_tasks",
+    "plan",
+    "read_task",
+    "run_batch",
+]
+
+Item = TypeVar("Item")
+Value = TypeVar("Value")
+
+# The distance, in leg lengths, up to which bvhio's single precision counts as the same place.
+VERIFY_TOLERANCE = 1e-3
+
+# What --strict counts as a goal that was not met.
+_MISSED = frozenset({"out_of_tolerance", "unreachable"})
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What the work on one clip came to.
+
+    Attributes
+    ----------
+    content : bytes or None
+        The file to write; None writes none.
+    record : dict
+        The clip's entry in the report, from `message` on; plain values only.
+    status : str
+        ``ok``, ``far``, ``out_of_tolerance`` or ``unreachable``; the last two are what `strict` looks at.
+    warnings : tuple of str
+        One line each, without the clip's name.
+    motion : Motion or None
+        What the content should read back as, for `verify`; None is the clip's own.
+    details : tuple of str
+        Lines that --dry-run prints: layers, recruited joints, intervals, goals.
+    """
+
+    content: bytes | None
+    record: dict[str, Any] = field(default_factory=dict)
+    status: str = "ok"
+    warnings: tuple[str, ...] = ()
+    motion: Motion | None = None
+    details: tuple[str, ...] = ()
+
+
+class Work(Protocol):
+    """What is done to each clip: a frozen dataclass that can be pickled."""
+
+    def __call__(self, clip: Clip, task: ClipTask) -> Outcome:
+        """Return the outcome for one clip, or raise a MotionEditError that fails it."""
+
+
+@dataclass(frozen=True)
+class BatchResult:
+    """What a run came to, clip by clip in the order of its tasks, whatever the number of workers.
+
+    Attributes
+    ----------
+    records : list of dict
+        Entries of the report's `clips`.
+    paths : list of str
+        The files written.
+    warnings : list of str
+        One line each, with the clip's name where there are several.
+    failures : list of MotionEditError
+        Why clips failed; one clip may have several.
+    exit_code : int
+        As the command should end.
+    seconds : list of float
+        Wall time of each record's clip.
+    details : list of (str, tuple of str)
+        For --dry-run: a line for each clip, and the lines that belong to it.
+    content : bytes or None
+        The clip that goes to standard output.
+    current : int
+        How many outputs --update left alone.
+    """
+
+    records: list[dict[str, Any]]
+    paths: list[str]
+    warnings: list[str]
+    failures: list[MotionEditError]
+    exit_code: int
+    seconds: list[float] = field(default_factory=list)
+    details: list[tuple[str, tuple[str, ...]]] = field(default_factory=list)
+    content: bytes | None = None
+    current: int = 0
+
+
+def run_batch(tasks: Sequence[ClipTask], work: Work, options: RunOptions) -> BatchResult:
+    """Read, work on, verify and write every clip that is not current.
+
+    A clip fails alone; without `keep_going` the clips after a failed one are not begun. Where every clip fails
+    by a fault of the spec, the exit code is that of a spec error.
+    """
+    from motionedit.core import bvh as _bvh  # noqa: F401  loaded once here, not in every forked worker
+
+    waiting = [task for task in tasks if not task.current]
+    folders = [task.output.parent for task in waiting if task.output is not None]
+    run_one = _RunOne(work, replace(options, progress=no_progress))
+    done: list[_Done] = []
+    try:
+        if not options.dry_run:
+            clean_leftovers(folders)
+        items = [_absolute(task) for task in waiting] if options.scheduler else waiting
+        results = results_in_order(run_one, items, options=options)
+        with closing(results), options.progress(len(waiting)) as advance:
+            for result in results:
+                done.append(result if isinstance(result, _Done) else _Done(errors=(result,)))
+                advance()
+                if done[-1].errors and not options.keep_going:
+                    break
+    finally:
+        # Workers that were ended in the middle of a file could not clean up themselves.
+        if not options.dry_run:
+            clean_leftovers(folders)
+    return _collect(waiting, done, len(tasks), options)
+
+
+def map_tasks(
+    function: Callable[[Item], Value], items: Sequence[Item], options: RunOptions
+) -> list[Value | MotionEditError]:
+    """Return function(item) for each item in order, on the workers that `options` asks for.
+
+    A MotionEditError or OSError of an item comes back as its value; every item is tried. `function`, items and
+    values are pickled where there are several workers.
+    """
+    from motionedit.core import bvh as _bvh  # noqa: F401  as above
+
+    values: list[Value | MotionEditError] = []
+    results = results_in_order(_Guarded(function), items, options=options)
+    with closing(results), options.progress(len(items)) as advance:
+        for value in results:
+            values.append(value)
+            advance()
+    return values
+
+
+def read_task(task: ClipTask, *, lenient: bool) -> Clip:
+    """Return the clip of a task, from its file or from standard input.
+
+    Raises
+    ------
+    BvhError
+        The file is no BVH clip.
+    ClipError
+        It cannot be read at all.
+    """
+    from motionedit.core.bvh import parse_clip, read_clip
+
+    try:
+        if task.source is None:
+            return parse_clip(sys.stdin.buffer.read(), label=task.label, lenient=lenient)
+        return read_clip(task.source, label=task.label, lenient=lenient)
+    except OSError as error:
+        raise ClipError(f"cannot be read: {error.strerror or error}", file=task.label) from error
+
+
+def flatten(group: ExceptionGroup[MotionEditError]) -> tuple[MotionEditError, ...]:
+    """Return the errors of a group and of the groups in it, in order."""
+    errors: list[MotionEditError] = []
+    for error in group.exceptions:
+        errors.extend(flatten(error) if isinstance(error, ExceptionGroup) else (error,))
+    return tuple(errors)
+
+
+@dataclass(frozen=True)
+class _Done:
+    """What a worker sends back: an Outcome without its arrays, or errors."""
+
+    outcome: Outcome = field(default_factory=lambda: Outcome(None))
+    written: bool = False
+    errors: tuple[MotionEditError, ...] = ()
+    seconds: float = 0.0
+
+
+@dataclass(frozen=True)
+class _RunOne:
+    """All that is done to one clip, as a worker runs it."""
+
+    work: Work
+    options: RunOptions
+
+    def __call__(self, task: ClipTask) -> _Done:
+        start = time.perf_counter()
+        try:
+            done = self._run(task)
+        except MotionEditErrors as group:
+            done = _Done(errors=flatten(group))
+        except MotionEditError as error:
+            done = _Done(errors=(error,))
+        except Exception as error:
+            if self.options.verbosity > 1:
+                raise
+            message = f"unexpected {type(error).__name__}: {error}; please report it (-vv shows where)"
+            done = _Done(errors=(ClipError(" ".join(message.split()), file=task.label),))
+        return replace(done, seconds=time.perf_counter() - start)
+
+    def _run(self, task: ClipTask) -> _Done:
+        clip = read_task(task, lenient=self.options.lenient)
+        outcome = self.work(clip, task)
+        warnings = (*clip.warnings, *outcome.warnings)
+        content = outcome.content
+        if content is None or self.options.dry_run:
+            return _Done(replace(outcome, content=None, motion=None, warnings=warnings))
+        record = outcome.record
+        if self.options.verify:
+            record = {**record, "verify": _verify(clip, content, outcome.motion or clip.motion)}
+        if task.output is not None:
+            try:
+                atomic_write(task.output, content)
+            except OSError as error:
+                raise ClipError(f"cannot be written: {error.strerror or error}", file=str(task.output)) from error
+            content = None
+        return _Done(Outcome(content, record, outcome.status, warnings), written=True)
+
+
+@dataclass(frozen=True)
+class _Guarded:
+    """A function whose errors are values, as a worker runs it."""
+
+    function: Callable[[Any], Any]
+
+    def __call__(self, item: Any) -> Any:  # noqa: ANN401  any function of map_tasks
+        try:
+            return self.function(item)
+        except MotionEditErrors as group:
+            errors = flatten(group)
+            return errors[0] if len(errors) == 1 else ClipError("; ".join(map(str, errors)))
+        except MotionEditError as error:
+            return error
+        except OSError as error:
+            return ClipError(error.strerror or str(error), file=error.filename and str(error.filename))
+
+
+def _verify(clip: Clip, content: bytes, motion: Motion) -> dict[str, Any]:
+    """Return what bvhio, an independent reader, found in the bytes to write; a difference fails the clip."""
+    from motionedit.core.anatomy import find_anatomy
+    from motionedit.core.bvh import check_with_bvhio
+
+    leg_length = find_anatomy(motion.skeleton).leg_length
+    result = check_with_bvhio(content, motion, leg_length=leg_length)
+    if not result.worst_distance <= VERIFY_TOLERANCE * leg_length:
+        raise ClipError(
+            f"--verify: bvhio reads a joint {result.worst_distance:.4g} from where it was written; "
+            "the file was not kept",
+            file=clip.label,
+        )
+    return {"worst_distance": result.worst_distance, "frames_skipped": result.frames_skipped}
+
+
+def _absolute(task: ClipTask) -> ClipTask:
+    """Return the task with paths that hold in a cluster worker's own folder."""
+    return replace(
+        task,
+        source=None if task.source is None else task.source.absolute(),
+        output=None if task.output is None else task.output.absolute(),
+    )
+
+
+def _collect(waiting: Sequence[ClipTask], done: Sequence[_Done], total: int, options: RunOptions) -> BatchResult:
+    pairs = list(zip(waiting, done, strict=False))  # shorter after --fail-fast
+    failures = [_named(error, task) for task, one in pairs for error in one.errors]
+    return BatchResult(
+        records=[_record(task, one) for task, one in pairs],
+        paths=[str(task.output) for task, one in pairs if one.written and task.output is not None],
+        warnings=[_about(task, warning, alone=total == 1) for task, one in pairs for warning in one.outcome.warnings],
+        failures=failures,
+        exit_code=_exit_code(waiting, done, strict=options.strict),
+        seconds=[one.seconds for _, one in pairs],
+        details=[(_heading(task), one.outcome.details) for task, one in pairs if not one.errors],
+        content=next((one.outcome.content for _, one in pairs if one.outcome.content is not None), None),
+        current=total - len(waiting),
+    )
+
+
+def _record(task: ClipTask, done: _Done) -> dict[str, Any]:
+    output = None if task.output is None else str(task.output)
+    head = {"clip": task.label, "output": output}
+    if done.errors:
+        message = "; ".join(str(_named(error, task)) for error in done.errors)
+        return {**head, "output": None, "status": "failed", "message": message}
+    return {**head, "status": done.outcome.status, "message": None, **done.outcome.record}
+
+
+def _named(error: MotionEditError, task: ClipTask) -> MotionEditError:
+    if error.file is not None:
+        return error
+    return type(error)(error.message, file=task.label, key=error.key)
+
+
+def _about(task: ClipTask, warning: str, *, alone: bool) -> str:
+    return warning if alone or warning.startswith(task.label) else f"{task.label}: {warning}"
+
+
+def _heading(task: ClipTask) -> str:
+    return f"{task.label} -> {task.output or 'standard output'}"
+
+
+def _exit_code(waiting: Sequence[ClipTask], done: Sequence[_Done], *, strict: bool) -> int:
+    failed = [one for one in done if one.errors]
+    if failed:
+        fault_of_the_spec = len(failed) == len(waiting) and all(
+            error.exit_code == EXIT_USAGE for one in failed for error in one.errors
+        )
+        return EXIT_USAGE if fault_of_the_spec else EXIT_CLIP_FAILED
+    missed = any(one.outcome.status in _MISSED for one in done)
+    return EXIT_OUT_OF_TOLERANCE if strict and missed else EXIT_DONE

@@ -1,0 +1,73 @@
+"""Writing files so that a name never stands for half a file, and telling whether two names are one file."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from typing import TYPE_CHECKING, BinaryIO
+
+try:
+    import fcntl
+except ImportError:  # Windows, where an open file cannot be removed anyway
+    fcntl = None  # type: ignore[assignment]
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from pathlib import Path
+
+_PARTIAL = ".motionedit-partial"
+
+
+def atomic_write(path: Path, data: bytes) -> None:
+    """Write a file by way of a temporary one in the same folder, renamed when it is whole.
+
+    Folders on the way are made. An error or an interrupt leaves the old file, or none, and no temporary one.
+
+    Raises
+    ------
+    OSError
+        The folder cannot be made or written, or the disk is full.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if path.exists() and not path.is_file():
+        # A device or a pipe, such as /dev/stdout: there is nothing to rename.
+        path.write_bytes(data)
+        return
+    # Not `tempfile`: its files are closed to the group, and the rename would keep them so.
+    temporary = path.with_name(f".{path.name[:40]}.{os.urandom(4).hex()}{_PARTIAL}")
+    try:
+        with temporary.open("xb") as stream:
+            _hold(stream)
+            stream.write(data)
+        temporary.replace(path)
+    except BaseException:
+        temporary.unlink(missing_ok=True)
+        raise
+
+
+def clean_leftovers(folders: Iterable[Path]) -> None:
+    """Remove the temporary files that killed runs left in these folders; those of a living run stay."""
+    for folder in sorted(set(folders)):
+        if not folder.is_dir():
+            continue
+        for path in sorted(folder.iterdir()):
+            if path.name.startswith(".") and path.name.endswith(_PARTIAL):
+                # What cannot be opened, held or removed is another's, and harms nobody.
+                with contextlib.suppress(OSError), path.open("rb") as stream:
+                    _hold(stream)
+                    path.unlink()
+
+
+def identity(path: Path) -> tuple[int, int] | str:
+    """Return what is equal for two spellings of one file, through links too; the file need not exist."""
+    try:
+        status = path.stat()
+    except OSError:
+        return os.path.realpath(path)
+    return status.st_dev, status.st_ino
+
+
+def _hold(stream: BinaryIO) -> None:
+    """Lock an open temporary file: the lock dies with its process, so a file without one is a leftover."""
+    if fcntl is not None:
+        fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -1,0 +1,107 @@
+"""One function over many items, in this process, in several, or on a cluster; results always in the items' order."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import sys
+import threading
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from motionedit.errors import MotionEditError, UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Generator, Sequence
+
+    from motionedit.jobs.plan import RunOptions
+
+Item = TypeVar("Item")
+Result = TypeVar("Result")
+
+# Windows cannot wait for more processes at once.
+_MOST_WORKERS = 60
+_SECONDS_TO_CONNECT = 10
+
+
+class WorkerDiedError(MotionEditError):
+    """The process that worked on an item ended without an answer: killed, most often for want of memory."""
+
+
+def results_in_order(
+    function: Callable[[Item], Result], items: Sequence[Item], *, options: RunOptions
+) -> Generator[Result | WorkerDiedError]:
+    """Yield function(item) for each item; closing the iterator early leaves out what has not begun.
+
+    Several processes or a cluster need a `function`, items and results that can be pickled. An item whose worker
+    dies gives a WorkerDiedError as its value; an exception of the function is raised here.
+    """
+    workers = min(options.jobs or _cores(), len(items), _MOST_WORKERS)
+    if options.scheduler is not None:
+        return _on_cluster(function, items, options.scheduler)
+    if workers > 1:
+        return _in_processes(function, items, workers)
+    return (function(item) for item in items)
+
+
+def _cores() -> int:
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def _in_processes(
+    function: Callable[[Item], Result], items: Sequence[Item], workers: int
+) -> Generator[Result | WorkerDiedError]:
+    # Forked workers start in a millisecond with every module loaded; only Linux forks safely.
+    context = multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
+    others = set(multiprocessing.active_children())
+    executor = ProcessPoolExecutor(workers, mp_context=context, initializer=_start_worker)
+    try:
+        futures = [executor.submit(function, item) for item in items]
+        for future in futures:
+            try:
+                yield future.result()
+            except BrokenProcessPool:
+                yield WorkerDiedError("its worker process was killed, perhaps for want of memory; try fewer --jobs")
+    except KeyboardInterrupt:
+        for process in set(multiprocessing.active_children()) - others:
+            process.terminate()
+        raise
+    finally:
+        executor.shutdown(wait=True, cancel_futures=True)
+
+
+def _start_worker() -> None:
+    # Ctrl-C reaches every process of the terminal; the parent alone answers it, and ends its workers.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    """End this worker when its parent is killed: nobody would take its result."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
+
+
+def _on_cluster(
+    function: Callable[[Item], Result], items: Sequence[Item], address: str
+) -> Generator[Result | WorkerDiedError]:
+    try:
+        from distributed import Client, KilledWorker
+    except ImportError as error:
+        raise UsageError("--scheduler needs Dask: pip install 'motionedit[cluster]'") from error
+    try:
+        client: Any = Client(address, timeout=_SECONDS_TO_CONNECT)
+    except (OSError, ValueError) as error:
+        raise UsageError(f"--scheduler {address}: no Dask scheduler answers there") from error
+    with client:
+        for future in client.map(function, items, pure=False):
+            try:
+                yield future.result()
+            except KilledWorker:
+                yield WorkerDiedError("its worker process was killed, perhaps for want of memory")
