@@ -1,0 +1,72 @@
+# motionedit: everything a user or a builder does, in one word each. `make` alone lists the targets.
+
+PYTHON ?= python3
+VENV ?= .venv
+BIN := $(VENV)/bin
+STAMP := $(VENV)/.installed
+OUT ?= out
+JOBS ?= 2
+
+# One BLAS thread: the results do not depend on the machine's cores, and small solves are faster.
+export OPENBLAS_NUM_THREADS ?= 1
+export OMP_NUM_THREADS ?= 1
+
+.DEFAULT_GOAL := help
+.PHONY: help install demo test test-all lint types docs docs-check golden bench figures data clean
+
+help:  ## list the targets
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
+
+install: $(STAMP)  ## set up a virtual environment in .venv with everything that the other targets need
+
+$(STAMP): pyproject.toml
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --upgrade pip
+	$(BIN)/python -m pip install --quiet --editable '.[plot,dev]'
+	@touch $@
+
+demo: $(STAMP)  ## normalize ten golf swings, fit the motion PCA, move the ball, and say what to open
+	$(BIN)/motionedit normalize data/golf -s configs/golf-normalize.yaml -o $(OUT)/golf-normalized
+	$(BIN)/motionedit fit-pca $(OUT)/golf-normalized -s configs/golf-fit.yaml -o $(OUT)/golf.npz
+	$(BIN)/motionedit edit-pc data/golf/swing04.bvh -m $(OUT)/golf.npz -s configs/golf-edit.yaml -o $(OUT)/swing04-edited.bvh
+	$(BIN)/motionedit preview data/golf/swing04.bvh $(OUT)/swing04-edited.bvh -o $(OUT)/swing04.html
+	@echo
+	@echo "The edited swing is $(OUT)/swing04-edited.bvh, a file for any BVH viewer."
+	@echo "Open $(OUT)/swing04.html in a browser: the input and the edited swing, overlaid."
+
+test: $(STAMP)  ## run the tests that take less than two minutes, and the linters
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/python -m pytest -n $(JOBS) -m 'not slow'
+
+test-all: $(STAMP)  ## run every test, with branch coverage
+	$(BIN)/python -m pytest -n $(JOBS) --cov --cov-report=term-missing:skip-covered
+
+lint: $(STAMP)  ## check style, and format
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+types: $(STAMP)  ## check types
+	$(BIN)/mypy
+
+docs: $(STAMP)  ## write the pages that are generated from the program
+	$(BIN)/python docs/generate.py
+
+docs-check: $(STAMP)  ## fail if a generated page is not what the program says
+	$(BIN)/python docs/generate.py --check
+
+golden: $(STAMP)  ## write the golden files anew; look at the difference before you commit it
+	$(BIN)/python tests/golden/write.py
+
+bench: $(STAMP)  ## measure speed, as ratios inside one run
+	$(BIN)/python benchmarks/run.py
+
+figures: $(STAMP)  ## print the accuracy figures that the documentation quotes
+	$(BIN)/python benchmarks/figures.py
+
+data: $(STAMP)  ## write the clips in data/ anew, from the generator
+	$(BIN)/python -m data.generator
+
+clean:  ## remove what the targets made, but not the virtual environment
+	rm -rf $(OUT) build dist *.egg-info .coverage htmlcov .mypy_cache .pytest_cache .ruff_cache .hypothesis
