@@ -1,0 +1,118 @@
+"""Reading BVH clips: every row, in double precision, or a refusal with the file's line."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from motionedit.core.bvh.header import Header, read_header
+from motionedit.core.bvh.rows import Rows, read_rows
+from motionedit.core.bvh.scan import refusal
+from motionedit.core.motion import Motion, motion_from_channels
+from motionedit.errors import BvhError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from motionedit.core.arrays import FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class BvhText:
+    """A file's own bytes and where its header's numbers and its rows stand in them."""
+
+    data: bytes
+    header: Header
+    rows: Rows
+
+
+@dataclass(frozen=True, eq=False)
+class Clip:
+    """A BVH file that was read.
+
+    Attributes
+    ----------
+    label : str
+        The name that messages give it.
+    motion : Motion
+        Its F frames.
+    values : shape (F, C)
+        Channel values as in the file: degrees and clip units.
+    text : BvhText
+        The file's own bytes and their layout.
+    warnings : tuple of str
+        What leniency accepted, one line each.
+    """
+
+    label: str
+    motion: Motion
+    values: FloatArray
+    text: BvhText
+    warnings: tuple[str, ...] = ()
+
+    @cached_property
+    def sha256(self) -> str:
+        """SHA-256 of the file's bytes, hexadecimal."""
+        return hashlib.sha256(self.text.data).hexdigest()
+
+
+def read_clip(path: Path, *, label: str | None = None, lenient: bool = False) -> Clip:
+    """Return the clip in a file.
+
+    Parameters
+    ----------
+    path : Path
+        The BVH file.
+    label : str, optional
+        The name in messages; the path if not given.
+    lenient : bool
+        Whether a row count other than `Frames:` says is accepted, with a warning; the whole rows are used.
+
+    Raises
+    ------
+    BvhError
+        Where the file cannot be opened or is not legal, with the line.
+    """
+    name = str(path) if label is None else label
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise BvhError(f"cannot be read: {error.strerror or error}", file=name) from error
+    return parse_clip(data, label=name, lenient=lenient)
+
+
+def parse_clip(data: bytes, *, label: str, lenient: bool = False) -> Clip:
+    """Return the clip that a BVH file's bytes hold; see `read_clip`."""
+    header = read_header(data, label=label)
+    rows = read_rows(
+        data,
+        header.rows_start,
+        columns=header.skeleton.channel_count,
+        expected=header.frames,
+        label=label,
+        lenient=lenient,
+    )
+    warnings = _row_count_warnings(data, header, rows, label=label, lenient=lenient)
+    motion = motion_from_channels(header.skeleton, rows.values, frame_time=header.frame_time)
+    return Clip(label, motion, rows.values, BvhText(data, header, rows), warnings)
+
+
+def _row_count_warnings(data: bytes, header: Header, rows: Rows, *, label: str, lenient: bool) -> tuple[str, ...]:
+    """Return the warnings for what --lenient accepts; refuse the rest."""
+    place = header.frames_span[0]
+    found = len(rows.starts)
+    if found == 0 and (header.frames == 0 or lenient):
+        raise refusal(data, "the file has no frames", label=label, at=place)
+    warnings = []
+    if rows.cut_off is not None:
+        cut = refusal(data, "the last row is cut short and left out", label=label, at=rows.cut_off)
+        warnings.append(str(cut))
+    if found != header.frames:
+        counted = "1 row" if found == 1 else f"{found} rows"
+        message = f"Frames: says {header.frames}, the file has {counted}"
+        if not lenient:
+            raise refusal(data, f"{message}; --lenient uses the rows that are there", label=label, at=place)
+        warnings.append(str(refusal(data, f"{message}, which are used", label=label, at=place)))
+    return tuple(warnings)
