@@ -18,13 +18,16 @@ if TYPE_CHECKING:
 _LENGTH_TOLERANCE = 0.3
 _LENGTH_FLOOR = 0.02  # of the height: below it any two bones are alike
 _SHORTEST_LIMB = 0.1  # of the height: fingers and faces come in pairs too
-_RATIO_LIMIT = 1.9  # upper to lower bone; CMU's upper arm is 1.5 forearms
+_RATIO_LIMIT = 2.5  # upper to lower bone; CMU's upper arm is up to 1.9 forearms
 # Costs against |log(upper / lower)|. A bone is taken as cut in pieces only where that explains the limb, and hardly
-# ever at a joint that branches: that one is a hand or a foot.
+# ever at a joint that branches or that is bent in the zero pose: that one is a hand or a foot.
 _COST_OF_A_CUT = 0.15
-_COST_OF_A_BRANCHING_CUT = 0.4
+_COST_OF_AN_ODD_CUT = 0.6
+_STRAIGHT = 0.85  # cosine between the bones on both sides of a cut
 _COST_ABOVE = 0.1  # per mean bone of length from the chain's first joint to the limb
 _COST_BELOW = 0.2  # per mean bone from the limb to the farthest end
+_COST_OF_ONE_PLACE = 1.0  # where both limbs would start at the same place, as CMU's hip joints and collars do
+_APART = 0.25  # mean bones between the tops of two limbs in the zero pose; hips are 0.35 apart
 _LONGEST_ABOVE = 1.5  # mean bones: a collar may be in two pieces
 _LONGEST_BELOW = 1.2  # mean bones: a hand is 0.85 forearms
 
@@ -103,6 +106,14 @@ class Tree:
     def branches(self, joint: int) -> int:
         """Return how many bones leave a joint: its children, and its end sites together as one."""
         return len(self.skeleton.children[joint]) + (joint in self._ends)
+
+    def is_bent(self, chain: list[tuple[int, int]], place: int) -> bool:
+        """Tell whether a pair of chains bends at one of its joints in the zero pose, on both sides."""
+        if place + 1 == len(chain):
+            return False
+        lengths, offsets = self.lengths, self.skeleton.offsets
+        pieces = zip(chain[place], chain[place + 1], strict=True)
+        return all(offsets[a] @ offsets[b] < _STRAIGHT * lengths[a] * lengths[b] for a, b in pieces)
 
     def longest_way(self, joint: int) -> list[int]:
         """Return the joints from `joint` (in) to the farthest end below it."""
@@ -183,8 +194,9 @@ def _limb_pair(tree: Tree, base: int, first: tuple[int, int]) -> LimbPair | None
     lengths = 0.5 * (tree.lengths[list(chains[0])] + tree.lengths[list(chains[1])])
     # What hangs below each joint, on the side where less does: a club in one hand is no hand.
     rest = np.minimum(tree.spread(chains[0]), tree.spread(chains[1]))
-    branching = np.array([min(tree.branches(a), tree.branches(b)) > 1 for a, b in chain])
-    places = _bending_joints(np.cumsum(lengths) - lengths[0], rest, branching)
+    odd = np.array([tree.is_bent(chain, i) or min(map(tree.branches, chain[i])) > 1 for i in range(len(chain))])
+    apart = np.linalg.norm(tree.places[list(chains[0])] - tree.places[list(chains[1])], axis=-1)
+    places = _bending_joints(np.cumsum(lengths) - lengths[0], rest=rest, apart=apart, odd=odd)
     if places is None:
         return None
     length = float(np.sum(lengths[places[0] + 1 : places[2] + 1]))
@@ -194,7 +206,9 @@ def _limb_pair(tree: Tree, base: int, first: tuple[int, int]) -> LimbPair | None
     return LimbPair(base, chains, triples, length)
 
 
-def _bending_joints(at: FloatArray, rest: FloatArray, branching: BoolArray) -> tuple[int, int, int] | None:
+def _bending_joints(
+    at: FloatArray, *, rest: FloatArray, apart: FloatArray, odd: BoolArray
+) -> tuple[int, int, int] | None:
     """Return the places in a chain of a limb's top, bend and end.
 
     A limb has two bones of like lengths, each in one piece or cut by twist joints; what is above them in the chain
@@ -206,10 +220,12 @@ def _bending_joints(at: FloatArray, rest: FloatArray, branching: BoolArray) -> t
         Length along the chain from its first joint.
     rest : shape (N,)
         Distance from each joint to the farthest end below it.
-    branching : shape (N,)
-        Whether several bones leave a joint, on both sides.
+    apart : shape (N,)
+        Distance from each joint to its twin on the other side in the zero pose.
+    odd : shape (N,)
+        Whether a joint is bent or branches, so that no bone is cut there.
     """
-    cut_cost = np.where(branching, _COST_OF_A_BRANCHING_CUT, _COST_OF_A_CUT)
+    cut_cost = np.where(odd, _COST_OF_AN_ODD_CUT, _COST_OF_A_CUT)
     best: tuple[float, tuple[int, int, int]] | None = None
     for i, j, k in combinations(range(len(at)), 3):
         upper, lower = at[j] - at[i], at[k] - at[j]
@@ -220,6 +236,7 @@ def _bending_joints(at: FloatArray, rest: FloatArray, branching: BoolArray) -> t
             continue
         cost = abs(float(np.log(upper / lower))) + float(np.sum(cut_cost[i + 1 : k]) - cut_cost[j])
         cost += float(_COST_ABOVE * at[i] + _COST_BELOW * rest[k]) / mean
+        cost += _COST_OF_ONE_PLACE * (apart[i] < _APART * mean)
         if best is None or cost < best[0] - 1e-12:
             best = cost, (i, j, k)
     return None if best is None else best[1]

@@ -1,6 +1,8 @@
 import numpy as np
 import pytest
 from human import BONES, CHANNELS, ENDS, SHANK, THIGH, above, skeleton_of, split, standing
+from hypothesis import given
+from hypothesis import strategies as st
 
 from motionedit.core.anatomy import find_anatomy
 from motionedit.core.kinematics import forward
@@ -217,4 +219,36 @@ def test_a_skeleton_of_no_size_is_no_error():
 
 def test_axes_of_the_file_do_not_matter():
     skeleton = skeleton_of(turn=Z_UP)
+    assert_human(skeleton, find_anatomy(skeleton))
+
+
+def test_hip_joints_and_collars_that_start_at_the_spine_are_no_thighs_and_no_shoulders():
+    # Proportions as in CMU's subject 12: a thigh much shorter than the shank, a forearm of half an upper arm.
+    offsets = {
+        "UpLeg": (0.2, -0.16, 0.11), "Leg": (0.2, -0.56, 0.0), "Foot": (0.27, -0.75, 0.0),
+        "ToeBase": (0.01, -0.02, 0.2), "Shoulder": (0.0, 0.0, 0.0), "Arm": (0.36, 0.08, -0.04), "ForeArm": (0.49, 0.0, 0.0),
+        "Hand": (0.27, 0.0, 0.0),
+    }  # fmt: skip
+    bones = []
+    for name, parent, offset in BONES:
+        part = name.removeprefix("Left").removeprefix("Right")
+        x, y, z = offsets.get(part, offset)
+        bones.append((name, parent, (-x if name.startswith("Right") else x, y, z)))
+    for side, sign in (("Left", 1.0), ("Right", -1.0)):
+        bones += [
+            (side + "FingerBase", side + "Hand", (0.0, 0.0, 0.0)),
+            (side + "Index", side + "FingerBase", (sign * 0.07, 0.0, 0.0)),
+            (side + "Thumb", side + "Hand", (0.0, 0.0, 0.0)),
+        ]
+    skeleton = skeleton_of(bones, {"LeftIndex": (0.05, 0, 0), "RightIndex": (-0.05, 0, 0), "Head": (0, 0.18, 0)})
+    assert_human(skeleton, find_anatomy(skeleton))
+
+
+@given(st.lists(st.floats(0.9, 1.1), min_size=len(BONES), max_size=len(BONES)))
+def test_bones_a_tenth_longer_or_shorter_on_either_side_change_nothing(factors):
+    bones = [
+        (name, parent, tuple(factor * x for x in offset))
+        for factor, (name, parent, offset) in zip(factors, BONES, strict=True)
+    ]
+    skeleton = skeleton_of(bones)
     assert_human(skeleton, find_anatomy(skeleton))
