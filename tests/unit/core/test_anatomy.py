@@ -226,7 +226,8 @@ def test_hip_joints_and_collars_that_start_at_the_spine_are_no_thighs_and_no_sho
     # Proportions as in CMU's subject 12: a thigh much shorter than the shank, a forearm of half an upper arm.
     offsets = {
         "UpLeg": (0.2, -0.16, 0.11), "Leg": (0.2, -0.56, 0.0), "Foot": (0.27, -0.75, 0.0),
-        "ToeBase": (0.01, -0.02, 0.2), "Shoulder": (0.0, 0.0, 0.0), "Arm": (0.36, 0.08, -0.04), "ForeArm": (0.49, 0.0, 0.0),
+        "ToeBase": (0.01, -0.02, 0.2), "Shoulder": (0.0, 0.0, 0.0), "Arm": (0.36, 0.08, -0.04),
+        "ForeArm": (0.49, 0.0, 0.0),
         "Hand": (0.27, 0.0, 0.0),
     }  # fmt: skip
     bones = []
