@@ -16,9 +16,16 @@ _KEY = "motionedit.verbosity"
 
 def verbosity_options(function: Function) -> Function:
     """Add -v and -q to a command; `verbosity_of` tells their sum."""
-    quiet = click.option("-q", "--quiet", count=True, expose_value=False, callback=_less, help="No table, no warnings.")
+    quiet = click.option(
+        "-q", "--quiet", count=True, expose_value=False, callback=_less, help="Say only errors on standard error."
+    )
     verbose = click.option(
-        "-v", "--verbose", count=True, expose_value=False, callback=_more, help="Say more; -vv shows faults too."
+        "-v",
+        "--verbose",
+        count=True,
+        expose_value=False,
+        callback=_more,
+        help="Say more on standard error; -vv adds tracebacks.",
     )
     return verbose(quiet(function))
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from motionedit.errors import MotionEditErrors, UsageError
+from motionedit.errors import UsageError
 from motionedit.jobs.files import identity
 
 if TYPE_CHECKING:
@@ -101,17 +101,22 @@ def find_clips(clips: Sequence[Path], *, leave_out: Path | None = None) -> list[
 
     Raises
     ------
-    UsageError or MotionEditErrors
+    UsageError
         Something given does not exist, a folder holds no clip, or ``-`` is given twice.
     """
-    missing = [UsageError("no such file or folder", file=str(p)) for p in clips if _is_missing(p)]
-    if len(missing) > 1:
-        raise MotionEditErrors("missing clips", missing)
-    if missing:
-        raise missing[0]
+    refuse_missing(clips)
     if sum(str(path) == "-" for path in clips) > 1:
         raise UsageError("standard input ('-') can be read only once")
     return [task for path in clips for task in _expand(path, leave_out)]
+
+
+def folder_clips(folder: Path, *, leave_out: Path | None = None) -> list[ClipTask]:
+    """Return the clips of one folder as `find_clips` does, none where it has none."""
+    found = sorted(_clips_below(folder, leave_out), key=lambda clip: clip.relative_to(folder).as_posix())
+    if leave_out is not None and not leave_out.is_dir():
+        # An output of an earlier run inside the folder is no clip, unless it is all there is: then it is refused.
+        found = [clip for clip in found if identity(clip) != identity(leave_out)] or found
+    return [ClipTask(clip, str(clip), None, clip.relative_to(folder).as_posix()) for clip in found]
 
 
 def plan(clips: Sequence[Path], output: str, *, options: RunOptions, depends: Sequence[Path] = ()) -> list[ClipTask]:
@@ -128,7 +133,7 @@ def plan(clips: Sequence[Path], output: str, *, options: RunOptions, depends: Se
 
     Raises
     ------
-    UsageError or MotionEditErrors
+    UsageError
         As `find_clips`; several clips for one output; an output that is an input; an output that exists where
         `overwrite` is off; `update` with standard input or output.
     """
@@ -136,8 +141,10 @@ def plan(clips: Sequence[Path], output: str, *, options: RunOptions, depends: Se
     if options.update and (output == "-" or any(task.source is None for task in found)):
         raise UsageError("--update compares the times of files: it does not go with '-'")
     tasks = _with_outputs(found, output)
-    _refuse_shared_outputs(tasks)
-    _refuse_overwritten_inputs(tasks, depends, options.report)
+    _refuse_shared_outputs(tasks, options.report)
+    outputs = [task.output for task in tasks if task.output is not None]
+    inputs = [task.source for task in tasks if task.source is not None]
+    refuse_overwriting([*outputs, *([options.report] if options.report else [])], [*inputs, *depends])
     if options.update:
         tasks = [replace(task, current=_is_current(task, depends)) for task in tasks]
     if not options.overwrite:
@@ -145,17 +152,29 @@ def plan(clips: Sequence[Path], output: str, *, options: RunOptions, depends: Se
     return tasks
 
 
+def refuse_missing(clips: Sequence[Path]) -> None:
+    """Raise a UsageError where a clip or folder does not exist; ``-`` always does."""
+    _refuse([p for p in clips if str(p) != "-" and not p.exists()], "no such file or folder")
+
+
 def refuse_existing(outputs: Sequence[Path]) -> None:
-    """Raise the UsageErrors of --no-overwrite: one for each output that exists."""
-    errors = [
-        UsageError("exists, and --no-overwrite is given", file=str(path)) for path in outputs if os.path.lexists(path)
-    ]
-    if errors:
-        raise MotionEditErrors("outputs exist", errors)
+    """Raise the UsageError of --no-overwrite where any of the outputs exists."""
+    _refuse([path for path in outputs if os.path.lexists(path)], "exists, and --no-overwrite is given")
 
 
-def _is_missing(path: Path) -> bool:
-    return str(path) != "-" and not path.exists()
+def refuse_overwriting(outputs: Sequence[Path], inputs: Sequence[Path]) -> None:
+    """Raise a UsageError where an output is an input, by whatever name or link."""
+    taken = {identity(path) for path in inputs}
+    _refuse(
+        [path for path in outputs if identity(path) in taken],
+        "is an input of this run, and an input is never overwritten; write to another file or folder",
+    )
+
+
+def _refuse(paths: Sequence[Path], reason: str) -> None:
+    if paths:
+        others = f" (and {len(paths) - 1} more)" if len(paths) > 1 else ""
+        raise UsageError(reason + others, file=str(paths[0]))
 
 
 def _expand(path: Path, leave_out: Path | None) -> list[ClipTask]:
@@ -163,13 +182,10 @@ def _expand(path: Path, leave_out: Path | None) -> list[ClipTask]:
         return [ClipTask(None, STDIN_LABEL, None, STDIN_LABEL)]
     if not path.is_dir():
         return [ClipTask(path, str(path), None, path.name)]
-    found = sorted(_clips_below(path, leave_out), key=lambda clip: clip.relative_to(path).as_posix())
-    if leave_out is not None and not leave_out.is_dir():
-        # An output of an earlier run inside the folder is no clip, unless it is all there is: then it is refused.
-        found = [clip for clip in found if identity(clip) != identity(leave_out)] or found
+    found = folder_clips(path, leave_out=leave_out)
     if not found:
         raise UsageError("no .bvh file in this folder", file=str(path))
-    return [ClipTask(clip, str(clip), None, clip.relative_to(path).as_posix()) for clip in found]
+    return found
 
 
 def _clips_below(top: Path, leave_out: Path | None) -> Iterator[Path]:
@@ -206,30 +222,15 @@ def _with_outputs(tasks: list[ClipTask], output: str) -> list[ClipTask]:
     return [replace(task, output=target / task.relative) for task in tasks]
 
 
-def _refuse_shared_outputs(tasks: list[ClipTask]) -> None:
-    first: dict[str, ClipTask] = {}
+def _refuse_shared_outputs(tasks: list[ClipTask], report: Path | None) -> None:
+    first = {} if report is None else {os.path.realpath(report): "the report"}
     for task in tasks:
         if task.output is None:
             continue
-        other = first.setdefault(os.path.realpath(task.output), task)
-        if other is not task:
-            raise UsageError(f"{other.label} and {task.label} would both be written to {task.output}")
-
-
-def _refuse_overwritten_inputs(tasks: list[ClipTask], depends: Sequence[Path], report: Path | None) -> None:
-    inputs = {identity(path) for path in depends} | {identity(task.source) for task in tasks if task.source}
-    outputs = [task.output for task in tasks if task.output is not None]
-    errors = [
-        UsageError("is an input of this run, and an input is never overwritten; give another -o", file=str(path))
-        for path in outputs
-        if identity(path) in inputs
-    ]
-    if report is not None and identity(report) in inputs:
-        errors.append(UsageError("is an input of this run; give another --report", file=str(report)))
-    if report is not None and os.path.realpath(report) in map(os.path.realpath, outputs):
-        errors.append(UsageError("is an output of this run; give another --report", file=str(report)))
-    if errors:
-        raise MotionEditErrors("outputs that are inputs", errors)
+        name = os.path.realpath(task.output)
+        if name in first:
+            raise UsageError(f"{first[name]} and {task.label} would both be written to {task.output}")
+        first[name] = task.label
 
 
 def _is_current(task: ClipTask, depends: Sequence[Path]) -> bool:

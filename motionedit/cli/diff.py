@@ -1,0 +1,115 @@
+"""The command `motionedit diff`."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import click
+
+from motionedit.cli.options import lenient_option, not_negative, report_option
+from motionedit.cli.verbosity import verbosity_of, verbosity_options
+
+if TYPE_CHECKING:
+    from motionedit.jobs.diff import Comparison
+
+_PATH = click.Path(path_type=Path, allow_dash=True)
+
+
+@click.command(
+    "diff",
+    epilog="""\b
+    Example, a check that a new version still writes the same motions:
+      motionedit diff expected/ written/ --report diff.xml""",
+)
+@click.argument("a", metavar="A", type=_PATH)
+@click.argument("b", metavar="B", type=_PATH)
+@click.option(
+    "--tolerance-position",
+    metavar="X",
+    type=float,
+    callback=not_negative,
+    help="Largest distance of a joint that counts as the same, in the clip's unit.  "
+    "[default: 1e-5 of the skeleton's height]",
+)
+@click.option(
+    "--tolerance-angle",
+    metavar="DEGREES",
+    type=float,
+    callback=not_negative,
+    default=0.01,
+    show_default=True,
+    help="Largest turn of a joint that counts as the same.",
+)
+@lenient_option
+@report_option
+@verbosity_options
+@click.pass_context
+def command(
+    ctx: click.Context,
+    a: Path,
+    b: Path,
+    tolerance_position: float | None,
+    tolerance_angle: float,
+    lenient: bool,  # noqa: FBT001  click passes its options by name
+    report: Path | None,
+) -> int:
+    """Tell whether two clips or folders hold the same motion.
+
+    A and B are two clips, or two folders whose clips are paired by their path below them. Joints are matched by
+    name and compared by their positions in the world and their angles, so another text of the same motion is no
+    difference.
+
+    Exits with 0 for the same motion, 3 for another one or a clip that is missing on one side, and 2 where a pair
+    cannot be compared: unreadable, another skeleton, frame count or frame rate. A report whose name ends in .xml
+    is JUnit, else it is JSON.
+    """
+    from motionedit.cli.boundary import complain
+    from motionedit.jobs import diff
+
+    comparisons = diff.run(
+        a,
+        b,
+        tolerance_position=tolerance_position,
+        tolerance_angle=tolerance_angle,
+        lenient=lenient,
+        report=report,
+    )
+    for one in comparisons:
+        if one.status == "not_comparable":
+            complain(one.message)
+    if str(report) != "-":
+        _print(comparisons, verbosity=verbosity_of(ctx))
+    if report is not None:
+        _write(comparisons, report)
+    return diff.exit_code(comparisons)
+
+
+def _print(comparisons: list[Comparison], *, verbosity: int) -> None:
+    """Print what differs, and how many pairs do; pairs that are the same only where they are few or asked for."""
+    for one in comparisons:
+        if one.status in ("different", "missing"):
+            click.echo(f"{one.name}: {one.status}: {one.message}")
+        elif one.status == "same" and (len(comparisons) == 1 or verbosity > 0):
+            click.echo(f"{one.name}: same")
+    if len(comparisons) > 1:
+        counts = Counter(one.status.replace("_", " ") for one in comparisons)
+        click.echo(f"{len(comparisons)} clips: " + ", ".join(f"{n} {status}" for status, n in counts.items()))
+
+
+def _write(comparisons: list[Comparison], report: Path) -> None:
+    from motionedit.cli.finish import write_report
+    from motionedit.report.junit import Case, junit_bytes
+    from motionedit.report.record import report_bytes
+
+    if report.suffix.lower() == ".xml":
+        problems: dict[str, Literal["failure", "error"]] = {
+            "different": "failure",
+            "missing": "failure",
+            "not_comparable": "error",
+        }
+        cases = [Case(one.name, problems.get(one.status), one.message) for one in comparisons]
+        write_report(junit_bytes("motionedit diff", cases), report)
+    else:
+        write_report(report_bytes("diff", [one.record() for one in comparisons]), report)

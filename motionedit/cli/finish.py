@@ -1,0 +1,90 @@
+"""What every command ends with: paths on standard output, the rest on standard error, the report, the exit code."""
+
+from __future__ import annotations
+
+import sys
+from collections import Counter
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from motionedit.cli.boundary import complain, warn
+from motionedit.errors import MotionEditError, SpecError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from motionedit.jobs.batch import BatchResult
+    from motionedit.jobs.plan import RunOptions
+
+
+def finish_batch(result: BatchResult, options: RunOptions, *, command: str, spec: Mapping[str, Any] | None) -> int:
+    """Print and write all that a run came to; return its exit code."""
+    from motionedit.report.record import report_bytes
+    from motionedit.report.table import results_table
+
+    if options.verbosity >= 0:
+        for warning in result.warnings:
+            warn(warning)
+        if result.records and not options.dry_run:
+            click.echo(results_table(result.records, result.seconds, verbosity=options.verbosity), err=True)
+        if result.current:
+            click.echo(f"{result.current} up to date", err=True)
+    show_failures(result.failures)
+    on_stdout = options.report is not None and str(options.report) == "-"
+    if options.dry_run:
+        _show_plan(result, err=on_stdout)
+    elif result.content is not None:
+        write_stdout(result.content)
+    elif not on_stdout:
+        for path in result.paths:
+            click.echo(path)
+    if options.report is not None:
+        report = report_bytes(command, result.records, spec=spec)
+        write_report(report, options.report, dry_run=options.dry_run)
+    return result.exit_code
+
+
+def show_failures(failures: Sequence[MotionEditError]) -> None:
+    """Say each failure on a line; a fault of the spec that many clips share is said once, with their number."""
+    places = Counter(_place(error) for error in failures)
+    said: set[tuple[object, ...]] = set()
+    for error in failures:
+        place = _place(error)
+        if place is None:
+            complain(str(error))
+        elif place not in said:
+            said.add(place)
+            others = f" (and in {places[place] - 1} more)" if places[place] > 1 else ""
+            complain(f"{error}{others}")
+
+
+def write_report(report: bytes, path: Path, *, dry_run: bool = False) -> None:
+    """Write a report to its file, or to standard output for ``-``."""
+    from motionedit.jobs.files import atomic_write, clean_leftovers
+
+    if str(path) == "-":
+        write_stdout(report)
+    elif dry_run:
+        click.echo(f"would write the report {path}")
+    else:
+        clean_leftovers([path.parent])
+        atomic_write(path, report)
+
+
+def write_stdout(data: bytes) -> None:
+    """Write bytes, such as a clip, to standard output as they are."""
+    sys.stdout.buffer.write(data)
+    sys.stdout.buffer.flush()
+
+
+def _show_plan(result: BatchResult, *, err: bool) -> None:
+    for heading, lines in result.details:
+        click.echo(f"would write {heading}", err=err)
+        for line in lines:
+            click.echo(f"  {line}", err=err)
+
+
+def _place(error: MotionEditError) -> tuple[object, ...] | None:
+    return (error.file, error.line, error.key) if isinstance(error, SpecError) else None

@@ -1,0 +1,83 @@
+"""The command `motionedit fit-pca`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from motionedit.cli.options import (
+    jobs_option,
+    output_option,
+    overwrite_option,
+    report_option,
+    set_option,
+    spec_option,
+)
+from motionedit.cli.progress import progress_on_terminal
+from motionedit.cli.verbosity import verbosity_of, verbosity_options
+
+
+@click.command(
+    "fit-pca",
+    epilog="""\b
+    Example:
+      motionedit fit-pca normalized/ -o golf.npz""",
+)
+@click.argument("folder", metavar="DIR", type=click.Path(path_type=Path, exists=True, file_okay=False))
+@output_option("MODEL.npz", "The model's file.")
+@spec_option(required=False)
+@set_option
+@jobs_option
+@overwrite_option
+@report_option
+@verbosity_options
+@click.pass_context
+def command(
+    ctx: click.Context,
+    folder: Path,
+    output: str,
+    spec_path: Path | None,
+    overrides: tuple[str, ...],
+    jobs: int,
+    overwrite: bool,  # noqa: FBT001  click passes its options by name
+    report: Path | None,
+) -> int:
+    """Fit a motion PCA model to normalized clips.
+
+    DIR is the folder that normalize wrote; the clips that its normalization.json lists are read, and no others.
+    Prints how much of the variance each component explains.
+    """
+    from motionedit.cli.boundary import warn
+    from motionedit.cli.finish import write_report
+    from motionedit.jobs import fit_pca
+    from motionedit.jobs.plan import RunOptions, refuse_existing
+    from motionedit.report.record import report_bytes
+    from motionedit.report.table import text_table
+    from motionedit.spec.load import load_spec
+
+    if output == "-" or Path(output).is_dir():
+        raise click.UsageError(f"-o {output}: fit-pca writes a file; give a name such as model.npz")
+    if overrides and spec_path is None:
+        raise click.UsageError("--set overrides a key of a spec: give -s too")
+    if not overwrite:
+        refuse_existing([Path(output)])
+    loaded = None if spec_path is None else load_spec(spec_path, "fit-pca", overrides=overrides)
+    options = RunOptions(
+        jobs=jobs,
+        overwrite=overwrite,
+        report=report,
+        verbosity=verbosity_of(ctx),
+        progress=progress_on_terminal,
+    )
+    fit = fit_pca.run(folder, Path(output), loaded, options)
+    if options.verbosity >= 0:
+        for warning in fit.warnings:
+            warn(warning)
+        click.echo(text_table(*fit.table), err=True)
+    if str(report) != "-":
+        click.echo(output)
+    if report is not None:
+        spec = None if loaded is None else loaded.data
+        write_report(report_bytes("fit-pca", [], spec=spec, more=fit.record), report)
+    return 0

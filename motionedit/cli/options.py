@@ -1,0 +1,165 @@
+"""The options that commands share, each written once."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import click
+
+from motionedit.cli.progress import progress_on_terminal
+from motionedit.cli.verbosity import verbosity_of, verbosity_options
+
+Function = Callable[..., Any]
+Decorator = Callable[[Function], Function]
+
+_FILE = click.Path(path_type=Path, exists=True, dir_okay=False)
+
+
+def not_negative(ctx: click.Context, parameter: click.Parameter, value: float | None) -> float | None:
+    """Refuse a number below zero (click's own ranges clutter the help)."""
+    if value is not None and not value >= 0:
+        raise click.BadParameter(f"{value} is below 0", ctx=ctx, param=parameter)
+    return value
+
+
+clips_argument = click.argument("clips", nargs=-1, required=True, metavar="CLIPS...", type=click.Path(path_type=Path))
+model_option = click.option(
+    "-m", "--model", required=True, metavar="MODEL.npz", type=_FILE, help="The model that fit-pca wrote."
+)
+set_option = click.option(
+    "--set",
+    "overrides",
+    multiple=True,
+    metavar="KEY=VALUE",
+    help="Override one key of the spec, such as goals.ball.shift='[-10, 0, 0]'; may be repeated.",
+)
+lenient_option = click.option(
+    "--lenient", is_flag=True, help="Accept a clip whose row count differs from 'Frames:', with a warning."
+)
+report_option = click.option(
+    "--report",
+    metavar="FILE",
+    type=click.Path(path_type=Path, dir_okay=False, allow_dash=True),
+    help="Write a JSON report; '-' prints it in place of the paths.",
+)
+jobs_option = click.option(
+    "-j",
+    "--jobs",
+    default=1,
+    show_default=True,
+    metavar="N",
+    type=int,
+    callback=not_negative,
+    help="Clips in parallel; 0 means all cores. The files are the same for any N.",
+)
+overwrite_option = click.option(
+    "--no-overwrite",
+    "overwrite",
+    flag_value=False,
+    default=True,
+    help="Refuse, before any work, if an output exists.",
+)
+dry_run_option = click.option("--dry-run", is_flag=True, help="Print what would be done; write nothing.")
+
+_BEFORE = (
+    jobs_option,
+    click.option(
+        "--scheduler", metavar="ADDRESS", help="Run on a Dask cluster instead (pip install 'motionedit[cluster]')."
+    ),
+    click.option(
+        "--update",
+        is_flag=True,
+        help="Skip outputs newer than their clip, the spec, the model and the event files.",
+    ),
+    overwrite_option,
+)
+_AFTER = (
+    lenient_option,
+    click.option("--strict", is_flag=True, help="Exit with 3 where a goal is not met within its tolerance."),
+    dry_run_option,
+    click.option(
+        "--verify",
+        is_flag=True,
+        help="Read each file back with bvhio, an independent reader, and keep it only if the joints are in place.",
+    ),
+    report_option,
+    verbosity_options,
+)
+
+
+def spec_option(*, required: bool = True) -> Decorator:
+    """Return the option -s."""
+    return click.option(
+        "-s",
+        "--spec",
+        "spec_path",
+        required=required,
+        metavar="SPEC",
+        type=_FILE,
+        help="The YAML spec: what is to be done.",
+    )
+
+
+def output_option(metavar: str, text: str) -> Decorator:
+    """Return the option -o; its value is the text as typed, since ``-`` is no path."""
+    return click.option("-o", "--output", required=True, metavar=metavar, help=text)
+
+
+def run_options(*, keep_going: bool) -> Decorator:
+    """Return a decorator that gives a command all options of a run, as one RunOptions named `options`.
+
+    Parameters
+    ----------
+    keep_going : bool
+        What the command does at a clip that fails, where the user does not say.
+    """
+
+    def decorate(function: Function) -> Function:
+        @functools.wraps(function)
+        def collected(**values: Any) -> Any:  # noqa: ANN401  the command's own value
+            from motionedit.jobs.plan import RunOptions
+
+            if str(values["report"]) == str(values.get("output")) == "-":
+                raise click.UsageError("-o - and --report - cannot both have standard output")
+            names = RunOptions.__dataclass_fields__.keys() & values.keys()
+            options = RunOptions(
+                **{name: values.pop(name) for name in names},
+                verbosity=verbosity_of(click.get_current_context()),
+                progress=progress_on_terminal,
+            )
+            return function(options=options, **values)
+
+        keep_going_option = click.option(
+            "--keep-going/--fail-fast",
+            default=keep_going,
+            show_default=True,
+            help="Go on past a clip that fails, or stop at it.",
+        )
+        command: Function = collected
+        for option in reversed((*_BEFORE, keep_going_option, *_AFTER)):
+            command = option(command)
+        return command
+
+    return decorate
+
+
+def not_supported_yet(*names: str) -> Decorator:
+    """Return a decorator that refuses options whose work is not done yet, by name."""
+
+    def refuse(ctx: click.Context, parameter: click.Parameter, value: str | None) -> None:
+        del ctx
+        if value is not None:
+            raise click.UsageError(f"{parameter.opts[0]} is not supported yet")
+
+    def decorate(function: Function) -> Function:
+        command: Function = function
+        for name in names:
+            command = click.option(
+                name, is_flag=False, flag_value="", hidden=True, expose_value=False, callback=refuse
+            )(command)
+        return command
+
+    return decorate

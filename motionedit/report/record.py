@@ -1,0 +1,58 @@
+"""The JSON report: fixed keys in a fixed order, rounded numbers, no times of day, so that two reports compare."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from motionedit import __version__
+
+SCHEMA = "motionedit/report/v1"
+# Enough for any comparison, and few enough that the last bits of two machines do not show.
+_DIGITS = 9
+
+
+def report_bytes(
+    command: str,
+    clips: list[dict[str, Any]],
+    *,
+    spec: Mapping[str, Any] | None = None,
+    more: Mapping[str, Any] | None = None,
+) -> bytes:
+    """Return the report as UTF-8 JSON.
+
+    Parameters
+    ----------
+    clips : list of dict
+        One entry per clip, in the run's order.
+    spec : mapping or None
+        The spec with `--set` applied.
+    more : mapping or None
+        What a command adds below the fixed keys.
+    """
+    report = {
+        "schema": SCHEMA,
+        "version": __version__,
+        "command": command,
+        "spec": spec,
+        "clips": clips,
+        **(more or {}),
+    }
+    return (json.dumps(plain(report), indent=2, ensure_ascii=False, allow_nan=False) + "\n").encode()
+
+
+def plain(value: Any) -> Any:  # noqa: ANN401  any value that a report may hold
+    """Return a value as JSON holds it: numbers rounded, arrays as lists, what is not finite as null."""
+    if isinstance(value, Mapping):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(item) for item in value]
+    if hasattr(value, "tolist"):  # numpy's numbers and arrays
+        return plain(value.tolist())
+    if isinstance(value, float):
+        return float(f"{value:.{_DIGITS}g}") + 0.0 if math.isfinite(value) else None
+    if value is None or isinstance(value, (bool, int, str)):
+        return value
+    return str(value)

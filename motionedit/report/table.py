@@ -1,0 +1,91 @@
+"""Tables for the terminal: one row per clip, and the numbers a busy person looks for."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+# Of more clips than this, only those that are not ok get a row, unless more is asked for.
+_MOST_ROWS = 40
+
+
+def text_table(headings: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
+    """Return rows under their headings, aligned: numbers right, text left; columns without any value left out."""
+    cells = [[number(value) for value in row] for row in rows]
+    kept = [c for c in range(len(headings)) if any(row[c] for row in cells)]
+    lines = [[headings[c] for c in kept], *([row[c] for c in kept] for row in cells)]
+    right = [all(isinstance(row[c], (int, float, type(None))) for row in rows) for c in kept]
+    widths = [max(len(line[i]) for line in lines) for i in range(len(kept))]
+    return "\n".join(
+        "  ".join(
+            cell.rjust(width) if numeric else cell.ljust(width)
+            for cell, width, numeric in zip(line, widths, right, strict=True)
+        ).rstrip()
+        for line in lines
+    )
+
+
+def number(value: object) -> str:
+    """Return a value as a table shows it: four significant digits, nothing for None."""
+    if value is None:
+        return ""
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def results_table(records: Sequence[dict[str, Any]], seconds: Sequence[float], *, verbosity: int = 0) -> str:
+    """Return the results of a run: a row per clip, a line that counts them, with -v the goals of each clip."""
+    shown = [
+        (record, time)
+        for record, time in zip(records, seconds, strict=True)
+        if verbosity > 0 or len(records) <= _MOST_ROWS or record["status"] != "ok"
+    ]
+    blocks = []
+    if shown:
+        headings = ("clip", "status", "worst error", "of", "frame", "iterations", "foot slide", "jerk", "seconds")
+        blocks.append(text_table(headings, [_row(record, time) for record, time in shown]))
+    if verbosity > 0:
+        blocks += [_goals_table(record) for record, _ in shown if _goals(record)]
+    if len(records) > 1:
+        counts = Counter(record["status"] for record in records)
+        blocks.append(f"{len(records)} clips: " + ", ".join(f"{n} {status}" for status, n in counts.items()))
+    return "\n".join(blocks)
+
+
+def _row(record: dict[str, Any], seconds: float) -> tuple[object, ...]:
+    measured = [goal for goal in _goals(record) if goal.get("error_max") is not None]
+    worst = max(measured, key=lambda goal: float(goal["error_max"]), default={})
+    return (
+        record["clip"],
+        record["status"],
+        worst.get("error_max"),
+        worst.get("name"),
+        worst.get("frame"),
+        record.get("iterations"),
+        _change(record, "foot_slide_max"),
+        _change(record, "jerk_rms"),
+        None if record["status"] == "failed" else f"{seconds:.2f}",
+    )
+
+
+def _goals(record: dict[str, Any]) -> list[dict[str, Any]]:
+    goals: list[dict[str, Any]] = record.get("goals") or record.get("constraints") or []
+    return goals
+
+
+def _goals_table(record: dict[str, Any]) -> str:
+    headings = (record["clip"], "priority", "worst error", "degrees", "frame", "status", "gave way to")
+    keys = ("name", "priority", "error_max", "error_angle_max", "frame", "status")
+    rows = [
+        (*(goal.get(key) for key in keys), ", ".join(goal.get("gave_way_to") or ()) or None) for goal in _goals(record)
+    ]
+    return "\n" + text_table(headings, rows)
+
+
+def _change(record: dict[str, Any], key: str) -> str | None:
+    """Return a measure before and after the edit, as ``1.2 -> 1.3``."""
+    metrics = record.get("metrics") or {}
+    values = [number(metrics[side][key]) for side in ("before", "after") if key in (metrics.get(side) or {})]
+    return " -> ".join(value for value in values if value) or None

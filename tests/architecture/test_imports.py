@@ -1,0 +1,75 @@
+"""Imports go one way, and each outside package has one room."""
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import motionedit
+
+PACKAGE = Path(motionedit.__file__).parent
+FILES = sorted(PACKAGE.rglob("*.py"))
+
+# What a room may import of the others.
+MAY_IMPORT = {
+    "cli": {"cli", "jobs", "spec", "core", "report", "errors"},
+    "jobs": {"jobs", "spec", "core", "report", "errors"},
+    "spec": {"spec", "errors"},
+    "core": {"core", "errors"},
+    "report": {"report", "errors"},
+    "errors": set(),
+    "__init__": set(),
+    "__main__": {"cli"},
+}
+# The rooms (and files) in which an outside package may be imported.
+HOMES = {
+    "click": ("cli/",),
+    "yaml": ("spec/",),
+    "pydantic": ("spec/",),
+    "bvhio": ("core/bvh/",),
+    "distributed": ("jobs/pool.py",),
+    "matplotlib": ("report/",),
+    "scipy": (),
+    "bvh": (),
+    "pandas": (),
+}
+HEAVY = {"numpy", "scipy", "yaml", "pydantic", "bvhio", "matplotlib", "multiprocessing", "json", "difflib"}
+
+
+def imported(path):
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path} imports relatively: say where from"
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.relative_to(PACKAGE).as_posix())
+def test_a_file_imports_only_what_its_room_may(path):
+    place = path.relative_to(PACKAGE).as_posix()
+    room = place.split("/")[0].removesuffix(".py")
+    for name in imported(path):
+        first, *rest = name.split(".")
+        if first == "motionedit":
+            assert rest[0] in MAY_IMPORT[room] | {"__version__"}, f"{place} imports {name}"
+        elif first in HOMES:
+            assert place.startswith(HOMES[first]), f"{place} imports {name}"
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "import motionedit, motionedit.errors, motionedit.cli",
+        "import sys, motionedit.cli as c\ntry: c.main(['--help'])\nexcept SystemExit: pass",
+    ],
+    ids=["import", "help"],
+)
+def test_the_command_line_starts_without_loading_what_it_does_not_need(code):
+    command = [sys.executable, "-c", f"{code}\nimport sys\nprint('LOADED', *sys.modules)"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    loaded = set(done.stdout.rpartition("LOADED")[2].split())
+    assert "motionedit.cli" in loaded
+    assert not loaded & HEAVY
