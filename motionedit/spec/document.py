@@ -1,0 +1,43 @@
+"""What stands at the top of every spec: events, the unit, which way is up."""
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Annotated, Any, ClassVar
+
+from pydantic import Field
+
+from motionedit.spec import kinds
+from motionedit.spec.events import EventSpec, OrFrame, event_faults
+from motionedit.spec.faults import Fault
+from motionedit.spec.model import SpecModel
+from motionedit.spec.values import Unit
+
+Events = dict[str, Annotated[EventSpec, OrFrame()]]
+
+
+class Document(SpecModel):
+    """The keys that every spec may have."""
+
+    # Whether times may name events that the spec does not list.
+    knows_other_events: ClassVar[bool] = False
+
+    events: Events = Field(default={}, description="Names for instants, used wherever a time stands.")
+    unit: Annotated[Unit | None, kinds.UNIT] = Field(
+        default=None,
+        description="What a length of the clips is: m, cm, mm, in, cmu (1/0.45 inch) or a number of metres. Converts "
+        "nothing; serves reports in millimetres and the damped solver.",
+    )
+    up: Annotated[str, kinds.word("y", "z", "auto")] = Field(
+        default="auto", description="The axis that points up; auto: the one in which the head stands over the feet."
+    )
+
+    @property
+    def event_files(self) -> tuple[Path, ...]:
+        """Files that frames of events were read from."""
+        frames = [event.frames for event in self.events.values()]
+        return tuple(found.file for found in frames if found is not None and found.file is not None)
+
+    @classmethod
+    def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
+        """Yield what is wrong between keys."""
+        yield from (fault.under("events") for fault in event_faults(data.get("events")))

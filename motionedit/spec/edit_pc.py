@@ -1,0 +1,195 @@
+"""The spec of edit-pc: goals at single frames, met in the space of motion principal coefficients, [PC] 4.2-4.3."""
+
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any, ClassVar
+
+from pydantic import AfterValidator, Field
+
+from motionedit.spec import kinds
+from motionedit.spec.document import Document
+from motionedit.spec.faults import Fault, faulty
+from motionedit.spec.items import EffectorItem, repeated_names, taken_apart
+from motionedit.spec.model import Context, Kind, SpecModel, mappings_in, not_both
+from motionedit.spec.scalars import Vector, word
+from motionedit.spec.times import Time
+from motionedit.spec.values import UNITS, OrientationSpec, Tolerance, Unit
+
+DEFAULT_PLAUSIBILITY = 3.0
+
+
+class PcGoal(EffectorItem):
+    """Where an effector shall be at one frame."""
+
+    at: Annotated[Time, kinds.TIME] = Field(description="The instant of the goal.")
+    position: Annotated[Vector | None, kinds.VECTOR] = Field(
+        default=None, description="Where the effector shall be, in clip units. One of position, shift, orientation is needed."
+    )
+    shift: Annotated[Vector | None, kinds.VECTOR] = Field(
+        default=None, description="How far the effector shall move from where it is at that frame, in clip units."
+    )
+    orientation: Annotated[OrientationSpec | None, kinds.ORIENTATION] = Field(
+        default=None, description="How the effector's joint shall be turned, in degrees; alone or beside position or shift."
+    )
+    frame: Annotated[str, kinds.FRAME] = Field(
+        default="world", description="Axes of position, shift and orientation: world, or the character's heading."
+    )
+    relative_to: Annotated[str | None, kinds.JOINT] = Field(
+        default=None, description="Measure in this joint's frame instead of the world's."
+    )
+    axes: Annotated[tuple[int, ...], kinds.AXES] = Field(
+        default=(0, 1, 2), description="Axes that count for position or shift; default: all of [x, y, z]."
+    )
+    weight: Annotated[float, kinds.number(above=0.0)] = Field(
+        default=1.0, description="Weight among goals of the same priority."
+    )
+    priority: Annotated[int, kinds.whole()] = Field(
+        default=1, description="Larger is more important; goals of equal priority are weighted together."
+    )
+    tolerance: Annotated[Tolerance | None, kinds.TOLERANCE] = Field(
+        default=None,
+        description="How near is met: clip units (degrees for an orientation alone), {position, angle}, or off; "
+        "default 1 mm and 0.1 degree at leg length 0.85 m.",
+    )
+
+    @property
+    def wants_position(self) -> bool:
+        """Whether the goal has a position or shift, else an orientation alone."""
+        return self.position is not None or self.shift is not None
+
+    @property
+    def met_within(self) -> Tolerance:
+        """The tolerance, a bare number in degrees where the goal is an orientation alone."""
+        tolerance = self.tolerance or Tolerance()
+        return tolerance if self.wants_position else tolerance.as_angle()
+
+    @classmethod
+    def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
+        """Yield what is wrong between keys."""
+        yield from not_both(data, "position", "shift")
+        placed = "position" in data or "shift" in data
+        if not placed and "orientation" not in data:
+            yield Fault("needs one of position, shift, orientation")
+        if "axes" in data and "orientation" in data and not placed:
+            yield Fault("belongs to position or shift; an orientation has all its axes", ("axes",))
+        if data.get("frame") == "heading" and "relative_to" in data:
+            yield Fault("stands beside frame: heading; give one of them", ("relative_to",))
+        tolerance = data.get("tolerance")
+        if isinstance(tolerance, dict):
+            if "angle" in tolerance and "orientation" not in data:
+                yield Fault("belongs to a goal with an orientation", ("tolerance", "angle"))
+            if "position" in tolerance and "orientation" in data and not placed:
+                yield Fault("belongs to a goal with a position or shift", ("tolerance", "position"))
+
+
+class PcSolver(SpecModel):
+    """How the coefficients are found."""
+
+    method: Annotated[str, kinds.word("gauss-newton", "damped")] = Field(
+        default="gauss-newton", description="gauss-newton, or damped: the paper's Algorithm 1, which needs unit:."
+    )
+    damping: Annotated[float, kinds.number(above=0.0)] = Field(
+        default=10.0, description="damped only: the damping xi, in damping_unit."
+    )
+    damping_unit: Annotated[Unit, kinds.UNIT] = Field(
+        default=Unit("cm", UNITS["cm"]), description="damped only: the unit the solver works in, as unit:."
+    )
+    max_iterations: Annotated[int | None, kinds.whole(at_least=1, null=True)] = Field(
+        default=1500, description="damped only: iterations at most; null for no bound."
+    )
+    tolerance: Annotated[float, kinds.number(above=0.0)] = Field(
+        default=1.0, description="damped only: the solver stops when the error is below this, in damping_unit."
+    )
+
+    @classmethod
+    def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
+        """Yield what is wrong between keys."""
+        method = data.get("method", "gauss-newton")
+        if method == "gauss-newton":
+            for key in data:
+                if key in ("damping", "damping_unit", "max_iterations", "tolerance"):
+                    yield Fault("belongs to method: damped; gauss-newton needs no settings", (key,))
+
+
+def _coefficients(value: object, _context: Context) -> str:
+    if value == "per_goal":
+        raise faulty("per_goal is not supported yet; constant is")
+    return word(value, ("constant",))
+
+
+COEFFICIENTS = Kind(_coefficients, "constant", {"const": "constant"})
+
+
+def _goals_apart(goals: tuple[PcGoal, ...]) -> tuple[PcGoal, ...]:
+    return taken_apart(goals, "goals")
+
+
+class EditPcSpec(Document):
+    """Everything edit-pc is told."""
+
+    # An event may be the model's own.
+    knows_other_events: ClassVar[bool] = True
+
+    schema_id: Annotated[str, kinds.schema_id("edit-pc")] = Field(
+        default="motionedit/edit-pc/v1", alias="schema", description="Which spec this is."
+    )
+    components: Annotated[int | None, kinds.whole(at_least=1)] = Field(
+        default=None, description="How many of the model's components are used; default: all."
+    )
+    explained_variance: Annotated[float | None, kinds.number(above=0.0, at_most=1.0)] = Field(
+        default=None, description="Use as many components as explain this share of the variance, 0 to 1."
+    )
+    goals: Annotated[tuple[PcGoal, ...], AfterValidator(_goals_apart)] = Field(
+       default= description="What shall be where, at which frame; [] changes nothing."
+    )
+    solver: PcSolver = Field(default=PcSolver(), description="How the coefficients are found.")
+    plausibility: Annotated[float | str | None, kinds.either(("off",), kinds.number(above=0.0))] = Field(
+        default=None,
+        description="Bound on the coefficients' Mahalanobis norm, times the database's largest, or off; default 3 "
+        "(off with method: damped, which its iterations bound).",
+    )
+    coefficients: Annotated[str, COEFFICIENTS] = Field(
+        default="constant", description="One set of coefficients for the whole clip."
+    )
+    residual: Annotated[str, kinds.word("keep", "drop")] = Field(
+        default="keep", description="keep what the model cannot express of the clip, or drop it (the paper's eq. 3 alone)."
+    )
+    timing: Annotated[str, kinds.word("original", "normalized")] = Field(
+        default="original", description="Timing of the edited clip: the input's own, or the model's timeline."
+    )
+
+    @property
+    def plausibility_bound(self) -> float | None:
+        """The bound in force, None for none."""
+        if self.plausibility is None:
+            return None if self.solver.method == "damped" else DEFAULT_PLAUSIBILITY
+        return None if isinstance(self.plausibility, str) else self.plausibility
+
+    @classmethod
+    def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
+        """Yield what is wrong between keys."""
+        yield from super().faults_between_keys(data)
+        yield from not_both(data, "components", "explained_variance")
+        yield from repeated_names(data, "goals")
+        yield from _differing_priorities(data)
+        solver = data.get("solver")
+        if isinstance(solver, dict) and solver.get("method") == "damped":
+            if "unit" not in data:
+                yield Fault("needs unit: in the spec, such as unit: cm; damped works in lengths", ("solver", "method"))
+            if "plausibility" in data and data["plausibility"] != "off":
+                yield Fault(
+                    "belongs to method: gauss-newton; the paper's mode is bounded by its max_iterations",
+                    ("plausibility",),
+                )
+
+
+def _differing_priorities(data: Mapping[str, Any]) -> Iterator[Fault]:
+    first: object = None
+    for i, goal in mappings_in(data, "goals"):
+        priority = goal.get("priority", 1)
+        if first is None:
+            first = priority
+        elif priority != first and isinstance(priority, int):
+            yield Fault(
+                f"goals of differing priority (here {priority}, above {first}) are not supported yet; use weight",
+                ("goals", i, "priority"),
+            )

@@ -1,0 +1,211 @@
+"""Events of a spec: instants with names, given by frame, by clip, by a CSV file, or found by a rule."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic_core import CoreSchema, core_schema
+
+from motionedit.spec import kinds, scalars
+from motionedit.spec.event_table import read_event_table
+from motionedit.spec.faults import Fault, FaultyValueError, faulty, show
+from motionedit.spec.model import Context, Kind, SpecModel, not_both, one_needed
+from motionedit.spec.times import Interval, parse_interval
+from motionedit.spec.values import EffectorSpec
+
+FRAMES_WORDS = "a frame for all clips, a CSV file with the columns clip,frame, or {CLIP: FRAME, ...}"
+
+
+@dataclass(frozen=True)
+class EventFrames:
+    """Frames of an event: `every` for all clips, or `by_clip`, read from `file` where that is not None.
+
+    The keys of `by_clip` are relative paths or stems of clips, as written.
+    """
+
+    every: int | None = None
+    by_clip: Mapping[str, int] = field(default_factory=dict)
+    file: Path | None = None
+
+
+def _event_frames(value: object, context: Context) -> EventFrames:
+    if isinstance(value, str):
+        file = Path(value)
+        if context.folder is None:
+            return EventFrames(file=file)
+        table = read_event_table(context.folder / file, label=_label(context, value))
+        return EventFrames(by_clip=table, file=context.folder / file)
+    if isinstance(value, dict):
+        faults: list[Fault] = []
+        by_clip: dict[str, int] = {}
+        for clip, frame in value.items():
+            try:
+                if frame is None:
+                    raise faulty("needs a frame")
+                by_clip[clip] = scalars.whole(frame, at_least=0)
+            except FaultyValueError as error:
+                faults += [fault.under(clip) for fault in error.faults]
+        if faults:
+            raise FaultyValueError(faults)
+        return EventFrames(by_clip=by_clip)
+    if isinstance(value, list):
+        raise faulty(f"must be {FRAMES_WORDS}; not {show(value)}")
+    return EventFrames(every=scalars.whole(value, at_least=0))
+
+
+def _label(context: Context, file: str) -> str:
+    return file if context.label in ("", ".") or Path(file).is_absolute() else f"{context.label}/{file}"
+
+
+_FRAME = {"type": "integer", "minimum": 0}
+FRAMES = Kind(
+    _event_frames,
+    FRAMES_WORDS,
+    {
+        "anyOf": [
+            _FRAME,
+            {"type": "string", "minLength": 1},
+            {"type": "object", "additionalProperties": _FRAME},
+        ]
+    },
+)
+
+
+def _event_in(value: object, context: Context) -> str:
+    from motionedit.spec.times import parse_event_name, unknown_event
+
+    name = parse_event_name(value)
+    if context.events is not None and name not in context.events:
+        raise faulty(unknown_event(name, tuple(sorted(context.events))))
+    return name
+
+
+EVENT = Kind(_event_in, "an event's name", {"type": "string", "minLength": 1})
+MEASURE = kinds.word("height", "speed", "distance")
+
+
+class DetectRule(SpecModel):
+    """The frame at which a measure of an effector is smallest or largest."""
+
+    effector: Annotated[EffectorSpec, kinds.EFFECTOR] = Field(description="The point that is watched.")
+    minimum_of: Annotated[str | None, MEASURE] = Field(
+        default=None,
+        description="The event is where this is smallest: height over the ground, speed, or distance to the point "
+        "`to`. One of minimum_of, maximum_of is needed.",
+    )
+    maximum_of: Annotated[str | None, MEASURE] = Field(
+        default=None, description="The event is where this is largest; as minimum_of."
+    )
+    to: Annotated[scalars.Vector | None, kinds.VECTOR] = Field(
+        default=None, description="The point distances are measured to, in clip units; needed for distance."
+    )
+    between: Annotated[Interval | None, kinds.INTERVAL] = Field(
+        default=None, description="Only frames of this interval are looked at (default: all)."
+    )
+    after: Annotated[str | None, EVENT] = Field(
+        default=None, description="Only frames after this other event are looked at; instead of between."
+    )
+
+    @property
+    def measure(self) -> str:
+        """What is measured: height, speed or distance."""
+        return self.minimum_of or self.maximum_of or ""
+
+    @property
+    def is_minimum(self) -> bool:
+        """Whether the smallest value is wanted, else the largest."""
+        return self.minimum_of is not None
+
+    @classmethod
+    def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
+        """Yield what is wrong between keys."""
+        yield from one_needed(data, "minimum_of", "maximum_of")
+        yield from not_both(data, "between", "after")
+        measures = [data[key] for key in ("minimum_of", "maximum_of") if key in data]
+        if "distance" in measures and "to" not in data:
+            yield Fault("is missing; distance is measured to a point [x, y, z]", ("to",))
+        if "to" in data and measures and "distance" not in measures:
+            yield Fault("belongs to distance; height and speed need no point", ("to",))
+
+
+class EventSpec(SpecModel):
+    """One event: known frames, and a rule for the clips that have none."""
+
+    frames: Annotated[EventFrames | None, FRAMES] = Field(
+        default=None,
+        description="0-based frames in the input clips: one for all, a CSV file (columns clip,frame; relative to the "
+        "spec), or by clip (relative path or unique stem).",
+    )
+    detect: DetectRule | None = Field(default=None, description="How to find the frame in clips that are not listed.")
+
+    @classmethod
+    def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
+        """Yield what is wrong between keys."""
+        if "frames" not in data and "detect" not in data:
+            yield Fault("needs frames, detect, or both")
+
+
+class OrFrame:
+    """Lets a bare frame, ``hit: 94``, stand for ``hit: {frames: 94}``."""
+
+    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_before_validator_function(self._mapping, handler(source))
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {"anyOf": [_FRAME, handler(schema)]}
+
+    @staticmethod
+    def _mapping(value: object) -> object:
+        if value is None:
+            raise faulty("needs a value: a frame such as 94, or {frames: ...} or {detect: ...}")
+        if isinstance(value, (str, bool, list)):
+            raise faulty(f"must be a frame such as 94, or {{frames: ...}} or {{detect: ...}}; not {show(value)}")
+        if isinstance(value, (int, float)):
+            return {"frames": scalars.whole(value, at_least=0)}
+        return value
+
+
+def event_faults(events: object) -> Iterator[Fault]:
+    """Yield what is wrong with the names of events, and rules that wait for one another in a ring."""
+    if not isinstance(events, dict):
+        return
+    for name in events:
+        try:
+            kinds.EVENT_NAME.parse(name, Context())
+        except FaultyValueError as error:
+            yield from (fault.under(name) for fault in error.faults)
+    waits = {name: _events_of_rule(event) & set(events) for name, event in events.items()}
+    for name in events:
+        ring = _ring(name, waits)
+        # Each ring is reported once, at its first event in the file.
+        if ring and name == min(ring, key=list(events).index):
+            yield Fault(f"waits for itself: {' -> '.join([*ring, name])}; let one rule name no event", (name,))
+
+
+def _events_of_rule(event: object) -> set[str]:
+    rule = event.get("detect") if isinstance(event, dict) else None
+    if not isinstance(rule, dict):
+        return set()
+    names = {rule["after"]} if isinstance(rule.get("after"), str) else set()
+    try:
+        interval = parse_interval(rule.get("between"))
+    except FaultyValueError:
+        return names
+    return names | {time.event for time in (interval.start, interval.stop) if time.event is not None}
+
+
+def _ring(start: str, waits: Mapping[str, set[str]]) -> list[str]:
+    """Return the shortest way from an event back to itself, [] where there is none."""
+    ways = [[start]]
+    seen: set[str] = set()
+    while ways:
+        way = ways.pop(0)
+        for name in sorted(waits[way[-1]]):
+            if name == start:
+                return way
+            if name not in seen:
+                seen.add(name)
+                ways.append([*way, name])
+    return []

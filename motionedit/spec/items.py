@@ -1,0 +1,109 @@
+"""Goals and constraints: items of a list with names and effectors, where a list of effectors is one item each."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Annotated, Any, Self, TypeVar
+
+from pydantic import Field, PrivateAttr
+
+from motionedit.spec import kinds
+from motionedit.spec.faults import Fault, Keys, dotted
+from motionedit.spec.model import SpecModel, mappings_in
+from motionedit.spec.values import EffectorSpec
+
+
+class Item(SpecModel):
+    """A named item of a list, which knows where it stands in the file."""
+
+    name: Annotated[str, kinds.NAME] = Field(
+        default="", description="Name in reports and for --set; default: the effector's, numbered where repeated."
+    )
+    _keys: Keys = PrivateAttr(default=())
+
+    @property
+    def keys(self) -> Keys:
+        """Keys of this item in the spec, for `LoadedSpec.error`: ``("goals", 0)``."""
+        return self._keys
+
+    @property
+    def default_name(self) -> str:
+        """The name of an item that gives none."""
+        return ""
+
+    def apart(self) -> Iterator[Self]:
+        """Yield the items that this one stands for."""
+        yield self.model_copy()
+
+    def _place(self, keys: Keys, name: str) -> Self:
+        item = self.model_copy(update={"name": name})
+        item._keys = keys  # noqa: SLF001 (its own class)
+        return item
+
+
+class EffectorItem(Item):
+    """An item with an effector."""
+
+    effectors: Annotated[tuple[EffectorSpec, ...], kinds.EFFECTORS] = Field(
+       default= alias="effector", description="The point of the body that is meant; a list stands for one item each."
+    )
+    _list_index: int | None = PrivateAttr(default=None)
+
+    @property
+    def effector(self) -> EffectorSpec:
+        """The effector; a loaded spec's items have exactly one."""
+        return self.effectors[0]
+
+    @property
+    def effector_keys(self) -> Keys:
+        """Keys of the effector in the spec, for `LoadedSpec.error`: ``("goals", 0, "effector")``."""
+        index = () if self._list_index is None else (self._list_index,)
+        return (*self.keys, "effector", *index)
+
+    @property
+    def default_name(self) -> str:
+        """The effector's joint."""
+        return self.effector.joint
+
+    def apart(self) -> Iterator[Self]:
+        """Yield one item for each effector."""
+        for i, effector in enumerate(self.effectors):
+            item = self.model_copy(update={"effectors": (effector,)})
+            item._list_index = i if len(self.effectors) > 1 else None  # noqa: SLF001 (its own class)
+            yield item
+
+
+AnyItem = TypeVar("AnyItem", bound=Item)
+
+
+def taken_apart(items: Sequence[AnyItem], key: str) -> tuple[AnyItem, ...]:
+    """Return the items that a list at `key` stands for, each with its name and place in the file."""
+    used = {item.name for item in items if item.name}
+    found: list[AnyItem] = []
+    for i, item in enumerate(items):
+        for n, part in enumerate(item.apart()):
+            base = part.name or part.default_name
+            # The first item of a given name keeps it; every other name is numbered until it is free.
+            name = base if n == 0 and part.name else _free_name(base, used)
+            used.add(name)
+            found.append(part._place((key, i), name))  # noqa: SLF001 (the module of its class)
+    return tuple(found)
+
+
+def _free_name(base: str, used: set[str]) -> str:
+    if base not in used:
+        return base
+    n = 2
+    while f"{base}-{n}" in used:
+        n += 1
+    return f"{base}-{n}"
+
+
+def repeated_names(data: Mapping[str, Any], key: str) -> Iterator[Fault]:
+    """Yield a fault at each given name of a list's items that an item above has."""
+    first: dict[str, int] = {}
+    for i, item in mappings_in(data, key):
+        name = item.get("name")
+        if isinstance(name, str):
+            if name in first:
+                where = dotted((key, first[name], "name"))
+                yield Fault(f"'{name}' is already the name at {where}; give each its own", (key, i, "name"))
+            first.setdefault(name, i)

@@ -1,0 +1,188 @@
+"""The kinds of values that spec models are made of, each with its parser, its words and its JSON Schema."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from motionedit.spec import scalars, times, values
+from motionedit.spec.faults import Fault, FaultyValueError, faulty, show
+from motionedit.spec.model import Context, Kind
+from motionedit.spec.times import Interval, Time
+
+Schema = dict[str, Any]
+
+_NAME: Schema = {"type": "string", "minLength": 1}
+_VECTOR: Schema = {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}
+_JOINTS: Schema = {"type": "array", "items": _NAME, "minItems": 1, "uniqueItems": True}
+_POSITIVE: Schema = {"type": "number", "exclusiveMinimum": 0}
+_AMOUNT = r"(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
+_TIME: Schema = {
+    "anyOf": [
+        {"type": "integer", "minimum": 0},
+        {
+            "type": "string",
+            "pattern": rf"^\s*(?:{_AMOUNT}\s*[s%]?|[A-Za-z_\u0080-\uffff][\w\u0080-\uffff-]*"
+            rf"(?:\s*[-+]\s*{_AMOUNT}\s*s?)?)\s*$",
+        },
+    ]
+}
+_DURATION: Schema = {
+    "anyOf": [{"type": "integer", "minimum": 0}, {"type": "string", "pattern": rf"^\s*{_AMOUNT}\s*s?\s*$"}]
+}
+
+
+def _closed(properties: Schema, *required: str) -> Schema:
+    found: Schema = {"type": "object", "properties": properties, "additionalProperties": False}
+    return {**found, "required": list(required)} if required else found
+
+
+_EFFECTOR: Schema = {
+    "anyOf": [
+        _NAME,
+        _closed({"joint": _NAME, "offset": _VECTOR}, "joint"),
+        _closed({"end_site": _NAME, "index": {"type": "integer", "minimum": 0}}, "end_site"),
+    ]
+}
+_ORIENTATION: Schema = {
+    "anyOf": [
+        _closed({"euler": _VECTOR, "order": {"type": "string", "pattern": "^[XYZxyz]{3}$"}}, "euler", "order"),
+        _closed({"quaternion": {**_VECTOR, "minItems": 4, "maxItems": 4}}, "quaternion"),
+        _closed({"rotation_vector": _VECTOR}, "rotation_vector"),
+    ]
+}
+_RECRUIT: Schema = {
+    "anyOf": [
+        {"const": "all"},
+        _closed({"up_to": _NAME}, "up_to"),
+        _closed({"levels": {"type": "integer", "minimum": 1}}, "levels"),
+        _closed({"joints": _JOINTS}, "joints"),
+    ]
+}
+
+
+def _plainly(parse: Callable[[Any], object]) -> Callable[[Any, Context], object]:
+    return lambda value, _context: parse(value)
+
+
+def _unknown_events(named: Sequence[Time], context: Context) -> list[Fault]:
+    known = context.events
+    if known is None:
+        return []
+    return [
+        Fault(times.unknown_event(time.event, tuple(sorted(known))), (i,))
+        for i, time in enumerate(named)
+        if time.event is not None and time.event not in known
+    ]
+
+
+def _time(value: object, context: Context) -> Time:
+    time = times.parse_time(value)
+    for fault in _unknown_events([time], context):
+        raise faulty(fault.message)
+    return time
+
+
+def _interval(value: object, context: Context) -> Interval:
+    interval = times.parse_interval(value)
+    if faults := _unknown_events([interval.start, interval.stop], context):
+        raise FaultyValueError(faults)
+    return interval
+
+
+def number(*, above: float | None = None, at_least: float | None = None, at_most: float | None = None) -> Kind:
+    """Return the kind of numbers within bounds."""
+    json: Schema = {"type": "number"}
+    bounds = {"exclusiveMinimum": above, "minimum": at_least, "maximum": at_most}
+    json |= {key: bound for key, bound in bounds.items() if bound is not None}
+    words = f"a number {scalars.range_words(above=above, at_least=at_least, at_most=at_most)}".rstrip()
+    return Kind(
+        lambda value, _context: scalars.number(value, above=above, at_least=at_least, at_most=at_most),
+        words,
+        json,
+    )
+
+
+def whole(*, at_least: int | None = None, null: bool = False) -> Kind:
+    """Return the kind of whole numbers; with `null`, an empty value means no bound."""
+    json: Schema = {"type": ["integer", "null"] if null else "integer"}
+    if at_least is not None:
+        json["minimum"] = at_least
+    words = f"a whole number {scalars.range_words(at_least=at_least)}".rstrip()
+    return Kind(lambda value, _context: scalars.whole(value, at_least=at_least), words, json, null=null)
+
+
+def word(*choices: str) -> Kind:
+    """Return the kind of a few words."""
+    return Kind(lambda value, _context: scalars.word(value, choices), scalars.one_of(choices), {"enum": list(choices)})
+
+
+def either(choices: Sequence[str], other: Kind) -> Kind:
+    """Return the kind of a few words or values of another kind."""
+    words = scalars.one_of((*choices, other.wanted))
+
+    def parse(value: object, context: Context) -> object:
+        if isinstance(value, str) and value in choices:
+            return value
+        if isinstance(value, (str, bool, dict)):
+            raise faulty(f"must be {words}, not {show(value)}")
+        return other.parse(value, context)
+
+    return Kind(parse, words, {"anyOf": [{"enum": list(choices)}, other.json]})
+
+
+FLAG = Kind(_plainly(scalars.flag), "true or false", {"type": "boolean"})
+NAME = Kind(lambda value, _context: scalars.name(value, what="a name"), "a name", _NAME)
+JOINT = Kind(_plainly(values.parse_joint), "a joint's name", _NAME)
+JOINTS = Kind(_plainly(values.parse_joints), "a list of joints", _JOINTS)
+JOINTS_OR_NONE = Kind(
+    lambda value, _context: scalars.names(value, what="a list of joints", empty=True),
+    "a list of joints",
+    {**_JOINTS, "minItems": 0},
+)
+VECTOR = Kind(_plainly(scalars.vector), "three numbers [x, y, z]", _VECTOR)
+DIRECTION = Kind(_plainly(scalars.direction), "a direction [x, y, z]", _VECTOR)
+AXES = Kind(
+    _plainly(scalars.axes),
+    "a list of some of x, y, z",
+    {"type": "array", "items": {"enum": ["x", "y", "z"]}, "minItems": 1, "uniqueItems": True},
+)
+TIME = Kind(_time, f"a time: {times.TIME_WORDS}", _TIME)
+INTERVAL = Kind(_interval, "an interval [from, to]", {"type": "array", "items": _TIME, "minItems": 2, "maxItems": 2})
+DURATION = Kind(_plainly(times.parse_duration), f"a duration: {times.DURATION_WORDS}", _DURATION)
+EFFECTOR = Kind(_plainly(values.parse_effector), f"an effector: {values.EFFECTOR_WORDS}", _EFFECTOR)
+EFFECTORS = Kind(
+    _plainly(values.parse_effectors),
+    f"an effector: {values.EFFECTOR_WORDS}",
+    {"anyOf": [*_EFFECTOR["anyOf"], {"type": "array", "items": _EFFECTOR, "minItems": 1}]},
+)
+ORIENTATION = Kind(_plainly(values.parse_orientation), f"an orientation: {values.ORIENTATION_WORDS}", _ORIENTATION)
+TOLERANCE = Kind(
+    _plainly(values.parse_tolerance),
+    "a number, {position: 0.5, angle: 0.1} or off",
+    {
+        "anyOf": [
+            _POSITIVE,
+            {"const": "off"},
+            {**_closed({"position": _POSITIVE, "angle": _POSITIVE}), "minProperties": 1},
+        ]
+    },
+)
+UNIT = Kind(
+    _plainly(values.parse_unit),
+    "m, cm, mm, in, cmu or a number of metres",
+    {"anyOf": [{"enum": list(values.UNITS)}, _POSITIVE]},
+)
+RECRUIT = Kind(_plainly(values.parse_recruit), values.RECRUIT_WORDS, _RECRUIT)
+FRAME = word("world", "heading")
+EVENT_NAME = Kind(_plainly(times.parse_event_name), "an event's name", _NAME)
+
+
+def schema_id(command: str) -> Kind:
+    """Return the kind of a spec's first line."""
+    text = f"motionedit/{command}/v1"
+
+    def parse(value: object, _context: Context) -> str:
+        if value != text:
+            raise faulty(f"must be {text}, not {show(value)}")
+        return text
+
+    return Kind(parse, text, {"const": text})

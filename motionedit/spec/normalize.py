@@ -1,0 +1,98 @@
+"""The spec of normalize: clips of one behaviour onto one timeline, [PC] section 5."""
+
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any
+
+from pydantic import Field
+
+from motionedit.spec import kinds, times
+from motionedit.spec.document import Document
+from motionedit.spec.events import EventSpec, OrFrame
+from motionedit.spec.faults import Fault, faulty
+from motionedit.spec.model import Context, Kind, SpecModel
+from motionedit.spec.times import Time
+
+
+def _target(value: object, _context: Context) -> object:
+    if value == "mean":
+        return "mean"
+    time = times.parse_time(value)
+    if time.event is not None:
+        raise faulty(f"must be mean or a time of the normalized clip, such as 94, 3.76s or 71.2%; not '{value}'")
+    return time
+
+
+TARGET = Kind(
+    _target,
+    "mean or a time of the normalized clip",
+    {"anyOf": [{"const": "mean"}, kinds.TIME.json]},
+)
+
+
+def _align_at(value: object, context: Context) -> str:
+    if value in ("first", "event"):
+        return str(value)
+    name = times.parse_event_name(value)
+    if context.events is not None and name not in context.events:
+        raise faulty(times.unknown_event(name, tuple(sorted(context.events))))
+    return name
+
+
+ALIGN_AT = Kind(_align_at, "first or an event's name", {"type": "string", "minLength": 1})
+
+
+class Align(SpecModel):
+    """How clips are laid over each other on the ground plane."""
+
+    heading: Annotated[bool, kinds.FLAG] = Field(default=True, description="Turn all clips to one heading.")
+    position: Annotated[bool, kinds.FLAG] = Field(
+       default= default=True, description="Move all clips to one place on the ground."
+    )
+    at: Annotated[str, ALIGN_AT] = Field(
+        default="first", description="The instant at which they are aligned: first (frame), or an event's name."
+    )
+
+
+class TimelineEvent(EventSpec):
+    """An event, and where it goes on the common timeline."""
+
+    target: Annotated[Time | str, TARGET] = Field(
+        default="mean", description="Where the event goes: mean (the mean key frame, eq. 14) or a time of the normalized clip."
+    )
+
+
+class NormalizeSpec(Document):
+    """Everything normalize is told."""
+
+    schema_id: Annotated[str, kinds.schema_id("normalize")] = Field(
+        default="motionedit/normalize/v1", alias="schema", description="Which spec this is."
+    )
+    frames: Annotated[int | str, kinds.either(("mean",), kinds.whole(at_least=2))] = Field(
+        default="mean", description="Frames of the normalized clips: mean (the mean duration, eq. 13) or a number."
+    )
+    frame_rate: Annotated[float | None, kinds.number(above=0.0)] = Field(
+        default=None, description="Hz of the normalized clips; default: the clips' own, an error where they differ."
+    )
+    align: Align = Field(default=Align(), description="Alignment on the ground; edit-pc undoes it on output.")
+    rest_pose: Annotated[str, kinds.word("drop", "keep")] = Field(
+        default="drop", description="What becomes of a T-pose in front of a take."
+    )
+    events: dict[str, Annotated[TimelineEvent, OrFrame()]] = Field(  default=# type: ignore[assignment]
+        default={}, description="Instants that are brought to the same frame in all clips; none: durations only."
+    )
+
+    @classmethod
+    def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
+        """Yield what is wrong between keys."""
+        yield from super().faults_between_keys(data)
+        align, events = data.get("align"), data.get("events")
+        count = len(events) if isinstance(events, dict) else 0
+        if isinstance(align, dict) and align.get("at") == "event" and count != 1:
+            yield Fault(f"must name the event: there are {count}", ("align", "at"))
+
+    @property
+    def align_event(self) -> str | None:
+        """The event at which clips are aligned, None for the first frame."""
+        if self.align.at == "first":
+            return None
+        return next(iter(self.events)) if self.align.at == "event" else self.align.at
