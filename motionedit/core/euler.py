@@ -51,7 +51,8 @@ def joint_angles(motion: Motion, *, start: FloatArray) -> FloatArray:
         if columns:
             seed = np.radians(start[columns])
             angles = angles_near(motion.rotations[:, joint], skeleton.rotation_axes[joint], seed=seed)
-            values[:, columns] = np.degrees(angles)
+            for column, angle in zip(columns, angles.T, strict=True):
+                values[:, column] = np.degrees(angle)
     return values
 
 
@@ -83,75 +84,101 @@ def angle_track(motion: Motion, joint: int, *, given: FloatArray, touched: BoolA
 def angles_near(q: FloatArray, axes: tuple[int, ...], *, seed: FloatArray) -> FloatArray:
     """Return the Euler angles (rad) of rotations q, shape (F, 4), each nearest the frame before.
 
-    `seed`, shape (len(axes),), stands before frame 0. With one axis or two the rotation nearest q is taken; with
-    three, within `GIMBAL_BAND` of gimbal lock, the last angle stays that of the frame before.
+    `seed`, shape (A,), stands before frame 0. With one axis or two the rotation nearest q is taken; with three,
+    within `GIMBAL_BAND` of gimbal lock, the last angle stays that of the frame before. The result has shape (F, A).
     """
-    first = solve_angles(q, axes)
+    first = solve_angles(np.ascontiguousarray(q.T), axes)
     if len(axes) < 3:
-        return _unwrap(first, seed)
-    locked = np.abs(np.cos(first[:, 1])) < np.sin(GIMBAL_BAND)
+        return _unwrap(first, seed).T
+    locked = np.abs(first[1]) > np.pi / 2.0 - GIMBAL_BAND
     if not locked.any():
-        return _nearest(first, seed)
+        return _nearest(first, seed).T
     angles = np.empty_like(first)
     bounds = np.concatenate(([0], np.flatnonzero(locked[1:] != locked[:-1]) + 1, [len(q)]))
     for start, stop in pairwise(bounds.tolist()):
         if locked[start]:
-            last = np.full(stop - start, seed[2])
-            turned = rot.multiply(q[start:stop], rot.conjugate(rot.about_axis(axes[2], last)))
-            angles[start:stop, :2] = _unwrap(solve_angles(turned, axes[:2]), seed[:2])
-            angles[start:stop, 2] = last
+            undone = rot.conjugate(rot.about_axis(axes[2], seed[2]))
+            turned = rot.multiply(q[start:stop], undone)
+            angles[:2, start:stop] = _unwrap(solve_angles(turned.T, axes[:2]), seed[:2])
+            angles[2, start:stop] = seed[2]
         else:
-            angles[start:stop] = _nearest(first[start:stop], seed)
-        seed = angles[stop - 1]
-    return angles
+            angles[:, start:stop] = _nearest(first[:, start:stop], seed)
+        seed = angles[:, stop - 1]
+    return angles.T
 
 
 def solve_angles(q: FloatArray, axes: tuple[int, ...]) -> FloatArray:
-    """Return one solution of Euler angles (rad), shape (..., len(axes)): exact with three axes, else the nearest.
+    """Return one solution of Euler angles (rad), shape (A, ...): exact with three axes, else the nearest rotation.
 
-    R = R_i(a) R_j(b) R_k(c) with the half angles of q (Bernardes and Viollet 2022); with two axes q . (q_i q_j) is a
-    2 x 2 bilinear form of half angles, whose largest singular value has the same closed form.
+    R = R_i(a) R_j(b) R_k(c), from the sum and the difference of half angles (Bernardes and Viollet 2022). With two
+    axes q . (q_i q_j) is a 2 x 2 bilinear form of half angles, whose largest singular value has the same closed form.
+
+    Parameters
+    ----------
+    q : shape (4, ...)
+        Unit quaternions, part by part.
+    axes : 1 to 3 different axes
+        In channel order.
     """
-    w = q[..., 0]
     if len(axes) == 1:
-        angle: FloatArray = 2.0 * np.arctan2(q[..., 1 + axes[0]], w)[..., None]
+        angle: FloatArray = 2.0 * np.arctan2(q[1 + axes[0]], q[0])[None]
         return angle
     i, j = axes[:2]
-    k = 3 - i - j
-    sign = 1.0 if (j - i) % 3 == 1 else -1.0
-    x, y, z = q[..., 1 + i], q[..., 1 + j], sign * q[..., 1 + k]
+    sign = 1.0 if (j - i) % 3 == 1 else -1.0  # e_i e_j = sign e_k
+    w, x, y, z = q[0], q[1 + i], q[1 + j], sign * q[1 + (3 - i - j)]
     if len(axes) == 2:
         plus, minus = np.arctan2(x + y, w - z), np.arctan2(x - y, w + z)
-        return np.stack((plus + minus, plus - minus), axis=-1)
-    # Sum and difference of the outer half angles; their lengths give the middle one, exact near gimbal lock too.
-    plus, minus = np.arctan2(x + z, w + y), np.arctan2(x - z, w - y)
-    middle = 2.0 * np.arctan2(np.hypot(x + z, w + y), np.hypot(x - z, w - y)) - np.pi / 2.0
-    return np.stack((plus + minus, middle, sign * (plus - minus)), axis=-1)
+        return np.stack((plus + minus, plus - minus))
+    sine, cosine = x + z, w + y  # of half the sum of the outer angles, times that of the middle one
+    other_sine, other_cosine = x - z, w - y  # of half their difference
+    plus, minus = np.arctan2(sine, cosine), np.arctan2(other_sine, other_cosine)
+    # By the lengths, not by an arc sine: exact near gimbal lock too.
+    length = np.sqrt(sine * sine + cosine * cosine)
+    other_length = np.sqrt(other_sine * other_sine + other_cosine * other_cosine)
+    angles = np.empty((3, *w.shape))
+    np.add(plus, minus, out=angles[0])
+    np.subtract(2.0 * np.arctan2(length, other_length), np.pi / 2.0, out=angles[1])
+    np.multiply(sign, plus - minus, out=angles[2])
+    return angles
 
 
 def other_solution(angles: FloatArray) -> FloatArray:
-    """Return the other triple of the same rotations, (a + pi, pi - b, c + pi), shape (..., 3)."""
-    return angles * np.array([1.0, -1.0, 1.0]) + np.pi
+    """Return the other triple of the same rotations, (a + pi, pi - b, c + pi), shape (3, ...)."""
+    a, b, c = angles
+    return np.stack((a + np.pi, np.pi - b, c + np.pi))
 
 
 def _nearest(first: FloatArray, seed: FloatArray) -> FloatArray:
-    before = np.concatenate((seed[None], first[:-1]))
-    other = other_solution(first)
-    change = _distance(before, other) < _distance(before, first)
-    changed = np.logical_xor.accumulate(change)
-    return _unwrap(np.where(changed[:, None], other, first), seed)
+    """Return, of the triples and their other solutions, shape (3, F), those nearest the frame before, unwrapped."""
+    distance = _distances(first, first, seed)
+    # The two solutions of one rotation are at least a whole turn apart, so a step below half a turn needs no change.
+    if np.any(distance >= np.pi):
+        other = other_solution(first)
+        changed = np.logical_xor.accumulate(_distances(first, other, seed) < distance)
+        first = np.where(changed, other, first)
+    return _unwrap(first, seed)
 
 
-def _distance(a: FloatArray, b: FloatArray) -> FloatArray:
-    d = a - b
-    d -= _TURN * np.rint(d / _TURN)
-    distance: FloatArray = np.abs(d).sum(axis=-1)
+def _distances(before: FloatArray, after: FloatArray, seed: FloatArray) -> FloatArray:
+    """Return the sum over the angles of the steps from each frame of `before` to the next of `after`, shape (F,)."""
+    d = np.empty_like(after)
+    np.subtract(after[:, 1:], before[:, :-1], out=d[:, 1:])
+    np.subtract(after[:, 0], seed, out=d[:, 0])
+    d -= _TURN * np.rint(d * (1.0 / _TURN))
+    distance: FloatArray = np.abs(d, out=d).sum(axis=0)
     return distance
 
 
 def _unwrap(angles: FloatArray, seed: FloatArray) -> FloatArray:
-    steps = np.diff(angles, axis=0, prepend=seed[None])
-    unwrapped: FloatArray = angles - _TURN * np.cumsum(np.rint(steps / _TURN), axis=0)
+    """Return the angles, shape (A, F), by whole turns nearest the frame before."""
+    turns = np.empty_like(angles)
+    np.subtract(angles[:, 1:], angles[:, :-1], out=turns[:, 1:])
+    np.subtract(angles[:, 0], seed, out=turns[:, 0])
+    turns *= 1.0 / _TURN
+    np.rint(turns, out=turns)
+    if not turns.any():
+        return angles
+    unwrapped: FloatArray = angles - _TURN * np.cumsum(turns, axis=1)
     return unwrapped
 
 

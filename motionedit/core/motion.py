@@ -15,6 +15,9 @@ if TYPE_CHECKING:
     from motionedit.core.skeleton import Skeleton
 
 
+_BLOCK_VALUES = 1 << 14
+
+
 @dataclass(frozen=True, eq=False)
 class Motion:
     """F frames of a skeleton's local transforms.
@@ -57,10 +60,17 @@ def motion_from_channels(skeleton: Skeleton, values: FloatArray, *, frame_time: 
         Rows of the file: degrees and clip units. A position channel replaces that axis of OFFSET.
     """
     rotations = np.empty((len(values), len(skeleton), 4))
-    rotations[:] = rot.IDENTITY
-    for axes, joints in _joints_by_axes(skeleton).items():
-        columns = rotation_columns(skeleton, joints)
-        rotations[:, joints] = rot.from_euler(np.radians(values[:, columns]), axes)
+    groups = _joints_by_axes(skeleton)
+    if sum(map(len, groups.values())) < len(skeleton):
+        rotations[:] = rot.IDENTITY
+    for axes, joints in groups.items():
+        columns = np.array(rotation_columns(skeleton, joints)).T
+        # Blocks of frames stay in the processor's cache and keep the memory of a long clip down.
+        step = max(_BLOCK_VALUES // columns.size, 1)
+        for start in range(0, len(values), step):
+            # Angle by angle, so that each is contiguous.
+            angles = np.radians(values[start : start + step, columns].swapaxes(0, 1), order="C")
+            rotations[start : start + step, joints] = rot.from_euler(np.moveaxis(angles, 0, -1), axes)
     translations = np.repeat(skeleton.offsets[None, skeleton.translated], len(values), axis=0)
     for p, joint in enumerate(skeleton.translated):
         for axis, column in position_columns(skeleton, int(joint)):

@@ -125,9 +125,9 @@ class _Parser:
                 self.refuse(f"this is {name} text; save the file as UTF-8 or plain ASCII", 0)
         if self.data.startswith(_UTF8_BOM):
             self.at = len(_UTF8_BOM)
-        if not self.data[self.at :].strip():
-            self.refuse("the file is empty", 0)
         word, at = self.word()
+        if not word:
+            self.refuse("the file is empty", 0)
         if b"\0" in word:
             self.refuse("NUL bytes: this is no text file (UTF-16 or binary); a BVH file is plain text", at)
         if word.lower() != b"hierarchy":

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.arrays import frozen
-from motionedit.core.bvh.numbers import FaultyWord, parse_block
+from motionedit.core.bvh.parse import FaultyWord, parse_block
 from motionedit.core.bvh.scan import line_blocks, line_breaks, quoted, refusal, words_between
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray, IntArray
 
 # A block and its arrays stay in the processor's cache.
-BLOCK_BYTES = 1 << 18
+BLOCK_BYTES = 1 << 17
 
 
 @dataclass(frozen=True, eq=False)

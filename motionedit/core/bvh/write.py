@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motionedit.core.bvh.numbers import format_block
+from motionedit.core.bvh.format import format_fixed, place
 from motionedit.core.bvh.rows import BLOCK_BYTES
 from motionedit.core.bvh.scan import words_between
 from motionedit.core.euler import angle_track, joint_angles, runs
@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 FEWEST_DECIMALS = 6
 # A double below 10 carries no more.
 MOST_DECIMALS = 17
+# Blanks between two values that are copied column by column; wider gaps are rare and copied one by one.
+_WIDE_GAP = 16
 
 
 def unedited_bytes(clip: Clip) -> bytes:
@@ -177,26 +179,51 @@ def _spliced(clip: Clip, edit: _Edit, rows: slice, *, decimals: int) -> NDArray[
     begin, end = int(layout.starts[rows.start]), int(layout.stops[rows.stop - 1])
     columns = clip.values.shape[1]
     starts, stops = words_between(data, begin, end)
-    row, k = np.nonzero(edit.cells[rows])
-    word = row * columns + edit.columns[k]
-    starts, stops = starts[word] - begin, stops[word] - begin
-    text = format_block(edit.values[rows][row, k], decimals=decimals)
-    growth = text.lengths - (stops - starts)
-    shifted = starts + np.cumsum(growth) - growth
+    word = (np.arange(rows.stop - rows.start)[:, None] * columns + edit.columns).reshape(-1)
+    values, cells = edit.values[rows].reshape(-1), edit.cells[rows].reshape(-1)
+    if not cells.all():
+        word, values = word[cells], values[cells]
+    new = format_fixed(values, decimals=decimals)
+    lengths = stops - starts
+    if len(word) == len(starts):
+        words, shifted = new.chars, np.cumsum(new.lengths - lengths)
+    else:
+        width = max(-(-int(lengths.max()) // 8) * 8, new.chars.shape[1])
+        words = _windows(data, stops, width)
+        words[word, width - new.chars.shape[1] :] = new.chars
+        growth = np.zeros(len(starts), np.intp)
+        growth[word] = new.lengths - lengths[word]
+        shifted = np.cumsum(growth)
+    starts -= begin
+    stops -= begin
+    shifted += stops
+    margin = words.shape[1]
+    text = np.empty(margin + int(shifted[-1]), np.uint8)
+    place(words, shifted, out=text, margin=margin)
     old = np.frombuffer(data, np.uint8, count=end - begin, offset=begin)
-    new = np.empty(len(old) + int(growth.sum()), np.uint8)
-    inside = _inside(shifted, shifted + text.lengths, len(new))
-    new[inside] = text.joined()
-    new[~inside] = old[~_inside(starts, stops, len(old))]
-    return new
+    _copy_gaps(old, starts, stops, text[margin:], shifted)
+    return text[margin:]
 
 
-def _inside(starts: IntArray, stops: IntArray, size: int) -> BoolArray:
-    """Return which of `size` places lie in one of the intervals, which have gaps between them."""
-    step = np.zeros(size + 1, np.int8)
-    step[starts] = 1
-    step[stops] = -1
-    return np.cumsum(step[:-1], dtype=np.int8).view(np.bool_)
+def _copy_gaps(
+    old: NDArray[np.uint8], starts: IntArray, stops: IntArray, new: NDArray[np.uint8], shifted: IntArray
+) -> None:
+    """Copy what stands between the words of `old`, from starts to stops, to between those of `new`."""
+    gaps = starts[1:] - stops[:-1]
+    new[shifted[:-1]] = old[stops[:-1]]
+    for blank in range(1, min(int(gaps.max(initial=0)), _WIDE_GAP)):
+        wide = np.flatnonzero(gaps > blank)
+        new[shifted[wide] + blank] = old[stops[wide] + blank]
+    for i in np.flatnonzero(gaps > _WIDE_GAP).tolist():
+        new[shifted[i] : shifted[i] + gaps[i]] = old[stops[i] : starts[i + 1]]
+
+
+def _windows(data: bytes, stops: IntArray, width: int) -> NDArray[np.uint8]:
+    """Return the `width` bytes before each stop, shape (N, width)."""
+    if stops[0] < width:
+        data, stops = bytes(width) + data[: int(stops[-1])], stops + width
+    windows = np.ndarray((len(data) - width + 1,), f"V{width}", buffer=data, strides=(1,))
+    return windows[stops - width].view(np.uint8).reshape(-1, width)
 
 
 def _rows_text(values: FloatArray, *, decimals: int, ending: bytes) -> bytes:
@@ -207,7 +234,12 @@ def _rows_text(values: FloatArray, *, decimals: int, ending: bytes) -> bytes:
     stream = BytesIO()
     for start in range(0, len(values), step):
         block = values[start : start + step]
-        text = format_block(block.reshape(-1), decimals=decimals, ends=np.tile(ends, len(block))).joined()
+        words = format_fixed(block.reshape(-1), decimals=decimals, ends=np.tile(ends, len(block)))
+        margin = words.chars.shape[1]
+        stops = np.cumsum(words.lengths)
+        text = np.empty(margin + int(stops[-1]), np.uint8)
+        place(words.chars, stops, out=text, margin=margin)
+        text = text[margin:]
         stream.write(text.data if ending == b"\n" else text.tobytes().replace(b"\n", ending))
     return stream.getvalue()
 

@@ -1,4 +1,4 @@
-"""Decimal numbers between text and double precision, whole blocks of a file at once, correctly rounded.
+"""From decimal text to double precision, whole blocks of a file at once, correctly rounded.
 
 A number of at most 15 digits is an integer below 2^53 divided by a power of ten that a double holds exactly, so one
 division rounds it correctly. The integer is read eight digits at a time inside 64-bit words.
@@ -19,7 +19,7 @@ from motionedit.core.bvh.scan import decimals as decimals_of
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from motionedit.core.arrays import FloatArray, IntArray
+    from motionedit.core.arrays import BoolArray, FloatArray, IntArray
 
 _WINDOW = 16  # bytes of a number that are read at once
 _MOST_DIGITS = 15  # 10^15 < 2^53
@@ -42,32 +42,11 @@ _NINES = frozen(np.where(_K > 0, 9 * 10 ** np.maximum(_K - 1, 0), 0))
 _SCALE = frozen(10.0 ** np.maximum(_K - 1, 0))
 
 
-# The four characters of every number below 10,000, read as one row.
-_FOURS = np.arange(10_000, dtype=np.uint16)[:, None] // np.array([1000, 100, 10, 1], np.uint16) % np.uint16(10)
-_FOURS = frozen(_FOURS.astype(np.uint8) + np.uint8(_ZERO))
-# Above this a double has no fraction left, and 64-bit integers end soon after.
-_LARGEST = 1e15
-
-
 @dataclass(frozen=True)
 class FaultyWord:
     """The first word of a block that is no finite decimal number: its place among the block's words."""
 
     index: int
-
-
-@dataclass(frozen=True, eq=False)
-class Text:
-    """Words of text: `chars` of shape (N, W), each word at the right end of its row, and their `lengths` (N,)."""
-
-    chars: NDArray[np.uint8]
-    lengths: IntArray
-
-    def joined(self) -> NDArray[np.uint8]:
-        """Return all words one after the other."""
-        width = self.chars.shape[1]
-        joined: NDArray[np.uint8] = self.chars[np.arange(width) >= width - self.lengths[:, None]]
-        return joined
 
 
 def parse_block(data: bytes, starts: IntArray, stops: IntArray, *, out: FloatArray) -> int | FaultyWord:
@@ -100,19 +79,22 @@ def _parse_plain(data: bytes, starts: IntArray, stops: IntArray, out: FloatArray
     longest = int(lengths.max())
     if longest > _WINDOW:
         return None
-    points = np.flatnonzero(block == ord("."))
+    points = block == ord(".")
+    pointed = int(np.count_nonzero(points))
     digits = np.count_nonzero(block - np.uint8(_ZERO) <= _NINE - _ZERO)
-    if solid != digits + len(points) + np.count_nonzero(signed):
+    if solid != digits + pointed + np.count_nonzero(signed):
         return None
-    points += starts[0]
-    k = _from_point_on(points, starts, stops)
+    k = _from_point_on(points, pointed, starts, stops)
     if k is None:
         return None
-    digits_of = lengths - (k > 0)
-    if int(digits_of.min()) < 1 or int(digits_of.max()) > _MOST_DIGITS:
+    if isinstance(k, int):
+        fewest, most, low, high = int(lengths.min()) - 1, longest - 1, k, k
+    else:
+        digits_of = lengths - (k > 0)
+        fewest, most, low, high = int(digits_of.min()), int(digits_of.max()), int(k.min()), int(k.max())
+    if fewest < 1 or most > _MOST_DIGITS:
         return None
     mantissa = _mantissas(data, stops, lengths, longest)
-    low, high = int(k.min()), int(k.max())
     if low == high:
         # numpy divides faster by one number than by many.
         mantissa -= _POINT[low]
@@ -126,16 +108,27 @@ def _parse_plain(data: bytes, starts: IntArray, stops: IntArray, out: FloatArray
     return max(high - 1, 0)
 
 
-def _from_point_on(points: IntArray, starts: IntArray, stops: IntArray) -> IntArray | None:
-    """Return the number of characters from each word's point on, 0 without one; None where a word has two."""
-    if len(points) == len(starts) and bool(np.all((points >= starts) & (points < stops))):
-        return stops - points
-    owners = np.searchsorted(starts, points, side="right") - 1
+def _from_point_on(points: BoolArray, count: int, starts: IntArray, stops: IntArray) -> IntArray | int | None:
+    """Return the number of characters from each word's point on, 0 without one; None where a word has two.
+
+    `points` tells where the block that begins with the first word has its `count` points. One number is returned
+    where all words agree, as they do in most files: then no point need be searched for.
+    """
+    places = stops - starts[0]
+    k = _first_word_from_point_on(points, int(places[0]))
+    if count == len(starts) and 0 < k <= int((stops - starts).min()) and points[places - k].all():
+        return k
+    at = np.flatnonzero(points)
+    owners = np.searchsorted(starts, at + starts[0], side="right") - 1
     if bool(np.any(owners[1:] == owners[:-1])):
         return None
-    k = np.zeros(len(starts), np.intp)
-    k[owners] = stops[owners] - points
-    return k
+    each = np.zeros(len(starts), np.intp)
+    each[owners] = places[owners] - at
+    return each
+
+
+def _first_word_from_point_on(points: BoolArray, length: int) -> int:
+    return length - int(np.argmax(points[:length])) if points[:length].any() else 0
 
 
 def _mantissas(data: bytes, stops: IntArray, lengths: IntArray, longest: int) -> NDArray[np.int64]:
@@ -200,64 +193,3 @@ def _parse_any(data: bytes, starts: IntArray, stops: IntArray, out: FloatArray) 
         out[i] = value
         most = max(most, decimals_of(word))
     return most
-
-
-def format_block(values: FloatArray, *, decimals: int, ends: NDArray[np.uint8] | None = None) -> Text:
-    """Return values as text with a fixed number of decimals, never in scientific notation and never -0.0.
-
-    Parameters
-    ----------
-    values : shape (N,)
-        Finite.
-    decimals : int
-        1 to 17.
-    ends : shape (N,), optional
-        A character to follow each value.
-    """
-    if len(values) and np.abs(values).max() >= _LARGEST:
-        return _format_large(values, decimals=decimals, ends=ends)
-    size = np.abs(values)
-    whole = size.astype(np.int64)
-    fraction = np.rint((size - whole) * 10.0**decimals).astype(np.int64)
-    carried = fraction >= 10**decimals
-    whole += carried
-    fraction[carried] = 0
-    minus = np.signbit(values) & ((whole > 0) | (fraction > 0))
-    largest = int(whole.max(initial=0))
-    places = len(str(largest))
-    tail = ends is not None
-    width = 1 + places + 1 + decimals + tail
-    chars = np.empty((len(values), width), np.uint8)
-    point = 1 + places
-    _put_digits(chars, whole, start=1, stop=point)
-    chars[:, point] = ord(".")
-    _put_digits(chars, fraction, start=point + 1, stop=point + 1 + decimals)
-    if ends is not None:
-        chars[:, -1] = ends
-    lengths = np.full(len(values), 2 + decimals + tail)
-    for k in range(1, places):
-        lengths += whole >= 10**k
-    chars[np.flatnonzero(minus), (width - 1 - lengths)[minus]] = ord("-")
-    lengths += minus
-    return Text(chars, lengths)
-
-
-def _put_digits(chars: NDArray[np.uint8], numbers: NDArray[np.int64], *, start: int, stop: int) -> None:
-    """Write numbers right-aligned, with leading zeros, into the columns from start to stop."""
-    while stop - start > 4:
-        higher = numbers // 10_000
-        chars[:, stop - 4 : stop] = _FOURS[numbers - higher * 10_000]
-        numbers = higher
-        stop -= 4
-    chars[:, start:stop] = _FOURS[numbers, 4 - (stop - start) :]
-
-
-def _format_large(values: FloatArray, *, decimals: int, ends: NDArray[np.uint8] | None) -> Text:
-    """Format one by one values that are too large for the digit tables."""
-    words = [f"{value:.{decimals}f}".encode() for value in values.tolist()]
-    if ends is not None:
-        words = [word + bytes((end,)) for word, end in zip(words, ends.tolist(), strict=True)]
-    lengths = np.array([len(word) for word in words])
-    width = int(lengths.max())
-    joined = b"".join(word.rjust(width) for word in words)
-    return Text(np.frombuffer(joined, np.uint8).reshape(len(words), width), lengths)
