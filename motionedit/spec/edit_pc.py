@@ -22,13 +22,15 @@ class PcGoal(EffectorItem):
 
     at: Annotated[Time, kinds.TIME] = Field(description="The instant of the goal.")
     position: Annotated[Vector | None, kinds.VECTOR] = Field(
-        default=None, description="Where the effector shall be, in clip units. One of position, shift, orientation is needed."
+        default=None,
+        description="Where the effector shall be, in clip units. One of position, shift, orientation is needed.",
     )
     shift: Annotated[Vector | None, kinds.VECTOR] = Field(
         default=None, description="How far the effector shall move from where it is at that frame, in clip units."
     )
     orientation: Annotated[OrientationSpec | None, kinds.ORIENTATION] = Field(
-        default=None, description="How the effector's joint shall be turned, in degrees; alone or beside position or shift."
+        default=None,
+        description="How the effector's joint shall be turned, in degrees; alone or beside position or shift.",
     )
     frame: Annotated[str, kinds.FRAME] = Field(
         default="world", description="Axes of position, shift and orientation: world, or the character's heading."
@@ -139,7 +141,7 @@ class EditPcSpec(Document):
         default=None, description="Use as many components as explain this share of the variance, 0 to 1."
     )
     goals: Annotated[tuple[PcGoal, ...], AfterValidator(_goals_apart)] = Field(
-       default= description="What shall be where, at which frame; [] changes nothing."
+        description="What shall be where, at which frame; [] changes nothing."
     )
     solver: PcSolver = Field(default=PcSolver(), description="How the coefficients are found.")
     plausibility: Annotated[float | str | None, kinds.either(("off",), kinds.number(above=0.0))] = Field(
@@ -151,7 +153,8 @@ class EditPcSpec(Document):
         default="constant", description="One set of coefficients for the whole clip."
     )
     residual: Annotated[str, kinds.word("keep", "drop")] = Field(
-        default="keep", description="keep what the model cannot express of the clip, or drop it (the paper's eq. 3 alone)."
+        default="keep",
+        description="keep what the model cannot express of the clip, or drop it (the paper's eq. 3 alone).",
     )
     timing: Annotated[str, kinds.word("original", "normalized")] = Field(
         default="original", description="Timing of the edited clip: the input's own, or the model's timeline."

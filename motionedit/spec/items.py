@@ -43,7 +43,7 @@ class EffectorItem(Item):
     """An item with an effector."""
 
     effectors: Annotated[tuple[EffectorSpec, ...], kinds.EFFECTORS] = Field(
-       default= alias="effector", description="The point of the body that is meant; a list stands for one item each."
+        alias="effector", description="The point of the body that is meant; a list stands for one item each."
     )
     _list_index: int | None = PrivateAttr(default=None)
 

@@ -46,7 +46,7 @@ class Align(SpecModel):
 
     heading: Annotated[bool, kinds.FLAG] = Field(default=True, description="Turn all clips to one heading.")
     position: Annotated[bool, kinds.FLAG] = Field(
-       default= default=True, description="Move all clips to one place on the ground."
+        default=True, description="Move all clips to one place on the ground."
     )
     at: Annotated[str, ALIGN_AT] = Field(
         default="first", description="The instant at which they are aligned: first (frame), or an event's name."
@@ -57,7 +57,8 @@ class TimelineEvent(EventSpec):
     """An event, and where it goes on the common timeline."""
 
     target: Annotated[Time | str, TARGET] = Field(
-        default="mean", description="Where the event goes: mean (the mean key frame, eq. 14) or a time of the normalized clip."
+        default="mean",
+        description="Where the event goes: mean (the mean key frame, eq. 14) or a time of the normalized clip.",
     )
 
 
@@ -77,7 +78,7 @@ class NormalizeSpec(Document):
     rest_pose: Annotated[str, kinds.word("drop", "keep")] = Field(
         default="drop", description="What becomes of a T-pose in front of a take."
     )
-    events: dict[str, Annotated[TimelineEvent, OrFrame()]] = Field(  default=# type: ignore[assignment]
+    events: dict[str, Annotated[TimelineEvent, OrFrame()]] = Field(  # type: ignore[assignment]
         default={}, description="Instants that are brought to the same frame in all clips; none: durations only."
     )
 
