@@ -203,11 +203,7 @@ def _from_three_angles(angles: FloatArray, axes: Sequence[int]) -> FloatArray:
     half = 0.5 * np.moveaxis(angles, -1, 0)
     a, b, c = np.tan(half, out=half)
     c *= sign
-    scale = 1.0 + a * a
-    scale *= 1.0 + b * b
-    scale *= 1.0 + c * c
-    np.sqrt(scale, out=scale)
-    np.divide(1.0, scale, out=scale)
+    scale = 1.0 / np.sqrt((1.0 + a * a) * (1.0 + b * b) * (1.0 + c * c))
     ab, bc, ac = a * b, b * c, a * c
     q = np.empty((*angles.shape[:-1], 4))
     q[..., 0] = (1.0 - ab * c) * scale
