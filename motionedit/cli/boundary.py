@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import sys
 from typing import TYPE_CHECKING
 
 import click
@@ -26,13 +24,12 @@ class Interrupted(Exception):  # noqa: N818  no error: the user asked for it
 
 
 def run_guarded(call: Callable[[], int | None]) -> int:
-    """Return the exit code of a call; what it raises is said in one line each, with no traceback."""
+    """Return the exit code of a call; what it raises is said in one line each, with no traceback.
+
+    A reader that stops reading, such as `head`, is click's to answer: silently, with exit code 1.
+    """
     try:
         return call() or EXIT_DONE
-    except BrokenPipeError:
-        # The reader, such as `head`, has had enough: nothing to say, and nobody to say it to.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return EXIT_CLIP_FAILED
     except (Interrupted, KeyboardInterrupt, click.Abort):
         complain("interrupted")
         return EXIT_INTERRUPTED

@@ -56,7 +56,7 @@ def show_failures(failures: Sequence[MotionEditError]) -> None:
             complain(str(error))
         elif place not in said:
             said.add(place)
-            others = f" (and in {places[place] - 1} more)" if places[place] > 1 else ""
+            others = f" (and in {places[place] - 1} more clips)" if places[place] > 1 else ""
             complain(f"{error}{others}")
 
 

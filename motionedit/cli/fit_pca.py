@@ -16,6 +16,7 @@ from motionedit.cli.options import (
 )
 from motionedit.cli.progress import progress_on_terminal
 from motionedit.cli.verbosity import verbosity_of, verbosity_options
+from motionedit.errors import UsageError
 
 
 @click.command(
@@ -24,7 +25,7 @@ from motionedit.cli.verbosity import verbosity_of, verbosity_options
     Example:
       motionedit fit-pca normalized/ -o golf.npz""",
 )
-@click.argument("folder", metavar="DIR", type=click.Path(path_type=Path, exists=True, file_okay=False))
+@click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
 @output_option("MODEL.npz", "The model's file.")
 @spec_option(required=False)
 @set_option
@@ -48,6 +49,12 @@ def command(
     DIR is the folder that normalize wrote; the clips that its normalization.json lists are read, and no others.
     Prints how much of the variance each component explains.
     """
+    if output == "-" or Path(output).is_dir():
+        raise click.UsageError(f"-o {output}: fit-pca writes a file; give a name such as model.npz")
+    if overrides and spec_path is None:
+        raise click.UsageError("--set overrides a key of a spec: give -s too")
+    if not folder.is_dir():
+        raise UsageError("no such folder", file=str(folder))
     from motionedit.cli.boundary import warn
     from motionedit.cli.finish import write_report
     from motionedit.jobs import fit_pca
@@ -56,10 +63,6 @@ def command(
     from motionedit.report.table import text_table
     from motionedit.spec.load import load_spec
 
-    if output == "-" or Path(output).is_dir():
-        raise click.UsageError(f"-o {output}: fit-pca writes a file; give a name such as model.npz")
-    if overrides and spec_path is None:
-        raise click.UsageError("--set overrides a key of a spec: give -s too")
     if not overwrite:
         refuse_existing([Path(output)])
     loaded = None if spec_path is None else load_spec(spec_path, "fit-pca", overrides=overrides)

@@ -32,14 +32,14 @@ def command(
     Every clip gets the same number of frames, its events fall on the same frames, and it starts at the same place
     and heading. One clip that fails stops the run, because each clip shifts the means; --keep-going leaves it out.
 
-    CLIPS are BVH files, folders of them, or '-' for standard input.
+    CLIPS are BVH files or folders of them.
     """
+    if output == "-" or output.lower().endswith(".bvh"):
+        raise click.UsageError(f"-o {output}: normalize writes several files; give a folder")
     from motionedit.cli.finish import finish_batch
     from motionedit.jobs import normalize
     from motionedit.spec.load import load_spec
 
-    if output == "-" or output.lower().endswith(".bvh"):
-        raise click.UsageError(f"-o {output}: normalize writes several files; give a folder")
     loaded = load_spec(spec_path, "normalize", overrides=overrides)
     result = normalize.run(loaded, clips, Path(output), options)
     return finish_batch(result, options, command="normalize", spec=loaded.data)

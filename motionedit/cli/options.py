@@ -11,11 +11,22 @@ import click
 
 from motionedit.cli.progress import progress_on_terminal
 from motionedit.cli.verbosity import verbosity_of, verbosity_options
+from motionedit.errors import UsageError
 
 Function = Callable[..., Any]
 Decorator = Callable[[Function], Function]
 
-_FILE = click.Path(path_type=Path, exists=True, dir_okay=False)
+_PATH = click.Path(path_type=Path)
+
+
+def existing_file(ctx: click.Context, parameter: click.Parameter, value: Path | None) -> Path | None:
+    """Refuse a file that does not exist (click's own words for it are clumsy)."""
+    del ctx, parameter
+    if value is not None and not value.exists():
+        raise UsageError("no such file", file=str(value))
+    if value is not None and value.is_dir():
+        raise UsageError("is a folder, not a file", file=str(value))
+    return value
 
 
 def not_negative(ctx: click.Context, parameter: click.Parameter, value: float | None) -> float | None:
@@ -27,7 +38,13 @@ def not_negative(ctx: click.Context, parameter: click.Parameter, value: float | 
 
 clips_argument = click.argument("clips", nargs=-1, required=True, metavar="CLIPS...", type=click.Path(path_type=Path))
 model_option = click.option(
-    "-m", "--model", required=True, metavar="MODEL.npz", type=_FILE, help="The model that fit-pca wrote."
+    "-m",
+    "--model",
+    required=True,
+    metavar="MODEL.npz",
+    type=_PATH,
+    callback=existing_file,
+    help="The model that fit-pca wrote.",
 )
 set_option = click.option(
     "--set",
@@ -98,7 +115,8 @@ def spec_option(*, required: bool = True) -> Decorator:
         "spec_path",
         required=required,
         metavar="SPEC",
-        type=_FILE,
+        type=_PATH,
+        callback=existing_file,
         help="The YAML spec: what is to be done.",
     )
 

@@ -76,8 +76,10 @@ class _Program(click.Group):
         if args[0] not in COMMANDS and not args[0].startswith("-") and not ctx.resilient_parsing:
             import difflib
 
-            near = difflib.get_close_matches(args[0], COMMANDS, n=1)
-            hint = f"did you mean '{near[0]}'?" if near else f"one of: {', '.join(COMMANDS)}"
+            begun = [name for name in COMMANDS if name.startswith(args[0])]
+            near = begun or difflib.get_close_matches(args[0], COMMANDS, n=1)
+            hint = "did you mean " + " or ".join(f"'{name}'" for name in near) + "?"
+            hint = hint if near else f"one of: {', '.join(COMMANDS)}"
             raise click.UsageError(f"no command '{args[0]}'; {hint}")
         return super().resolve_command(ctx, args)
 

@@ -37,9 +37,15 @@ def atomic_write(path: Path, data: bytes) -> None:
     temporary = path.with_name(f".{path.name[:40]}.{os.urandom(4).hex()}{_PARTIAL}")
     try:
         with temporary.open("xb") as stream:
-            _hold(stream)
+            # A file system without locks only keeps what a killed run leaves.
+            with contextlib.suppress(OSError):
+                _hold(stream)
             stream.write(data)
-        temporary.replace(path)
+            stream.flush()
+            if fcntl is not None:  # renamed while it is held, so that no other run takes it for a leftover
+                temporary.replace(path)
+        if fcntl is None:
+            temporary.replace(path)
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise

@@ -1,0 +1,84 @@
+"""Results come in the items' order from any number of workers, and workers do not outlive their run."""
+
+import contextlib
+import multiprocessing
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from motionedit.errors import UsageError
+from motionedit.jobs.plan import RunOptions
+from motionedit.jobs.pool import WorkerDiedError, results_in_order
+
+
+def slow_first(item):
+    time.sleep(0.2 if item == 0 else 0.0)
+    return item * item
+
+
+def die_at_one(item):
+    if item == 1:
+        os._exit(9)
+    return item
+
+
+@pytest.mark.parametrize("jobs", [0, 1, 2, 3])
+def test_results_are_in_order_for_any_number_of_workers(jobs):
+    found = list(results_in_order(slow_first, range(6), options=RunOptions(jobs=jobs)))
+    assert found == [0, 1, 4, 9, 16, 25]
+
+
+def test_one_item_needs_no_worker():
+    assert list(results_in_order(os.getppid, [], options=RunOptions(jobs=2))) == []
+    assert list(results_in_order(lambda _: os.getpid(), [0], options=RunOptions(jobs=2))) == [os.getpid()]
+
+
+def test_a_worker_that_dies_is_a_value_and_no_traceback():
+    found = list(results_in_order(die_at_one, [1, 1], options=RunOptions(jobs=2)))
+    assert [type(value) for value in found] == [WorkerDiedError] * 2
+    assert "worker process was killed" in str(found[0])
+
+
+def test_closing_early_leaves_no_worker():
+    results = results_in_order(slow_first, range(50), options=RunOptions(jobs=2))
+    with contextlib.closing(results):
+        next(results)
+    assert multiprocessing.active_children() == []
+
+
+def test_workers_end_when_their_parent_is_killed():
+    code = """
+import os, time
+from motionedit.jobs.plan import RunOptions
+from motionedit.jobs.pool import results_in_order
+def work(item):
+    os.write(1, f"{os.getpid()}\\n".encode())
+    time.sleep(60)
+list(results_in_order(work, range(2), options=RunOptions(jobs=2)))
+"""
+    parent = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
+    workers = [int(parent.stdout.readline()) for _ in range(2)]
+    parent.send_signal(signal.SIGKILL)
+    parent.wait()
+    # The pipe closes when the last process that holds it ends.
+    assert parent.stdout.read() == ""
+    parent.stdout.close()
+    for worker in workers:
+        with pytest.raises(ProcessLookupError):
+            _wait_until_gone(worker)
+
+
+def _wait_until_gone(process):
+    for _ in range(100):
+        os.kill(process, 0)
+        time.sleep(0.05)
+
+
+def test_a_cluster_needs_its_extra(monkeypatch):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(UsageError, match=r"pip install 'motionedit\[cluster\]'"):
+        list(results_in_order(slow_first, [1], options=RunOptions(scheduler="tcp://127.0.0.1:1")))
