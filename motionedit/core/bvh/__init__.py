@@ -1,5 +1,6 @@
 """BVH files: reading, writing, and the adapter to `bvhio`; the only place where clips are read or written."""
 
+from motionedit.core.bvh.adapter import VerifyResult, check_with_bvhio, from_bvhio, to_bvhio
 from motionedit.core.bvh.read import BvhText, Clip, parse_clip, read_clip
 from motionedit.core.bvh.write import edited_bytes, new_bytes, resampled_bytes, unedited_bytes
 from motionedit.core.euler import joint_angles
@@ -7,11 +8,15 @@ from motionedit.core.euler import joint_angles
 __all__ = [
     "BvhText",
     "Clip",
+    "VerifyResult",
+    "check_with_bvhio",
     "edited_bytes",
+    "from_bvhio",
     "joint_angles",
     "new_bytes",
     "parse_clip",
     "read_clip",
     "resampled_bytes",
+    "to_bvhio",
     "unedited_bytes",
 ]

@@ -83,7 +83,7 @@ def new_bytes(motion: Motion, *, decimals: int = FEWEST_DECIMALS) -> bytes:
     if not np.isfinite(values).all():
         message = "a motion with values that are not finite cannot be written"
         raise BvhError(message)
-    lines = [*_hierarchy_lines(skeleton, decimals), "MOTION", f"Frames: {len(values)}"]
+    lines = [*hierarchy_lines(skeleton, decimals), "MOTION", f"Frames: {len(values)}"]
     lines.append(f"Frame Time: {plain_number(motion.frame_time)}")
     head = "".join(f"{line}\n" for line in lines).encode()
     return head + _rows_text(values, decimals=decimals, ending=b"\n")
@@ -251,7 +251,7 @@ def _line_ending(data: bytes, at: int) -> bytes:
     return data[at : at + 1] if data[at : at + 1] == b"\r" else b"\n"
 
 
-def _hierarchy_lines(skeleton: Skeleton, decimals: int) -> list[str]:
+def hierarchy_lines(skeleton: Skeleton, decimals: int) -> list[str]:
     """Return the lines of HIERARCHY, each joint's End Sites before its children."""
     lines = ["HIERARCHY"]
     sites: dict[int, list[FloatArray]] = {}
