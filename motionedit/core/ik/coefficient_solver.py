@@ -38,6 +38,10 @@ _FIRST_PENALTY = 1e2
 _LEAST_PENALTY = 1e-12
 _MOST_BISECTIONS = 60
 
+# Algorithm 1 without a cap ends where this many iterations in a row brought no nearer error than this share.
+_PATIENCE = 1000
+_PROGRESS = 1e-9
+
 
 @dataclass(frozen=True, eq=False)
 class CoefficientSolution:
@@ -250,7 +254,7 @@ def solve_damped(
     tolerance : float
         Stop at |e| below this, in `unit`.
     max_iterations : int or None
-        None lifts the cap; the run still ends where a step changes nothing any more.
+        None lifts the cap; the run still ends where a thousand iterations bring it no nearer.
     unit : float
         Metres at leg length 0.85 m of the unit that the paper's numbers are in.
     """
@@ -258,16 +262,18 @@ def solve_damped(
     error, jacobian = stacked_errors(goals, change)
     progress = _Progress([float(np.linalg.norm(error))])
     floor = (damping * unit) ** 2 * np.eye(len(error))
+    best, best_at = progress.history[0], 0
     while max_iterations is None or progress.iterations < max_iterations:
         if progress.history[-1] < tolerance * unit:
             progress.reason = "converged"
             break
-        step = jacobian.T @ np.linalg.lstsq(jacobian @ jacobian.T + floor, error, rcond=None)[0]
-        if float(np.linalg.norm(step)) <= STALL * float(np.linalg.norm(change)):
+        if progress.iterations - best_at > _PATIENCE:
             progress.reason = "stalled"
             break
-        change = change + step
+        change = change + jacobian.T @ np.linalg.lstsq(jacobian @ jacobian.T + floor, error, rcond=None)[0]
         error, jacobian = stacked_errors(goals, change)
         progress.history.append(float(np.linalg.norm(error)))
+        if progress.history[-1] < (1.0 - _PROGRESS) * best:
+            best, best_at = progress.history[-1], progress.iterations
     solution = progress.finished()
     return CoefficientSolution(change, solution.iterations, solution.history, solution.reason)

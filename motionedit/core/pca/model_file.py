@@ -84,11 +84,11 @@ def read_model(path: Path, *, label: str | None = None) -> MotionModel:
     """
     label = label or str(path)
     try:
-        with np.load(path, allow_pickle=False) as archive:
+        with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as archive:
             arrays = {name: archive[name] for name in archive.files}
     except OSError as error:
         raise ModelError(f"cannot be read: {error.strerror or error}", file=label) from error
-    except (ValueError, zipfile.BadZipFile, EOFError, AttributeError) as error:
+    except (ValueError, TypeError, AttributeError, EOFError, KeyError, zipfile.BadZipFile) as error:
         raise ModelError("not a model file; make one with 'motionedit fit-pca'", file=label) from error
     try:
         return _model_of(arrays, label=label)

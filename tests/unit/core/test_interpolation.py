@@ -1,0 +1,56 @@
+"""The three curves against scipy's."""
+
+import numpy as np
+import pytest
+from scipy.interpolate import CubicSpline, PchipInterpolator
+from scipy.ndimage import gaussian_filter1d
+
+from motionedit.core.timeline.interpolation import low_pass, monotone_cubic, natural_spline
+
+
+@pytest.mark.parametrize("count", [2, 3, 7])
+def test_the_monotone_cubic_is_scipys_pchip(count):
+    rng = np.random.default_rng(count)
+    x, y = np.cumsum(rng.uniform(0.1, 5.0, count)), rng.normal(size=count)
+    at = np.linspace(x[0], x[-1], 101)
+    np.testing.assert_allclose(monotone_cubic(x, y, at), PchipInterpolator(x, y)(at), atol=1e-12)
+
+
+def test_the_monotone_cubic_never_turns_back_and_is_clamped_outside():
+    x, y = np.array([0.0, 90.0, 100.0, 300.0]), np.array([0.0, 10.0, 60.0, 61.0])
+    curve = monotone_cubic(x, y, np.linspace(-50.0, 350.0, 2000))
+    assert np.all(np.diff(curve) >= 0.0)
+    assert curve[0] == 0.0
+    assert curve[-1] == 61.0
+
+
+@pytest.mark.parametrize("frames", [1, 2, 3, 4, 50])
+def test_the_natural_spline_is_scipys(frames):
+    rows = np.random.default_rng(frames).normal(size=(frames, 4, 2))
+    at = np.linspace(-1.0, frames, 77)
+    if frames == 1:
+        expected = np.repeat(rows, len(at), axis=0)
+    else:
+        clamped = np.clip(at, 0, frames - 1)
+        expected = CubicSpline(np.arange(frames), rows, bc_type="natural")(clamped)
+    np.testing.assert_allclose(natural_spline(rows, at), expected, atol=1e-12)
+
+
+def test_the_natural_spline_passes_through_its_rows():
+    rows = np.random.default_rng(3).normal(size=(20, 3))
+    np.testing.assert_allclose(natural_spline(rows, np.arange(20.0)), rows, atol=1e-14)
+
+
+def test_the_low_pass_is_scipys_gaussian_inside_and_leaves_a_line_alone():
+    rows = np.random.default_rng(4).normal(size=(60, 3))
+    inside = slice(6, -6)
+    expected = gaussian_filter1d(rows, 2.0, axis=0, radius=6)
+    np.testing.assert_allclose(low_pass(rows, sigma=2.0)[inside], expected[inside], atol=1e-12)
+    line = np.linspace(3.0, 9.0, 30)[:, None]
+    np.testing.assert_allclose(low_pass(line, sigma=2.5), line, atol=1e-12)
+
+
+@pytest.mark.parametrize("frames", [1, 2, 4])
+def test_the_low_pass_takes_clips_shorter_than_its_kernel(frames):
+    rows = np.ones((frames, 2))
+    np.testing.assert_allclose(low_pass(rows, sigma=3.0), rows, atol=1e-12)
