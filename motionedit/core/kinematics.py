@@ -41,17 +41,53 @@ def local_translations(motion: Motion) -> FloatArray:
 def forward(motion: Motion) -> WorldPoses:
     """Return the world transforms of all joints at all frames.
 
-    p_j = p_parent + R_parent t_j and R_j = R_parent R_local, level by level from the root.
+    p_j = p_parent + R_parent t_j and R_j = R_parent R_local. Only the products of rotations go level by level from the
+    root; the offsets are turned all at once, then added up along the levels.
     """
-    skeleton = motion.skeleton
-    positions = local_translations(motion)
-    rotations = motion.rotations.copy()
-    for level in skeleton.levels[1:]:
-        parents = skeleton.parents[level]
-        q_parent = rotations[:, parents]
-        positions[:, level] = positions[:, parents] + rot.rotate(q_parent, positions[:, level])
-        rotations[:, level] = rot.multiply(q_parent, rotations[:, level])
+    frames, joints = motion.rotations.shape[:2]
+    positions, rotations = np.empty((frames, joints, 3)), np.empty((frames, joints, 4))
+    # Blocks of frames stay in the processor's cache.
+    step = max(_BLOCK_POSES // joints, 1)
+    for start in range(0, frames, step):
+        _forward_block(motion, slice(start, start + step), positions, rotations)
     return WorldPoses(positions, rotations)
+
+
+# The product p q of quaternions is sum_a p_a S[a] q[I[a]]: these are I and S.
+_TERMS = np.array([[0, 1, 2, 3], [1, 0, 3, 2], [2, 3, 0, 1], [3, 2, 1, 0]])
+_SIGNS = np.array([[1, 1, 1, 1], [-1, 1, -1, 1], [-1, 1, 1, -1], [-1, -1, 1, 1]], dtype=np.float64)
+_BLOCK_POSES = 1 << 13
+
+
+def _forward_block(motion: Motion, block: slice, positions: FloatArray, rotations: FloatArray) -> None:
+    """Write the world transforms of a block of frames; inside, arrays are laid out (part, joint, frame)."""
+    skeleton = motion.skeleton
+    walk = skeleton.level_order
+    q = np.take(motion.rotations[block].transpose(2, 1, 0), walk.joints, axis=1)
+    terms = q[_TERMS] * _SIGNS[:, :, None, None]
+    p = np.empty((3, *q.shape[1:]))
+    p[:] = skeleton.offsets[walk.joints].T[:, :, None]
+    moved = np.flatnonzero(np.isin(walk.joints, skeleton.translated))
+    p[:, moved] = motion.translations[block, np.searchsorted(skeleton.translated, walk.joints[moved])].transpose(
+        2, 1, 0
+    )
+    for start, stop in walk.levels:
+        parents = q[:, walk.parents[start:stop]]
+        np.einsum("akf,ackf->ckf", parents, terms[:, :, start:stop], out=q[:, start:stop])
+    p[:, 1:] = _turned(q[:, walk.parents[1:]], p[:, 1:])
+    for start, stop in walk.levels:
+        p[:, start:stop] += p[:, walk.parents[start:stop]]
+    positions[block, walk.joints] = p.transpose(2, 1, 0)
+    rotations[block, walk.joints] = q.transpose(2, 1, 0)
+
+
+def _turned(q: FloatArray, v: FloatArray) -> FloatArray:
+    """Return vectors (3, ...) turned by quaternions (4, ...)."""
+    w, x, y, z = q
+    tx, ty, tz = 2.0 * (y * v[2] - z * v[1]), 2.0 * (z * v[0] - x * v[2]), 2.0 * (x * v[1] - y * v[0])
+    turned: FloatArray = v + w * np.stack((tx, ty, tz))
+    turned += np.stack((y * tz - z * ty, z * tx - x * tz, x * ty - y * tx))
+    return turned
 
 
 def forward_of(motion: Motion, joint: int) -> tuple[FloatArray, FloatArray]:

@@ -26,6 +26,18 @@ class EndSite:
 
 
 @dataclass(frozen=True, eq=False)
+class LevelOrder:
+    """The joints by depth: `joints` (J,), the `parents` (J,) as places in that order, and the levels below the root.
+
+    `levels` are (start, stop) places; the root's place is 0, and it stands as its own parent.
+    """
+
+    joints: IntArray
+    parents: IntArray
+    levels: tuple[tuple[int, int], ...]
+
+
+@dataclass(frozen=True, eq=False)
 class Skeleton:
     """A tree of J joints in file order, so that a parent stands before its children.
 
@@ -67,16 +79,14 @@ class Skeleton:
     def rotation_axes(self) -> tuple[tuple[int, ...], ...]:
         """Euler axes of each joint in channel order: (2, 0, 1) for ZXY, () for none."""
         return tuple(
-            tuple("XYZ".index(name[0]) for name in names if name.endswith("rotation"))
-            for names in self.channels
+            tuple("XYZ".index(name[0]) for name in names if name.endswith("rotation")) for names in self.channels
         )
 
     @cached_property
     def position_axes(self) -> tuple[tuple[int, ...], ...]:
         """Axes of each joint that position channels replace in OFFSET, in channel order."""
         return tuple(
-            tuple("XYZ".index(name[0]) for name in names if name.endswith("position"))
-            for names in self.channels
+            tuple("XYZ".index(name[0]) for name in names if name.endswith("position")) for names in self.channels
         )
 
     @cached_property
@@ -91,6 +101,16 @@ class Skeleton:
         for j in range(1, len(self)):
             depth[j] = depth[self.parents[j]] + 1
         return tuple(frozen(np.flatnonzero(depth == d)) for d in range(int(depth.max()) + 1))
+
+    @cached_property
+    def level_order(self) -> LevelOrder:
+        """The joints sorted by depth, so that each level is a slice."""
+        order = np.concatenate(self.levels)
+        place = np.empty_like(order)
+        place[order] = np.arange(len(order))
+        parents = np.where(order > 0, place[self.parents[order]], 0)
+        bounds = np.cumsum([len(level) for level in self.levels]).tolist()
+        return LevelOrder(frozen(order), frozen(parents), tuple(zip(bounds[:-1], bounds[1:], strict=True)))
 
     @cached_property
     def children(self) -> tuple[tuple[int, ...], ...]:
