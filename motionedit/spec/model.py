@@ -17,7 +17,7 @@ from pydantic import (
 )
 from pydantic_core import CoreSchema, core_schema
 
-from motionedit.spec.faults import Fault, FaultyValueError, Keys, did_you_mean, faulty, nearest, show
+from motionedit.spec.faults import Fault, FaultyValueError, Keys, faulty, nearest, show
 from motionedit.spec.values import unknown_key
 
 # Named in the contract for later work, so that nobody takes the names for something else.
@@ -141,8 +141,6 @@ def faults_of(error: ValidationError, data: object) -> list[Fault]:
             faults += [fault.under(*keys) for fault in cause.faults]
         elif item["type"] in ("missing", "extra_forbidden"):
             continue
-        elif item["type"] in ("union_tag_not_found", "union_tag_invalid"):
-            faults.append(_tag_fault(item["ctx"], item["input"]).under(*keys))
         else:
             faults.append(Fault(_shape_words(item["type"], item["input"]), keys))
     return faults
@@ -161,22 +159,6 @@ def _keys_in(data: object, loc: tuple[str | int, ...]) -> Keys:
         elif isinstance(here, list) and isinstance(part, int):
             here = here[part]
     return tuple(keys)
-
-
-def _tag_fault(context: Mapping[str, Any], value: object) -> Fault:
-    key = str(context["discriminator"]).strip("'")
-    if "tag" not in context:
-        if not isinstance(value, dict):
-            return Fault(f"must be a mapping with a {key}, not {show(value)}")
-        return Fault(f"is missing; it is one of {_tags(context)}", (key,))
-    tag = str(context["tag"])
-    names = _tags(context).split(", ")
-    meant = did_you_mean(tag, names, otherwise="")
-    return Fault(f"must be one of {', '.join(names)}, not {show(tag)}; {meant}".rstrip("; "), (key,))
-
-
-def _tags(context: Mapping[str, Any]) -> str:
-    return str(context["expected_tags"]).replace("'", "")
 
 
 def _shape_words(kind: str, value: object) -> str:

@@ -1,0 +1,117 @@
+"""The spec of edit-prioritized: constraints in strict layers of priority, [PRIO]."""
+
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, Field, ValidationInfo
+
+from motionedit.spec import kinds, scalars, values
+from motionedit.spec.constraints import AnyConstraint, Constraint, Defaults
+from motionedit.spec.document import Document
+from motionedit.spec.faults import Fault, faulty, show
+from motionedit.spec.items import repeated_names, taken_apart
+from motionedit.spec.model import Context, Kind, SpecModel
+from motionedit.spec.times import Duration
+
+# Passes of each method of smoothing where the spec does not say.
+_PASSES = {"passes": 3, "paper": 2}
+
+
+class Smoothing(SpecModel):
+    """How the edit is kept continuous in time, section 5."""
+
+    method: Annotated[str, kinds.word("passes", "paper")] = Field(
+        default="passes",
+        description="passes: low-pass the displacement and solve again; paper: eq. (4) and a filter on the root.",
+    )
+    passes: Annotated[int | None, kinds.whole(at_least=0)] = Field(
+        default=None, description="Passes after the first solve; default 3, with method: paper 2."
+    )
+    sigma: Annotated[Duration, kinds.DURATION] = Field(
+        default=Duration("0.062s", 0.062, is_seconds=True),
+        description="passes only: width of the Gaussian low-pass.",
+    )
+    cutoff: Annotated[float, kinds.number(above=0.0)] = Field(
+        default=3.0, description="paper only: cutoff of the root's low-pass, Hz."
+    )
+
+    @property
+    def pass_count(self) -> int:
+        """Passes after the first solve."""
+        return _PASSES[self.method] if self.passes is None else self.passes
+
+    @classmethod
+    def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
+        """Yield what is wrong between keys."""
+        method = data.get("method", "passes")
+        if method == "passes" and "cutoff" in data:
+            yield Fault("belongs to method: paper; passes has sigma", ("cutoff",))
+        if method == "paper" and "sigma" in data:
+            yield Fault("belongs to method: passes; paper has cutoff", ("sigma",))
+
+
+class LayeredSolver(SpecModel):
+    """Settings of the layered solver, section 3."""
+
+    max_iterations: Annotated[int, kinds.whole(at_least=1)] = Field(
+        default=40, description="Iterations at most for each frame and pass."
+    )
+
+
+def _masses(value: object, _context: Context) -> dict[str, float]:
+    if not isinstance(value, dict):
+        raise faulty(f"must be a mapping from joints to kilograms, not {show(value)}")
+    found = values.read_keys(value, dict.fromkeys(value, lambda item: scalars.number(item, at_least=0.0)))
+    return {joint: scalars.number(mass) for joint, mass in found.items()}
+
+
+MASSES = Kind(
+    _masses,
+    "a mapping from joints to kilograms",
+    {"type": "object", "additionalProperties": {"type": "number", "minimum": 0}},
+)
+
+
+def _constraints_apart(constraints: tuple[AnyConstraint, ...], info: ValidationInfo) -> tuple[AnyConstraint, ...]:
+    # Absent where it is faulty itself; then the spec is refused whatever stands here.
+    defaults = info.data.get("defaults", Defaults())
+    return taken_apart([item.with_defaults(defaults) for item in constraints], "constraints")
+
+
+class EditPrioritizedSpec(Document):
+    """Everything edit-prioritized is told."""
+
+    schema_id: Annotated[str, kinds.schema_id("edit-prioritized")] = Field(
+        default="motionedit/edit-prioritized/v1", alias="schema", description="Which spec this is."
+    )
+    defaults: Defaults = Field(default=Defaults(), description="What constraints use that do not say otherwise.")
+    constraints: Annotated[tuple[Constraint, ...], AfterValidator(_constraints_apart)] = Field(
+        description="What shall hold, and how important it is; [] changes nothing."
+    )
+    masses: Annotated[dict[str, float], MASSES] = Field(
+        default={}, description="Kilograms by joint; default: an anthropometric table laid on the skeleton."
+    )
+    hinges: Annotated[str | tuple[str, ...], kinds.either(("auto", "off"), kinds.JOINTS)] = Field(
+        default="auto",
+        description="Joints that bend about one axis only: auto (knees and elbows that do so in the input), off, or a "
+        "list of joints.",
+    )
+    attraction: Annotated[float, kinds.number(at_least=0.0)] = Field(
+        default=1.0, description="Pull towards the input where the layers leave freedom: the vector z of eq. (1)."
+    )
+    smoothing: Smoothing = Field(default=Smoothing(), description="How the edit is kept continuous in time.")
+    curve: Annotated[str, kinds.word("time", "index")] = Field(
+        default="time",
+        description="Parameter of the trajectory S: time, or the paper's index with piecewise-linear T(t).",
+    )
+    solver: LayeredSolver = Field(default=LayeredSolver(), description="Settings of the solver.")
+    recruiting_rule: Annotated[str, kinds.word("expand", "error", "ignore")] = Field(
+        default="expand",
+        description="What a breach of eq. (2) leads to: expand the layer above, an error, or nothing.",
+    )
+
+    @classmethod
+    def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
+        """Yield what is wrong between keys."""
+        yield from super().faults_between_keys(data)
+        yield from repeated_names(data, "constraints")

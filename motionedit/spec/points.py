@@ -1,0 +1,90 @@
+"""Points of a constraint: when and where an effector shall be, [PRIO] section 4.2."""
+
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any
+
+from pydantic import Field
+
+from motionedit.spec import kinds
+from motionedit.spec.faults import Fault
+from motionedit.spec.model import SpecModel, not_both, one_needed
+from motionedit.spec.scalars import Vector
+from motionedit.spec.times import Interval, Time
+from motionedit.spec.values import OrientationSpec
+
+SPLINE_KEYS = ("tension", "continuity", "bias")
+_SPLINE = kinds.number(at_least=-1.0, at_most=1.0)
+# What a hold already is; the same value written out does no harm.
+_HELD = {"tension": 1, "continuity": 0, "bias": 0}
+
+
+class Point(SpecModel):
+    """A hold, a ride or an instant; which goals it may have depends on the constraint's type."""
+
+    hold: Annotated[Interval | None, kinds.INTERVAL] = Field(
+        default=None, description="Stands still from a to b, [a, b]. One of hold, during, at is needed."
+    )
+    during: Annotated[Interval | None, kinds.INTERVAL] = Field(
+        default=None, description="Rides the input's own trajectory from a to b, [a, b], plus shift."
+    )
+    at: Annotated[Time | None, kinds.TIME] = Field(default=None, description="One instant.")
+    position: Annotated[Vector | None, kinds.VECTOR] = Field(
+        default=None, description="Where the effector shall be, in clip units; at most one of position, shift."
+    )
+    shift: Annotated[Vector | None, kinds.VECTOR] = Field(
+        default=None,
+        description="Displacement in clip units from the input's place: at the start of a hold, along a ride, at an "
+        "instant; default [0, 0, 0].",
+    )
+    orientation: Annotated[OrientationSpec | None, kinds.ORIENTATION] = Field(
+        default=None, description="How the effector's joint shall be turned, in degrees; default: as in the input."
+    )
+    tension: Annotated[float, _SPLINE] = Field(
+        default=0.0, description="Kochanek-Bartels tension of an instant, -1 to 1; default 0. A hold implies 1."
+    )
+    continuity: Annotated[float, _SPLINE] = Field(
+        default=0.0, description="Kochanek-Bartels continuity of an instant, -1 to 1; default 0."
+    )
+    bias: Annotated[float, _SPLINE] = Field(
+        default=0.0, description="Kochanek-Bartels bias of an instant, -1 to 1; default 0."
+    )
+
+    @property
+    def start(self) -> Time:
+        """The first instant."""
+        interval = self.hold or self.during
+        return interval.start if interval is not None else self._instant
+
+    @property
+    def stop(self) -> Time:
+        """The last instant; that of `at` is its first too."""
+        interval = self.hold or self.during
+        return interval.stop if interval is not None else self._instant
+
+    @property
+    def time_keys(self) -> tuple[str]:
+        """The key that says when: hold, during or at."""
+        if self.hold is not None:
+            return ("hold",)
+        return ("during",) if self.during is not None else ("at",)
+
+    @property
+    def _instant(self) -> Time:
+        if self.at is None:
+            raise ValueError("a point has one of hold, during, at")
+        return self.at
+
+    @classmethod
+    def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
+        """Yield what is wrong between keys."""
+        yield from one_needed(data, "hold", "during", "at")
+        yield from not_both(data, "position", "shift")
+        if "during" in data:
+            if "position" in data:
+                yield Fault("does not go with during, which rides the input; use shift, or hold", ("position",))
+            if "orientation" in data:
+                yield Fault("does not go with during, which rides the input; use hold", ("orientation",))
+        if "at" not in data and ("hold" in data or "during" in data):
+            for key, held in _HELD.items():
+                if key in data and data[key] != held:
+                    yield Fault("belongs to a point with at; a hold or ride has tension 1", (key,))
