@@ -46,9 +46,6 @@ __all__ = [
 Item = TypeVar("Item")
 Value = TypeVar("Value")
 
-# The distance, in leg lengths, up to which bvhio's single precision counts as the same place.
-VERIFY_TOLERANCE = 1e-3
-
 # What --strict counts as a goal that was not met.
 _MISSED = frozenset({"out_of_tolerance", "unreachable"})
 
@@ -276,15 +273,14 @@ def _verify(clip: Clip, content: bytes, motion: Motion) -> dict[str, Any]:
     from motionedit.core.anatomy import find_anatomy
     from motionedit.core.bvh import check_with_bvhio
 
-    leg_length = find_anatomy(motion.skeleton).leg_length
-    result = check_with_bvhio(content, motion, leg_length=leg_length)
-    if not result.worst_distance <= VERIFY_TOLERANCE * leg_length:
+    result = check_with_bvhio(content, motion, leg_length=find_anatomy(motion.skeleton).leg_length)
+    if not result.ok:
         raise ClipError(
-            f"--verify: bvhio reads a joint {result.worst_distance:.4g} from where it was written; "
-            "the file was not kept",
+            f"--verify: bvhio reads joint {result.joint} at frame {result.frame} {result.distance:.4g} from its "
+            "place; the file was not kept",
             file=clip.label,
         )
-    return {"worst_distance": result.worst_distance, "frames_skipped": result.frames_skipped}
+    return {"distance": result.distance, "frames_skipped": result.skipped}
 
 
 def _absolute(task: ClipTask) -> ClipTask:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import multiprocessing
 import os
 import signal
@@ -92,16 +93,17 @@ def _on_cluster(
     function: Callable[[Item], Result], items: Sequence[Item], address: str
 ) -> Generator[Result | WorkerDiedError]:
     try:
-        from distributed import Client, KilledWorker
+        # By name: checked with and without the extra, since only one of the two has types.
+        dask: Any = importlib.import_module("distributed")
     except ImportError as error:
         raise UsageError("--scheduler needs Dask: pip install 'motionedit[cluster]'") from error
     try:
-        client: Any = Client(address, timeout=_SECONDS_TO_CONNECT)
+        client = dask.Client(address, timeout=_SECONDS_TO_CONNECT)
     except (OSError, ValueError) as error:
         raise UsageError(f"--scheduler {address}: no Dask scheduler answers there") from error
     with client:
         for future in client.map(function, items, pure=False):
             try:
                 yield future.result()
-            except KilledWorker:
+            except dask.KilledWorker:
                 yield WorkerDiedError("its worker process was killed, perhaps for want of memory")
