@@ -1,0 +1,105 @@
+import numpy as np
+import pytest
+from mannequin import bvh_text
+
+from motionedit.core.bvh import parse_clip
+from motionedit.jobs.bodies import body_of, upright
+from motionedit.jobs.clip_facts import facts_of
+
+
+def made(**options):
+    return body_of(facts_of(parse_clip(bvh_text(**options).encode(), label="x.bvh")), label="x")
+
+
+@pytest.fixture(scope="module")
+def body():
+    return made()
+
+
+def limb_to(body, name):
+    point = body.names.index(name)
+    return next(limb for limb in body.limbs if limb.end == point)
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_upright_is_a_rotation_that_brings_up_to_y(axis, sign):
+    up = sign * np.eye(3)[axis]
+    turn = upright(up)
+    assert np.linalg.det(turn) == pytest.approx(1.0)
+    np.testing.assert_allclose(turn @ turn.T, np.eye(3))
+    np.testing.assert_allclose(turn @ up, [0.0, 1.0, 0.0])
+
+
+def test_a_file_with_z_up_stands_as_one_with_y_up(body):
+    turned = made(z_up=True)
+    np.testing.assert_allclose(turned.positions, body.positions, atol=1e-4)
+    assert body.axes == ("x", "y", "z")
+    assert turned.axes == ("x", "z", "-y")
+
+
+def test_the_points_are_joints_then_end_sites_then_what_only_serves_the_drawing(body):
+    assert body.names[:2] == ("Hips", "LeftUpLeg")
+    assert body.names[22:] == (
+        *(f"{name} (end site)" for name in ("LeftToeBase", "RightToeBase", "Head", "LeftHand", "Club")),
+        "",
+        "",
+    )
+    assert body.positions.shape == (12, 29, 3)
+
+
+def test_end_sites_are_where_the_offsets_say_in_a_pose_without_turns(body):
+    head, top = (body.positions[0, body.names.index(name)] for name in ("Head", "Head (end site)"))
+    np.testing.assert_allclose(top - head, [0.0, 18.0, 0.0], atol=1e-9)
+
+
+def test_sides_follow_the_anatomy(body):
+    assert limb_to(body, "LeftLeg").side == "left"
+    assert limb_to(body, "RightForeArm").side == "right"
+    assert limb_to(body, "Spine1").side == "middle"
+
+
+def test_a_thigh_is_thick_and_a_club_thin(body):
+    thigh, club = limb_to(body, "LeftLeg"), limb_to(body, "Club (end site)")
+    assert thigh.radii[0] > thigh.radii[1] > 4.0
+    assert max(club.radii) < 1.0
+
+
+def test_the_trail_is_that_of_the_club_head(body):
+    assert [body.names[point] for point in body.trails] == ["Club (end site)"]
+
+
+def test_the_nose_lies_before_the_head(body):
+    head, nose = body.balls
+    assert (head.part, nose.part) == ("head", "nose")
+    ahead = body.positions[0, nose.point] - body.positions[0, head.point]
+    np.testing.assert_allclose(ahead / np.linalg.norm(ahead), [0.0, 0.0, 1.0], atol=0.1)
+    assert body.forward == pytest.approx((0.0, 0.0, 1.0), abs=1e-9)
+
+
+def test_pelvis_and_chest_are_hulls_and_cover_the_collars(body):
+    pelvis, chest = body.hulls
+    assert {body.names[p] for p in pelvis.points} == {"Hips", "LeftUpLeg", "RightUpLeg"}
+    assert {"LeftArm", "RightArm"} <= {body.names[p] for p in chest.points}
+    assert body.names.index("LeftArm") not in {limb.end for limb in body.limbs}
+
+
+def test_the_floor_is_up_0_unless_the_figure_never_comes_near_it(body):
+    assert body.floor == 0.0
+    assert made(hips_height=0.0).floor == pytest.approx(-96.0)
+
+
+def test_a_skeleton_without_legs_is_thin_limbs_throughout():
+    text = (
+        "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nJOINT b\n{\nOFFSET 0 10 0\n"
+        "CHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 10 0\n}\n}\n}\n"
+        "MOTION\nFrames: 2\nFrame Time: 0.1\n0 0 0 0 0 0\n0 0 0 0 9 0\n"
+    )
+    body = body_of(facts_of(parse_clip(text.encode(), label="x.bvh")), label="x")
+    assert [(body.names[limb.start], body.names[limb.end]) for limb in body.limbs] == [
+        ("a", "b"),
+        ("b", "b (end site)"),
+    ]
+    assert all(limb.radii[0] <= 3.0 and limb.side == "middle" for limb in body.limbs)
+    assert body.hulls == body.balls == ()
+    assert body.trails == (2,)
