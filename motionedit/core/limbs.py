@@ -11,12 +11,15 @@ import numpy as np
 from motionedit.core.sides import side_of_names
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from motionedit.core.arrays import BoolArray, FloatArray
     from motionedit.core.skeleton import Skeleton
 
 # Captured bones differ between left and right (CMU's hips by 11 %); a spine differs from a leg by far more.
 _LENGTH_TOLERANCE = 0.3
 _LENGTH_FLOOR = 0.02  # of the height: below it any two bones are alike
+_LONGEST_CHAIN = 24  # joints: longer ones are ropes and tails, and every three joints of a chain are tried
 _SHORTEST_LIMB = 0.1  # of the height: fingers and faces come in pairs too
 _RATIO_LIMIT = 2.5  # upper to lower bone; CMU's upper arm is up to 1.9 forearms
 # Costs against |log(upper / lower)|. A bone is taken as cut in pieces only where that explains the limb, and hardly
@@ -30,6 +33,17 @@ _COST_OF_ONE_PLACE = 1.0  # where both limbs would start at the same place, as C
 _APART = 0.25  # mean bones between the tops of two limbs in the zero pose; hips are 0.35 apart
 _LONGEST_ABOVE = 1.5  # mean bones: a collar may be in two pieces
 _LONGEST_BELOW = 1.2  # mean bones: a hand is 0.85 forearms
+
+
+class Match(NamedTuple):
+    """How far two branches are alike: bone length matched in all, and along the longest chain; that chain's joints."""
+
+    total: float
+    longest: float
+    chain: tuple[tuple[int, int], ...]
+
+
+_NO_MATCH = Match(0.0, 0.0, ())
 
 
 class Triple(NamedTuple):
@@ -93,21 +107,22 @@ class Tree:
         self.places = zero_pose(skeleton)
         self.reach = self._reaches()
         self.height = self._height()
-        self._matches: dict[tuple[int, int], tuple[float, float, list[tuple[int, int]]]] = {}
+        self._matches: dict[tuple[int, int], Match] = {}
 
-    def below(self, joint: int) -> set[int]:
+    def below(self, joint: int) -> frozenset[int]:
         """Return a joint and all its descendants."""
-        joints = {joint}
-        for j in range(joint + 1, len(self.skeleton)):
-            if int(self.skeleton.parents[j]) in joints:
-                joints.add(j)
-        return joints
+        found, waiting = [joint], [joint]
+        while waiting:
+            children = self.skeleton.children[waiting.pop()]
+            found += children
+            waiting += children
+        return frozenset(found)
 
     def branches(self, joint: int) -> int:
         """Return how many bones leave a joint: its children, and its end sites together as one."""
         return len(self.skeleton.children[joint]) + (joint in self._ends)
 
-    def is_bent(self, chain: list[tuple[int, int]], place: int) -> bool:
+    def is_bent(self, chain: Sequence[tuple[int, int]], place: int) -> bool:
         """Tell whether a pair of chains bends at one of its joints in the zero pose, on both sides."""
         if place + 1 == len(chain):
             return False
@@ -135,37 +150,38 @@ class Tree:
             ]
         )
 
-    def match(self, a: int, b: int) -> tuple[float, float, list[tuple[int, int]]]:
-        """Return how far two branches are alike: length matched in all, along the longest chain, that chain.
+    def match(self, a: int, b: int, *, level: int = 1) -> Match:
+        """Return how far two branches are alike, nothing where their first bones already differ.
 
-        Nothing (0, 0, []) where the first bones already differ. What only one side has, such as a club in one
-        hand, is left out.
+        What only one side has, such as a club in one hand, is left out.
         """
         if (a, b) not in self._matches:
-            self._matches[a, b] = self._match(a, b)
+            self._matches[a, b] = self._match(a, b, level)
         return self._matches[a, b]
 
-    def _match(self, a: int, b: int) -> tuple[float, float, list[tuple[int, int]]]:
-        la, lb = self.lengths[a], self.lengths[b]
+    def _match(self, a: int, b: int, level: int) -> Match:
+        la, lb = float(self.lengths[a]), float(self.lengths[b])
         if abs(la - lb) > _LENGTH_TOLERANCE * max(la, lb) + _LENGTH_FLOOR * self.height:
-            return 0.0, 0.0, []
-        names, children = self.skeleton.names, self.skeleton.children
-        # Names settle which toe is which, nothing else.
-        options = sorted(
-            ((side_of_names(names[c], names[d]) != 0, *self.match(c, d), c, d)
-             for c in children[a] for d in children[b]),
-            key=lambda option: (-option[0], -option[1], option[4], option[5]),
-        )  # fmt: skip
-        total = length = 0.5 * float(la + lb)
-        best, chain = 0.0, [(a, b)]
+            return _NO_MATCH
+        total, longest = 0.0, 0.0
+        chain: tuple[tuple[int, int], ...] = ((a, b),)
         used: set[int] = set()
-        for _, matched, along, way, c, d in options:
-            if way and c not in used and d not in used:
+        for c, d, below in self._options(a, b, level):
+            if below.chain and c not in used and d not in used:
                 used |= {c, d}
-                total += matched
-                if along > best or len(chain) == 1:
-                    best, chain = along, [(a, b), *way]
-        return total, length + best, chain
+                total += below.total
+                if below.longest > longest or len(chain) == 1:
+                    longest, chain = below.longest, ((a, b), *below.chain)
+        mean = 0.5 * (la + lb)
+        return Match(mean + total, mean + longest, chain)
+
+    def _options(self, a: int, b: int, level: int) -> list[tuple[int, int, Match]]:
+        """Return the pairs of children of two joints, the likeliest first; names settle which toe is which."""
+        if level == _LONGEST_CHAIN:
+            return []
+        names, children = self.skeleton.names, self.skeleton.children
+        options = [(c, d, self.match(c, d, level=level + 1)) for c in children[a] for d in children[b]]
+        return sorted(options, key=lambda o: (side_of_names(names[o[0]], names[o[1]]) == 0, -o[2].total, o[0], o[1]))
 
     def _reaches(self) -> FloatArray:
         """Return the length of the longest way from each joint down to an end, shape (J,)."""
@@ -187,7 +203,7 @@ class Tree:
 
 
 def _limb_pair(tree: Tree, base: int, first: tuple[int, int]) -> LimbPair | None:
-    _, _, chain = tree.match(*first)
+    chain = tree.match(*first).chain
     if len(chain) < 3:
         return None
     chains = (tuple(a for a, _ in chain), tuple(b for _, b in chain))

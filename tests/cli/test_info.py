@@ -313,3 +313,12 @@ def test_names_in_yaml_are_read_back_as_they_are(name):
 def test_names_with_blanks_at_their_ends_are_shown_in_quotes():
     assert shown_name("Hips ") == '"Hips "'
     assert shown_name("left foot") == "left foot"
+
+
+@pytest.mark.parametrize(
+    ("length", "told"), [(4.0, "unclear; the nearest is cmu, with a leg of 0.226 m"), (0.0, "unknown")]
+)
+def test_a_unit_that_is_no_humans_is_told_as_unclear(run, write, length, told):
+    chain = Skeleton(("a", "b"), np.array([-1, 0]), np.array([[0.0, 0, 0], [0, 2 * length, 0]]), (ROOT, ROOT[3:]))
+    text = run("info", write("chain.bvh", motion_from_channels(chain, np.zeros((2, 9)), frame_time=0.04))).stdout
+    assert fact(text, "unit") == told

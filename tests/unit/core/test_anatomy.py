@@ -1,3 +1,5 @@
+import time
+
 import numpy as np
 import pytest
 from human import BONES, CHANNELS, ENDS, SHANK, THIGH, above, skeleton_of, split, standing
@@ -253,3 +255,56 @@ def test_bones_a_tenth_longer_or_shorter_on_either_side_change_nothing(factors):
     ]
     skeleton = skeleton_of(bones)
     assert_human(skeleton, find_anatomy(skeleton))
+
+
+@st.composite
+def trees(draw):
+    count = draw(st.integers(1, 25))
+    parents = [-1] + [draw(st.integers(0, j - 1)) for j in range(1, count)]
+    lengths = st.sampled_from([0.0, 1e-6, 0.5, 1.0, 1.1, 1e6])
+    offsets = np.array([[draw(lengths), draw(lengths), draw(lengths)] for _ in range(count)])
+    names = [draw(st.sampled_from(["a", "LeftLeg", "RightLeg", "hand.L", "hand.R", ""])) for _ in range(count)]
+    return Skeleton(tuple(names), np.array(parents), offsets, (CHANNELS,) * count)
+
+
+@given(trees())
+def test_no_tree_is_an_error(skeleton):
+    anatomy = find_anatomy(skeleton)
+    assert anatomy.leg_length >= 0.0
+    assert anatomy.height >= anatomy.leg_length
+    assert (anatomy.legs is None) == any("no legs" in line for line in anatomy.warnings)
+
+
+@pytest.mark.parametrize("links", [600, 2000])
+def test_two_long_ropes_side_by_side_are_looked_at_in_no_time(links):
+    parents = [-1, 0, 0, *range(1, 2 * links - 1)]
+    offsets = np.tile([[0.0, 1.0, 0.0]], (2 * links + 1, 1))
+    names = tuple(f"link{j}" for j in range(2 * links + 1))
+    skeleton = Skeleton(names, np.array(parents), offsets, ((),) * len(names))
+    start = time.perf_counter()
+    find_anatomy(skeleton)
+    assert time.perf_counter() - start < 2.0
+
+
+def test_a_body_without_a_head_has_none():
+    skeleton = skeleton_of([row for row in BONES if row[0] not in ("Neck", "Head")])
+    anatomy = find_anatomy(skeleton)
+    assert anatomy.head is None
+    assert legs_of(skeleton, anatomy) == LEGS
+    assert arms_of(skeleton, anatomy) == ARMS
+
+
+def test_legs_alone_have_for_a_head_the_end_of_what_stands_on_them():
+    skeleton = skeleton_of(
+        [row for row in BONES if "Shoulder" not in row[0] and "Arm" not in row[0] and "Hand" not in row[0]]
+    )
+    anatomy = find_anatomy(skeleton)
+    assert anatomy.arms is None
+    assert legs_of(skeleton, anatomy) == LEGS
+    assert skeleton.names[anatomy.head] == "Head"
+
+
+def test_a_toe_on_one_side_only_is_none_of_the_anatomy_of_the_other():
+    skeleton = skeleton_of([row for row in BONES if row[0] != "RightToeBase"])
+    legs = find_anatomy(skeleton).legs
+    assert (legs[0].toe, legs[1].toe) == (skeleton.names.index("LeftToeBase"), None)

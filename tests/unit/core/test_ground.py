@@ -181,3 +181,11 @@ def test_up_leaves_the_rest_pose_out():
     # A T-pose upright, then a take of one frame in a file whose body lies along z.
     motion = with_rotation(standing(skeleton_of(), frames=2), "Hips", slice(1, None), [np.pi / 2, 0.0, 0.0])
     assert axis_name(find_up(motion, forward(motion), find_anatomy(motion.skeleton))) == "z"
+
+
+def test_where_a_lean_makes_no_axis_clear_the_offsets_have_a_say():
+    lean = np.radians(47.0)
+    motion = with_rotation(standing(skeleton_of()), "Hips", slice(None), [lean, 0.0, 0.0])
+    assert axis_name(find_up(motion, forward(motion), find_anatomy(motion.skeleton))) == "y"
+    fallen = with_rotation(standing(skeleton_of()), "Hips", slice(None), [np.radians(60.0), 0.0, 0.0])
+    assert axis_name(find_up(fallen, forward(fallen), find_anatomy(fallen.skeleton))) == "z"
