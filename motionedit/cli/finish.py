@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections import Counter
 from typing import TYPE_CHECKING, Any
@@ -39,7 +40,7 @@ def finish_batch(result: BatchResult, options: RunOptions, *, command: str, spec
         write_stdout(result.content)
     elif not on_stdout:
         for path in result.paths:
-            click.echo(path)
+            click.echo(os.fsencode(path))  # as bytes: a name need not be text
     if options.report is not None:
         report = report_bytes(command, result.records, spec=spec)
         write_report(report, options.report, dry_run=options.dry_run)

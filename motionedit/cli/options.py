@@ -36,7 +36,14 @@ def not_negative(ctx: click.Context, parameter: click.Parameter, value: float | 
     return value
 
 
-clips_argument = click.argument("clips", nargs=-1, required=True, metavar="CLIPS...", type=click.Path(path_type=Path))
+def not_empty(ctx: click.Context, parameter: click.Parameter, value: Any) -> Any:  # noqa: ANN401  one or several
+    """Refuse an empty name, which a shell makes of an unset variable, and which would mean the working folder."""
+    if "" in (value if isinstance(value, tuple) else (value,)):
+        raise click.BadParameter("an empty name", ctx=ctx, param=parameter)
+    return tuple(map(Path, value)) if isinstance(value, tuple) else value
+
+
+clips_argument = click.argument("clips", nargs=-1, required=True, metavar="CLIPS...", callback=not_empty)
 model_option = click.option(
     "-m",
     "--model",
@@ -123,7 +130,7 @@ def spec_option(*, required: bool = True) -> Decorator:
 
 def output_option(metavar: str, text: str) -> Decorator:
     """Return the option -o; its value is the text as typed, since ``-`` is no path."""
-    return click.option("-o", "--output", required=True, metavar=metavar, help=text)
+    return click.option("-o", "--output", required=True, metavar=metavar, callback=not_empty, help=text)
 
 
 def run_options(*, keep_going: bool) -> Decorator:

@@ -105,6 +105,9 @@ def main(ctx: click.Context) -> None:
     """Edit BVH motion clips in batches: constraints in YAML in, edited clips out.
 
     'motionedit COMMAND --help' tells what a command takes.
+
+    Exit codes: 0 done; 1 a clip failed, others were written; 2 a wrong command line or spec, nothing was started;
+    3 a goal out of tolerance with --strict, or another motion in diff; 130 interrupted.
     """
     if ctx.invoked_subcommand is None:
         click.echo(ctx.get_help(), err=True)

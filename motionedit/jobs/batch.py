@@ -138,13 +138,13 @@ def run_batch(tasks: Sequence[ClipTask], work: Work, options: RunOptions) -> Bat
         if not options.dry_run:
             clean_leftovers(folders)
         items = [_absolute(task) for task in waiting] if options.scheduler else waiting
-        results = results_in_order(run_one, items, options=options)
+        results = results_in_order(
+            run_one, items, options=options, is_last=lambda one: not options.keep_going and _has_failed(one)
+        )
         with closing(results), options.progress(len(waiting)) as advance:
             for result in results:
                 done.append(result if isinstance(result, _Done) else _Done(errors=(result,)))
                 advance()
-                if done[-1].errors and not options.keep_going:
-                    break
     finally:
         # Workers that were ended in the middle of a file could not clean up themselves.
         if not options.dry_run:
@@ -281,6 +281,10 @@ def _verify(clip: Clip, content: bytes, motion: Motion) -> dict[str, Any]:
             file=clip.label,
         )
     return {"distance": result.distance, "frames_skipped": result.skipped}
+
+
+def _has_failed(result: _Done | MotionEditError) -> bool:
+    return not isinstance(result, _Done) or bool(result.errors)
 
 
 def _absolute(task: ClipTask) -> ClipTask:

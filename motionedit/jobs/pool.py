@@ -32,19 +32,34 @@ class WorkerDiedError(MotionEditError):
 
 
 def results_in_order(
-    function: Callable[[Item], Result], items: Sequence[Item], *, options: RunOptions
+    function: Callable[[Item], Result],
+    items: Sequence[Item],
+    *,
+    options: RunOptions,
+    is_last: Callable[[Result | WorkerDiedError], bool] = lambda _: False,
 ) -> Generator[Result | WorkerDiedError]:
-    """Yield function(item) for each item; closing the iterator early leaves out what has not begun.
+    """Yield function(item) for each item, in order.
 
-    Several processes or a cluster need a `function`, items and results that can be pickled. An item whose worker
-    dies gives a WorkerDiedError as its value; an exception of the function is raised here.
+    Several processes or a cluster need a `function`, items and results that can be pickled. After a result that
+    `is_last` no item is begun; those that others had begun by then still come. An item whose worker dies gives a
+    WorkerDiedError as its value; an exception of the function is raised here.
     """
     workers = min(options.jobs or _cores(), len(items), _MOST_WORKERS)
     if options.scheduler is not None:
-        return _on_cluster(function, items, options.scheduler)
+        return _on_cluster(function, items, options.scheduler, is_last)
     if workers > 1:
-        return _in_processes(function, items, workers)
-    return (function(item) for item in items)
+        return _in_processes(function, items, workers, is_last)
+    return _one_by_one(function, items, is_last)
+
+
+def _one_by_one(
+    function: Callable[[Item], Result], items: Sequence[Item], is_last: Callable[[Result | WorkerDiedError], bool]
+) -> Generator[Result | WorkerDiedError]:
+    for item in items:
+        result = function(item)
+        yield result
+        if is_last(result):
+            return
 
 
 def _cores() -> int:
@@ -54,7 +69,10 @@ def _cores() -> int:
 
 
 def _in_processes(
-    function: Callable[[Item], Result], items: Sequence[Item], workers: int
+    function: Callable[[Item], Result],
+    items: Sequence[Item],
+    workers: int,
+    is_last: Callable[[Result | WorkerDiedError], bool],
 ) -> Generator[Result | WorkerDiedError]:
     # Forked workers start in a millisecond with every module loaded; only Linux forks safely.
     context = multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
@@ -62,12 +80,20 @@ def _in_processes(
     executor = ProcessPoolExecutor(workers, mp_context=context, initializer=_start_worker)
     try:
         futures = [executor.submit(function, item) for item in items]
-        for future in futures:
+        for n, future in enumerate(futures):
+            # Items are begun in their order, so those that never will be are the rest.
+            if future.cancelled():
+                break
             try:
-                yield future.result()
+                result: Result | WorkerDiedError = future.result()
             except BrokenProcessPool:
-                yield WorkerDiedError("its worker process was killed, perhaps for want of memory; try fewer --jobs")
-    except KeyboardInterrupt:
+                result = WorkerDiedError("its worker process was killed, perhaps for want of memory; try fewer --jobs")
+            yield result
+            if is_last(result):
+                for waiting in futures[n + 1 :]:
+                    waiting.cancel()
+    except BaseException:
+        # Ctrl-C, an error, or nobody who listens any more: what is not done is not wanted.
         for process in set(multiprocessing.active_children()) - others:
             process.terminate()
         raise
@@ -90,7 +116,10 @@ def _end_with_parent() -> None:
 
 
 def _on_cluster(
-    function: Callable[[Item], Result], items: Sequence[Item], address: str
+    function: Callable[[Item], Result],
+    items: Sequence[Item],
+    address: str,
+    is_last: Callable[[Result | WorkerDiedError], bool],
 ) -> Generator[Result | WorkerDiedError]:
     try:
         # By name: checked with and without the extra, since only one of the two has types.
@@ -104,6 +133,9 @@ def _on_cluster(
     with client:
         for future in client.map(function, items, pure=False):
             try:
-                yield future.result()
+                result: Result | WorkerDiedError = future.result()
             except dask.KilledWorker:
-                yield WorkerDiedError("its worker process was killed, perhaps for want of memory")
+                result = WorkerDiedError("its worker process was killed, perhaps for want of memory")
+            yield result
+            if is_last(result):
+                return

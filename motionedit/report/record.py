@@ -40,7 +40,9 @@ def report_bytes(
         "clips": clips,
         **(more or {}),
     }
-    return (json.dumps(plain(report), indent=2, ensure_ascii=False, allow_nan=False) + "\n").encode()
+    text = json.dumps(plain(report), indent=2, ensure_ascii=False, allow_nan=False)
+    # File names need not be text; JSON must be.
+    return f"{text}\n".encode(errors="replace")
 
 
 def plain(value: Any) -> Any:  # noqa: ANN401  any value that a report may hold

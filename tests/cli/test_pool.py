@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from functools import partial
 
 import pytest
 
@@ -26,6 +27,12 @@ def die_at_one(item):
     return item
 
 
+def mark(folder, item):
+    (folder / str(item)).touch()
+    time.sleep(0.02)
+    return item
+
+
 @pytest.mark.parametrize("jobs", [0, 1, 2, 3])
 def test_results_are_in_order_for_any_number_of_workers(jobs):
     found = list(results_in_order(slow_first, range(6), options=RunOptions(jobs=jobs)))
@@ -41,6 +48,19 @@ def test_a_worker_that_dies_is_a_value_and_no_traceback():
     found = list(results_in_order(die_at_one, [1, 1], options=RunOptions(jobs=2)))
     assert [type(value) for value in found] == [WorkerDiedError] * 2
     assert "worker process was killed" in str(found[0])
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_after_the_last_result_that_is_wanted_nothing_is_begun_and_nothing_begun_is_lost(tmp_path, jobs):
+    found = list(
+        results_in_order(
+            partial(mark, tmp_path), range(40), options=RunOptions(jobs=jobs), is_last=lambda value: value == 1
+        )
+    )
+    assert found == list(range(len(found)))
+    assert sorted(int(path.name) for path in tmp_path.iterdir()) == found
+    assert len(found) < 40
+    assert jobs > 1 or len(found) == 2
 
 
 def test_closing_early_leaves_no_worker():
