@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import PurePosixPath
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -18,18 +18,28 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import FloatArray
     from motionedit.core.skeleton import Skeleton
-    from motionedit.errors import SpecError
+    from motionedit.errors import MotionEditError
     from motionedit.spec.document import Document
     from motionedit.spec.load import LoadedSpec
     from motionedit.spec.times import Interval, Time
     from motionedit.spec.values import EffectorSpec, OrientationSpec
 
 
+class Source(Protocol):
+    """What a place is in: a spec, or rules that a model has kept of one."""
+
+    def has(self, keys: Sequence[str | int]) -> bool:
+        """Return whether the key is given."""
+
+    def error(self, keys: Sequence[str | int], message: str) -> MotionEditError:
+        """Return an error at a key."""
+
+
 @dataclass(frozen=True)
 class Place:
     """A key of a spec, looked at for one clip: where an error is, and the clip's name in it."""
 
-    loaded: LoadedSpec[Document]
+    loaded: Source
     keys: tuple[str | int, ...]
     clip: str
 
@@ -38,7 +48,7 @@ class Place:
         below = (*self.keys, *keys)
         return Place(self.loaded, below if self.loaded.has(below) else self.keys, self.clip)
 
-    def error(self, message: str) -> SpecError:
+    def error(self, message: str) -> MotionEditError:
         """Return an error at this place."""
         return self.loaded.error(self.keys, message)
 
@@ -122,7 +132,49 @@ def frame_range(
         raise place.error(f"in {place.clip}: {error}") from None
 
 
-def explicit_events(loaded: LoadedSpec[Any], relative: str, *, others: Collection[str] = ()) -> dict[str, int]:
+def recruit_place(constraint: Place) -> Place:
+    """Return the place of a constraint's recruiting, which may be the spec's defaults."""
+    for keys in ((*constraint.keys, "recruit"), ("defaults", "recruit")):
+        if constraint.loaded.has(keys):
+            return Place(constraint.loaded, keys, constraint.clip)
+    return constraint
+
+
+def recruited_joints(
+    names: Sequence[str], skeleton: Skeleton, place: Place, *, travel: int = 0
+) -> tuple[tuple[int, ...], bool]:
+    """Return the indices of a list of recruited joints, and whether it names the root's translation.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Joints; ``ROOT.position``, or the name of the root (or of the joint `travel`, which carries the travel)
+        with ``.position``, is the translation.
+    place : Place
+        That of the list.
+
+    Raises
+    ------
+    SpecError
+        Where the clip lacks a joint, or another joint's translation is named.
+    """
+    found: list[int] = []
+    translation = False
+    for i, name in enumerate(names):
+        base, dot, ending = name.rpartition(".")
+        if not (dot and ending == "position") or name in skeleton.names:
+            found.append(joint(name, skeleton, place.at(i)))
+        elif base == "ROOT" or joint(base, skeleton, place.at(i)) in (0, travel):
+            translation = True
+        else:
+            root = skeleton.names[0]
+            raise place.at(i).error(f"only the root has a position to recruit: {root}.position, not {name}")
+    return tuple(found), translation
+
+
+def explicit_events(
+    loaded: LoadedSpec[Document], relative: str, *, others: Collection[str] = (), frames: int | None = None
+) -> dict[str, int]:
     """Return the frames that the spec itself gives for a clip's events.
 
     Parameters
@@ -131,43 +183,63 @@ def explicit_events(loaded: LoadedSpec[Any], relative: str, *, others: Collectio
         The clip's path below the given folder, or its name.
     others : collection of str
         The same of all clips of the run, so that a stem that two of them share is refused.
+    frames : int, optional
+        Number of frames of the clip, to refuse an event outside it.
 
     Raises
     ------
     SpecError
-        Where a stem is meant that is not unique.
+        Where a stem is not unique, or a frame is outside the clip.
     """
     found: dict[str, int] = {}
     for name, event in loaded.model.events.items():
         if event.frames is None:
             continue
-        if event.frames.every is not None:
-            found[name] = event.frames.every
-            continue
-        key = _clip_key(event.frames.by_clip, relative)
-        if key is None:
-            continue
-        twins = [other for other in others if _stem(other) == key and other != relative]
-        if twins and key == _stem(relative) and key != _without_suffix(relative):
-            raise loaded.error(
-                ("events", name, "frames", key),
-                f"'{key}' may be {relative} or {twins[0]}; give the clip's path",
-            )
-        found[name] = event.frames.by_clip[key]
+        keys: tuple[str, ...] = ("events", name, "frames")
+        value = event.frames.every
+        if value is None:
+            place = Place(loaded, keys, relative)
+            key = _clip_key(event.frames.by_clip, relative, others, place)
+            if key is None:
+                continue
+            value, keys = event.frames.by_clip[key], (*keys, key)
+        if frames is not None and value >= frames:
+            place = Place(loaded, ("events", name), relative).at(*keys[2:])
+            raise place.error(f"frame {value} is outside {relative}, whose frames are 0 to {frames - 1}")
+        found[name] = value
     return found
 
 
-def _clip_key(by_clip: Mapping[str, int], relative: str) -> str | None:
-    """Return the key that means a clip: its path, its path without .bvh, its name, or its stem."""
-    path = PurePosixPath(relative.replace("\\", "/"))
-    wanted = (str(path), _without_suffix(str(path)), path.name, _stem(str(path)))
-    plain = {str(PurePosixPath(key.replace("\\", "/"))): key for key in by_clip}
-    return next((plain[key] for key in wanted if key in plain), None)
+def _clip_key(by_clip: Mapping[str, int], relative: str, others: Collection[str], place: Place) -> str | None:
+    """Return the key that means a clip: its path or its name, each with or without .bvh."""
+    path = _posix(relative)
+    keys = {_posix(key): key for key in by_clip}
+    for whole_path in (path, _without_suffix(path)):
+        if whole_path in keys:
+            return keys[whole_path]
+    for name in _names(path):
+        if name not in keys:
+            continue
+        paths = [_posix(other) for other in others if _posix(other) != path]
+        if any(name in (other, _without_suffix(other)) for other in paths):
+            # It is the whole path of another clip.
+            return None
+        twins = [other for other in paths if name in _names(other)]
+        if twins:
+            message = f"'{keys[name]}' may be {path} or {twins[0]}; give the clip's path"
+            raise place.at(keys[name]).error(message)
+        return keys[name]
+    return None
 
 
-def _without_suffix(relative: str) -> str:
-    return relative[:-4] if relative.casefold().endswith(".bvh") else relative
+def _names(path: str) -> tuple[str, str]:
+    name = PurePosixPath(path).name
+    return name, _without_suffix(name)
 
 
-def _stem(relative: str) -> str:
-    return _without_suffix(PurePosixPath(relative).name)
+def _posix(path: str) -> str:
+    return str(PurePosixPath(path.replace("\\", "/")))
+
+
+def _without_suffix(path: str) -> str:
+    return path[:-4] if path.casefold().endswith(".bvh") else path

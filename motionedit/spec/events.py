@@ -9,10 +9,9 @@ from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
 from motionedit.spec import kinds, scalars
-from motionedit.spec.event_table import read_event_table
 from motionedit.spec.faults import Fault, FaultyValueError, faulty, show
 from motionedit.spec.model import Context, Kind, SpecModel, not_both, one_needed
-from motionedit.spec.times import Interval, parse_interval
+from motionedit.spec.times import Interval, parse_event_name, parse_interval, unknown_event
 from motionedit.spec.values import EffectorSpec
 
 FRAMES_WORDS = "a frame for all clips, a CSV file with the columns clip,frame, or {CLIP: FRAME, ...}"
@@ -35,6 +34,9 @@ def _event_frames(value: object, context: Context) -> EventFrames:
         file = Path(value)
         if context.folder is None:
             return EventFrames(file=file)
+        # Imported here: most specs name no file.
+        from motionedit.spec.event_table import read_event_table
+
         table = read_event_table(context.folder / file, label=_label(context, value))
         return EventFrames(by_clip=table, file=context.folder / file)
     if isinstance(value, dict):
@@ -74,8 +76,6 @@ FRAMES = Kind(
 
 
 def _event_in(value: object, context: Context) -> str:
-    from motionedit.spec.times import parse_event_name, unknown_event
-
     name = parse_event_name(value)
     if context.events is not None and name not in context.events:
         raise faulty(unknown_event(name, tuple(sorted(context.events))))
