@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -110,7 +111,7 @@ class Skeleton:
         place[order] = np.arange(len(order))
         parents = np.where(order > 0, place[self.parents[order]], 0)
         bounds = np.cumsum([len(level) for level in self.levels]).tolist()
-        return LevelOrder(frozen(order), frozen(parents), tuple(zip(bounds[:-1], bounds[1:], strict=True)))
+        return LevelOrder(frozen(order), frozen(parents), tuple(pairwise(bounds)))
 
     @cached_property
     def children(self) -> tuple[tuple[int, ...], ...]:

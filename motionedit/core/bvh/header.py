@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NoReturn
 import numpy as np
 
 from motionedit.core.arrays import frozen
-from motionedit.core.bvh.scan import number, quoted, refusal, text_of
+from motionedit.core.bvh.scan import WORD_LENGTH, number, quoted, refusal, text_of
 from motionedit.core.skeleton import EndSite, Skeleton
 
 if TYPE_CHECKING:
@@ -20,8 +20,10 @@ MAX_JOINTS = 10_000
 
 _CHANNELS = {f"{axis}{kind}".lower().encode(): f"{axis}{kind}" for axis in "XYZ" for kind in ("position", "rotation")}
 _KEYWORDS = frozenset((b"root", b"joint", b"end", b"offset", b"channels", b"motion", b"hierarchy"))
-_WORD = re.compile(rb"[{}]|[^\s{}]+")
-_REST_OF_LINE = re.compile(rb"[^\r\n{}]*")
+# Possessive, so that a file of blanks is walked once; the length is bounded, so that a word without end is cut.
+_WORD = re.compile(rb"\s*+([{}]|[^\s{}]{1,%d}+)" % (WORD_LENGTH + 1))
+_REST_OF_LINE = re.compile(rb"[^\r\n{}]*+")
+_LINE_BREAK = re.compile(rb"[\r\n]")
 _FRAMES = re.compile(rb"\s*(Frames[ \t]*:)[ \t]*([^\r\n]*)", re.IGNORECASE)
 _FRAME_TIME = re.compile(rb"\s*(Frame[ \t]*Time[ \t]*:)[ \t]*([^\r\n]*)", re.IGNORECASE)
 _COUNT = re.compile(rb"[0-9]{1,15}")
@@ -78,18 +80,26 @@ class _Parser:
 
     def word(self) -> tuple[bytes, int]:
         """Return the next word or brace and its place, and move past it; b"" at the end of the file."""
-        match = _WORD.search(self.data, self.at)
+        match = _WORD.match(self.data, self.at)
         if match is None:
             return b"", len(self.data.rstrip())
+        word, at = match.group(1), match.start(1)
+        self._refuse_endless(word, at)
         self.at = match.end()
-        return match.group(), match.start()
+        return word, at
+
+    def _refuse_endless(self, word: bytes, at: int) -> None:
+        if len(word) > WORD_LENGTH:
+            self.refuse(f"{quoted(word)} is longer than {WORD_LENGTH} characters", at)
 
     def rest_of_line(self) -> bytes:
         """Return what stands up to a brace or the line's end, stripped, and move past it."""
         match = _REST_OF_LINE.match(self.data, self.at)
         assert match is not None  # noqa: S101 (the pattern matches the empty string)
+        rest = match.group().strip()
+        self._refuse_endless(rest, self.at)
         self.at = match.end()
-        return match.group().strip()
+        return rest
 
     def hierarchy(self) -> Skeleton:
         self._first_word()
@@ -140,7 +150,7 @@ class _Parser:
         parent = opened[-1].index if opened else -1
         if word.lower() == b"end":
             if rest[:4].lower() != b"site" or rest[4:5].strip():
-                self.refuse(f"expected End Site, found {quoted(word + b' ' + rest)}", at)
+                self.refuse(f"expected End Site, found {quoted((word + b' ' + rest).strip())}", at)
             block = _Joint(None, -1, parent)
         else:
             if not rest:
@@ -162,9 +172,9 @@ class _Parser:
     def _offset(self, block: _Joint, at: int) -> None:
         if block.offset is not None:
             self.refuse(f"a second OFFSET in {block.shown}", at)
-        words = self._words_of_statement(3)
+        words = self._words_of_statement(3, most=4)
         if len(words) != 3:
-            self.refuse(f"OFFSET of {block.shown} has {_count(words, 3)} values, it needs 3", at)
+            self.refuse(f"OFFSET of {block.shown} has {_count(words)} values, it needs 3", at)
         values = [number(word) for word, _ in words]
         for (word, place), value in zip(words, values, strict=True):
             if value is None:
@@ -178,12 +188,15 @@ class _Parser:
             self.refuse(f"a second CHANNELS in {block.shown}", at)
         if block.has_child:
             self.refuse(f"CHANNELS of {block.shown} stands after a child; it must stand before", at)
-        words = self._words_of_statement(8)
-        counted = words[0][0] if words else b""
+        counts = self._words_of_statement(1, most=1)
+        if not counts:
+            self.refuse(f"CHANNELS of {block.shown} has no count", at)
+        counted, place = counts[0]
         if not _COUNT.fullmatch(counted) or int(counted) > 6:
-            self.refuse(f"CHANNELS of {block.shown}: {_shown(counted)} is not a count from 0 to 6", at)
+            self.refuse(f"CHANNELS of {block.shown}: {quoted(counted)} is not a count from 0 to 6", place)
+        words = self._words_of_statement(int(counted), most=7)
         names = []
-        for word, place in words[1:]:
+        for word, place in words:
             name = _CHANNELS.get(word.lower())
             if name is None:
                 self.refuse(f"{block.shown}: unknown channel {quoted(word)}", place)
@@ -194,13 +207,17 @@ class _Parser:
             self.refuse(f"{block.shown} says {int(counted)} channels and names {len(names)}", at)
         block.channels = tuple(names)
 
-    def _words_of_statement(self, most: int) -> list[tuple[bytes, int]]:
-        """Return the words up to the next keyword or brace, one more than `most` at most."""
+    def _words_of_statement(self, needed: int, *, most: int) -> list[tuple[bytes, int]]:
+        """Return the words up to a keyword, a brace, or, once there are enough, the line's end."""
         words: list[tuple[bytes, int]] = []
-        while len(words) <= most:
+        while len(words) < most:
             before = self.at
             word, at = self.word()
+            another_line = _LINE_BREAK.search(self.data, before, at) is not None
             if not word or word in (b"{", b"}") or word.lower() in _KEYWORDS:
+                self.at = before
+                break
+            if len(words) >= needed and another_line:
                 self.at = before
                 break
             words.append((word, at))
@@ -246,12 +263,16 @@ class _Parser:
     def motion_lines(self, skeleton: Skeleton) -> Header:
         """Return the header, from the `Frames:` and `Frame Time:` lines after MOTION."""
         counted, frames_at = self._value_of(_FRAMES, "Frames:")
+        if not counted:
+            self.refuse("Frames: has no count", frames_at)
         if not _COUNT.fullmatch(counted):
-            self.refuse(f"Frames: {_shown(counted)} is not a count of frames", frames_at)
+            self.refuse(f"Frames: {quoted(counted)} is not a count of frames", frames_at)
         timed, time_at = self._value_of(_FRAME_TIME, "Frame Time:")
+        if not timed:
+            self.refuse("Frame Time: has no number", time_at)
         frame_time = number(timed)
         if frame_time is None:
-            self.refuse(f"Frame Time: {_shown(timed)} is not a number", time_at)
+            self.refuse(f"Frame Time: {quoted(timed)} is not a number", time_at)
         if frame_time <= 0.0:
             self.refuse(f"Frame Time: {text_of(timed)} is not positive", time_at)
         return Header(
@@ -276,5 +297,5 @@ def _shown(word: bytes) -> str:
     return quoted(word) if word else "nothing"
 
 
-def _count(words: list[tuple[bytes, int]], most: int) -> str:
-    return str(len(words)) if len(words) <= most else f"more than {most}"
+def _count(words: list[tuple[bytes, int]]) -> str:
+    return str(len(words)) if len(words) < 4 else "more than 3"

@@ -102,7 +102,7 @@ def parse_clip(data: bytes, *, label: str, lenient: bool = False) -> Clip:
 def _row_count_warnings(data: bytes, header: Header, rows: Rows, *, label: str, lenient: bool) -> tuple[str, ...]:
     """Return the warnings for what --lenient accepts; refuse the rest."""
     place = header.frames_span[0]
-    found = len(rows.starts)
+    found = len(rows.starts) + rows.surplus
     if found == 0 and (header.frames == 0 or lenient):
         raise refusal(data, "the file has no frames", label=label, at=place)
     warnings = []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
 
 # A block and its arrays stay in the processor's cache.
 BLOCK_BYTES = 1 << 17
+_CUT_NUMBER = re.compile(rb"[+-]?[0-9]*\.?[0-9]*(?:[eE][+-]?)?[0-9]*")
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +34,8 @@ class Rows:
         The largest number of decimals among the values.
     cut_off : int or None
         The byte where a last row begins that was cut short and left out (lenient only).
+    surplus : int
+        Rows after more than the expected ones, which were only counted: the file will be refused.
     """
 
     values: FloatArray
@@ -39,6 +43,7 @@ class Rows:
     stops: IntArray
     decimals: int
     cut_off: int | None
+    surplus: int
 
 
 @dataclass(frozen=True)
@@ -71,25 +76,22 @@ def read_rows(data: bytes, start: int, *, columns: int, expected: int, label: st
     if not lenient:
         capacity = min(capacity, expected + 1)
     values = np.empty((capacity, columns))
-    surplus = np.empty((0, columns))
     starts, stops = [np.zeros(0, np.intp)], [np.zeros(0, np.intp)]
-    count = decimals = 0
+    count = surplus = decimals = 0
     cut_off = None
     for begin, end in line_blocks(data, start, size=BLOCK_BYTES):
+        if not lenient and count > expected:
+            surplus += _rows_within(data, begin, end)
+            continue
         words = _words(data, begin, end, columns, label, frame=count)
         room = len(words[0]) // columns + 1
-        if count + room <= capacity:
-            out = values[count : count + room]
-        else:
-            # More rows than declared: they are only counted, for the message.
-            surplus = surplus if len(surplus) >= room else np.empty((room, columns))
-            out = surplus
+        if count + room > len(values):
+            # More rows than declared come in a strict reading: this block is read all the same, the next are counted.
+            values = np.concatenate((values[:count], np.empty((room, columns))))
+        out = values[count : count + room]
         block = _read_block(data, begin, end, words, out, label, frame=count, lenient=lenient)
         starts.append(block.starts)
         stops.append(block.stops)
-        if out is surplus and count < capacity:
-            fits = min(capacity - count, len(block.starts))
-            values[count : count + fits] = surplus[:fits]
         count += len(block.starts)
         decimals = max(decimals, block.decimals)
         cut_off = block.cut_off
@@ -99,7 +101,15 @@ def read_rows(data: bytes, start: int, *, columns: int, expected: int, label: st
         frozen(np.concatenate(stops)),
         decimals,
         cut_off,
+        surplus,
     )
+
+
+def _rows_within(data: bytes, begin: int, end: int) -> int:
+    """Return how many lines of a block are not blank."""
+    chars = np.frombuffer(data, np.uint8, count=end - begin, offset=begin)
+    lines = np.concatenate(([0], line_breaks(chars[:-1]) + 1))
+    return int(np.count_nonzero(np.logical_or.reduceat(chars > ord(" "), lines)))
 
 
 def _words(data: bytes, begin: int, end: int, columns: int, label: str, *, frame: int) -> tuple[IntArray, IntArray]:
@@ -149,7 +159,8 @@ def _read_block(
         first, found = rows * columns, int(counts[rows])
         at_end = rows == len(counts) - 1 and not data[int(stops[-1]) :].strip()
         # A file that was cut short may end inside a number.
-        if faulty >= first + found - at_end:
+        may_be_cut = at_end and _CUT_NUMBER.fullmatch(data, int(starts[-1]), int(stops[-1]))
+        if faulty >= len(starts) - bool(may_be_cut) or faulty >= first + found:
             if not (lenient and at_end and found < columns):
                 message = _wrong_count(frame + rows, found, columns)
                 raise refusal(data, message, label=label, at=int(starts[first]))
