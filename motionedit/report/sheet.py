@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from motionedit.errors import UsageError
+from motionedit.report.sheet_shapes import pose_shapes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from motionedit.report.preview.body import Body, Limb, Side
+    from motionedit.report.preview.body import Body
 
     FloatArray = NDArray[np.float64]
     IntArray = NDArray[np.intp]
@@ -28,6 +29,8 @@ _WIDTH = 12.0  # inches: 1200 pixels at 100 dots, the width of a README
 _DOTS = 100  # at which fonts are measured
 _PNG_DOTS = 150  # still sharp where a page is shown enlarged
 _FEWEST, _MOST = 8, 12  # columns
+_WIDEST = 11.0  # leg lengths in a row: a standing figure is then a fifth of the page high
+_LABEL_SHARE = 0.072  # of the row's width: what a frame's number and time take
 _TRAVEL = 2.0  # leg lengths on the ground: more is a walk, less is a stroke or a kick
 _BACKGROUND = "#ffffff"
 _QUIET, _GROUND = "#5c6670", "#c3cad2"
@@ -36,7 +39,6 @@ _GREY = "#9aa1a9"
 _HUES = ("#2a78bd", "#dc5f00", "#16936f", "#ad4f8d", "#a98000", "#5a5f66", "#6a51b5", "#a8323e")
 _TOGETHER = 1.0  # leg length between the middles of two bodies that are still laid over each other
 _LABEL_HEIGHT = 0.16  # of a row: the frame numbers under the ground
-_ROUND = np.linspace(0.5 * np.pi, 1.5 * np.pi, 9)
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +51,16 @@ class _View:
     def flat(self, points: FloatArray) -> FloatArray:
         """Return (right, up, towards the eye) of points, shape (..., 3)."""
         return np.stack((points @ self.right, points[..., 1], points @ self.back), axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class _Layout:
+    """Where the bodies' middles stand, (columns,), the sheet's width, and the lower and upper edge of a row."""
+
+    places: FloatArray
+    width: float
+    bottom: float
+    top: float
 
 
 def need_matplotlib() -> None:
@@ -82,17 +94,17 @@ def _figure(bodies: Sequence[Body]) -> Figure:
 
     rows = [list(bodies)] if _is_pair(bodies) else [[body] for body in bodies]
     view = _view(bodies[0])
-    columns, half_width, bottom, top = _layout(bodies, rows, view)
-    height = (top - bottom) * _WIDTH / (2.0 * half_width * columns)
+    layout = _layout(rows, view)
+    height = (layout.top - layout.bottom) * _WIDTH / layout.width
     figure = Figure(figsize=(_WIDTH, len(rows) * height), dpi=_DOTS, facecolor=_BACKGROUND)
     FigureCanvasAgg(figure)
     for r, row in enumerate(rows):
         axes = figure.add_axes((0.0, 1.0 - (r + 1) / len(rows), 1.0, 1.0 / len(rows)))
         axes.set_axis_off()
-        axes.set_xlim(-half_width, (2 * columns - 1) * half_width)
-        axes.set_ylim(bottom, top)
+        axes.set_xlim(0.0, layout.width)
+        axes.set_ylim(layout.bottom, layout.top)
         colors = [_GREY, _HUES[1]] if len(row) == 2 else [_HUES[r % len(_HUES)]]
-        _draw_row(axes, row, colors, view=view, columns=columns, cell=2.0 * half_width)
+        _draw_row(axes, row, colors, view=view, places=layout.places)
     return figure
 
 
@@ -151,23 +163,39 @@ def _main_axis(points: FloatArray) -> FloatArray:
     return axis
 
 
-def _layout(bodies: Sequence[Body], rows: list[list[Body]], view: _View) -> tuple[int, float, float, float]:
-    """Return the number of columns, half a cell's width, and the lower and upper edge of a row (lengths)."""
-    low, high, half = np.inf, -np.inf, 0.0
+def _layout(rows: list[list[Body]], view: _View) -> _Layout:
+    """Return as many columns as leave the figures a good size, each as wide as its widest pose."""
+    size = rows[0][0].size
+    for count in range(_MOST, _FEWEST - 1, -1):
+        layout = _columns(rows, view, count)
+        if layout.width <= _WIDEST * size:
+            break
+    return layout
+
+
+def _columns(rows: list[list[Body]], view: _View, count: int) -> _Layout:
+    size = rows[0][0].size
+    left, right = np.full(count, np.inf), np.full(count, -np.inf)
+    low, high = np.inf, -np.inf
     for row in rows:
+        frames = key_frames(row[0], count)
+        anchors = _anchors(row[0], frames, view)
         for body in row:
-            frames = key_frames(row[0], _MOST)
             flat = view.flat(body.positions[_frames_of(body, row[0], frames)])
-            flat[..., 0] -= _anchors(row[0], frames, view)[:, None]
-            half = max(half, float(np.abs(flat[..., 0]).max()))
+            x = flat[..., 0] - anchors[:, None]
+            left[: len(x)] = np.minimum(left[: len(x)], x.min(axis=1))
+            right[: len(x)] = np.maximum(right[: len(x)], x.max(axis=1))
             low = min(low, row[0].floor, float(flat[..., 1].min()))
             high = max(high, float(flat[..., 1].max()))
-    size = bodies[0].size
-    half += 0.12 * size
-    # As many columns as leave a figure a good part of its row's height.
-    columns = int(np.clip(12 * 0.45 * size / half, _FEWEST, _MOST))
+    # Columns past the end of short clips are as wide as a body, so that one frame does not fill the page.
+    left[np.isinf(left)], right[np.isinf(right)] = -0.4 * size, 0.4 * size
+    # A label under each middle, too.
+    half = 0.5 * _LABEL_SHARE * float((right - left).sum() + 0.3 * size * count)
+    left, right = np.minimum(left, -half), np.maximum(right, half)
+    widths = right - left + 0.3 * size
+    places = np.cumsum(widths) - right - 0.15 * size
     tall = high - low + 0.45 * size
-    return columns, half, low - _LABEL_HEIGHT * tall, high + 0.42 * size
+    return _Layout(places, float(widths.sum()), low - _LABEL_HEIGHT * tall, high + 0.42 * size)
 
 
 def _frames_of(body: Body, reference: Body, frames: IntArray) -> IntArray:
@@ -178,27 +206,26 @@ def _frames_of(body: Body, reference: Body, frames: IntArray) -> IntArray:
 
 
 def _anchors(body: Body, frames: IntArray, view: _View) -> FloatArray:
-    """Return what is subtracted from x so that each figure stands in the middle of its cell, shape (len(frames),)."""
-    x = view.flat(body.positions[frames])[..., 0]
-    middle: FloatArray = 0.5 * (x.min(axis=1) + x.max(axis=1))
+    """Return what is subtracted from x so that each pose stands about its place, shape (len(frames),)."""
+    middle: FloatArray = view.flat(body.positions[frames])[..., 0].mean(axis=1)
     return middle
 
 
-def _draw_row(axes: Axes, row: list[Body], colors: list[str], *, view: _View, columns: int, cell: float) -> None:
+def _draw_row(axes: Axes, row: list[Body], colors: list[str], *, view: _View, places: FloatArray) -> None:
     reference = row[0]
-    frames = key_frames(reference, columns)
+    frames = key_frames(reference, len(places))
     size = reference.size
     axes.axhline(reference.floor, color=_GROUND, linewidth=1.0, zorder=0)
     anchors = _anchors(reference, frames, view)
     for c, frame in enumerate(frames):
-        shift = c * cell - anchors[c]
+        shift = float(places[c] - anchors[c])
         for body, color in zip(row, colors, strict=True):
             own = _frames_of(body, reference, frames)
             _draw_trail(axes, body, color, view=view, until=int(own[c]), since=int(own[max(0, c - 1)]), shift=shift)
             _draw_body(axes, body, color, flat=view.flat(body.positions[own[c]]), shift=shift)
         text = f"{frame} · {frame * reference.frame_time:.2f} s"
         y = reference.floor - 0.12 * size
-        axes.text(c * cell, y, text, ha="center", va="top", fontsize=9, color=_QUIET, parse_math=False)
+        axes.text(places[c], y, text, ha="center", va="top", fontsize=9, color=_QUIET, parse_math=False)
     _draw_names(axes, row, colors)
 
 
@@ -229,69 +256,17 @@ def _draw_trail(axes: Axes, body: Body, color: str, *, view: _View, until: int, 
 
 
 def _draw_body(axes: Axes, body: Body, color: str, *, flat: FloatArray, shift: float) -> None:
-    """Draw one pose, its shapes from far to near."""
     from matplotlib.collections import PolyCollection
 
-    tones = {side: _tones(color, side) for side in ("left", "middle", "right")}
-    shapes: list[tuple[float, FloatArray, Side]] = []
-    for limb in body.limbs:
-        a, b = flat[limb.start], flat[limb.end]
-        shapes.append((float(a[2] + b[2]) / 2.0, _limb_outline(a[:2], b[:2], limb), limb.side))
-    for hull in body.hulls:
-        points = flat[list(hull.points)]
-        # Pushed back a little: an arm at the side lies before the chest.
-        depth = float(points[:, 2].mean()) - 0.03 * body.size
-        shapes.append((depth, _hull_outline(points[:, :2], np.array(hull.radii)), "middle"))
-    for ball in body.balls:
-        outline = _hull_outline(flat[[ball.point], :2], np.array([ball.radius]))
-        shapes.append((float(flat[ball.point, 2]), outline, "right" if ball.part == "nose" else "middle"))
-    shapes.sort(key=lambda shape: shape[0])
+    shapes = pose_shapes(body, flat, color)
     axes.add_collection(
         PolyCollection(
-            [outline + np.array([shift, 0.0]) for _, outline, _ in shapes],
-            facecolors=[tones[side][0] for _, _, side in shapes],
-            edgecolors=[tones[side][1] for _, _, side in shapes],
+            [shape.outline + np.array([shift, 0.0]) for shape in shapes],
+            facecolors=[shape.fill for shape in shapes],
+            edgecolors=[shape.edge for shape in shapes],
             linewidths=0.6,
             joinstyle="round",
             zorder=1,
         ),
         autolim=False,
     )
-
-
-def _limb_outline(a: FloatArray, b: FloatArray, limb: Limb) -> FloatArray:
-    """Return the outline of a tapered limb between two flat points, shape (N, 2)."""
-    axis = b - a
-    length = float(np.hypot(*axis))
-    if length <= abs(limb.radii[0] - limb.radii[1]):
-        bigger, radius = (a, limb.radii[0]) if limb.radii[0] > limb.radii[1] else (b, limb.radii[1])
-        return _hull_outline(bigger[None], np.array([radius]))
-    u, v = axis / length, np.array([-axis[1], axis[0]]) / length
-    arc = np.cos(_ROUND)[:, None] * u + np.sin(_ROUND)[:, None] * v
-    outline: FloatArray = np.concatenate((a + limb.radii[0] * arc, b - limb.radii[1] * arc))
-    return outline
-
-
-def _hull_outline(points: FloatArray, radii: FloatArray) -> FloatArray:
-    """Return the convex outline round circles, shape (N, 2)."""
-    angles = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
-    circle = np.stack((np.cos(angles), np.sin(angles)), axis=-1)
-    cloud = (points[:, None] + radii[:, None, None] * circle).reshape(-1, 2)
-    # The support point in each of many directions: all that shows of the hull at this size.
-    directions = np.linspace(0.0, 2.0 * np.pi, 72, endpoint=False)
-    normals = np.stack((np.cos(directions), np.sin(directions)))
-    outline: FloatArray = cloud[np.argmax(cloud @ normals, axis=0)]
-    return outline
-
-
-def _tones(color: str, side: Side) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Return fill and edge of a side: pale on the left, deep on the right."""
-    base = np.array([int(color[i : i + 2], 16) for i in (1, 3, 5)]) / 255.0
-    white, black = np.ones(3), np.array([0.03, 0.05, 0.07])
-    fill = {
-        "left": 0.32 * base + 0.68 * white,
-        "middle": 0.82 * base + 0.18 * white,
-        "right": 0.66 * base + 0.34 * black,
-    }
-    edge = {"left": base, "middle": 0.7 * base + 0.3 * black, "right": 0.4 * base + 0.6 * black}
-    return tuple(fill[side].tolist()), tuple(edge[side].tolist())

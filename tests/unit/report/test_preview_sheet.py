@@ -13,6 +13,7 @@ from motionedit.jobs.clip_facts import facts_of
 pytest.importorskip("matplotlib", reason="sheets need the extra motionedit[plot]")
 
 from motionedit.report.sheet import _view, key_frames, sheet
+from motionedit.report.sheet_shapes import pose_shapes
 
 
 def made(*, label="swing", **options):
@@ -78,3 +79,32 @@ def test_the_view_is_no_mirror():
     for body in (made(), made(step=30.0)):
         view = _view(body)
         np.testing.assert_allclose(np.cross(view.right, [0.0, 1.0, 0.0]), view.back, atol=1e-12)
+
+
+def test_the_left_side_is_paler_than_the_right():
+    body = made()
+    flat = body.positions[0]
+    light = {side: [] for side in ("left", "middle", "right")}
+    for limb in body.limbs:
+        alone = replace(body, limbs=(limb,), hulls=(), balls=())
+        light[limb.side] += [sum(shape.fill) for shape in pose_shapes(alone, flat, "#2a78bd")]
+    assert max(light["right"]) < min(light["middle"]) <= max(light["middle"]) < min(light["left"])
+
+
+def test_what_is_nearer_is_drawn_later():
+    body = made()
+    near = next(i for i, limb in enumerate(body.limbs) if limb.end == body.names.index("LeftForeArm"))
+    flat = body.positions[0].copy()
+    flat[[body.limbs[near].start, body.limbs[near].end], 2] += 500.0
+    last = pose_shapes(replace(body, hulls=(), balls=()), flat, "#2a78bd")[-1].outline
+    np.testing.assert_allclose(last.mean(axis=0)[0], flat[body.limbs[near].end, 0], atol=2.0)
+
+
+def test_a_limb_seen_from_its_end_is_a_disc():
+    body = made()
+    limb = body.limbs[0]
+    flat = body.positions[0].copy()
+    flat[limb.end, :2] = flat[limb.start, :2]
+    (shape,) = pose_shapes(replace(body, limbs=(limb,), hulls=(), balls=()), flat, "#2a78bd")
+    radii = np.linalg.norm(shape.outline - flat[limb.start, :2], axis=1)
+    np.testing.assert_allclose(radii, max(limb.radii), rtol=1e-9)
