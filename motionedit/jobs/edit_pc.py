@@ -1,0 +1,298 @@
+"""The job behind `motionedit edit-pc`: goals at single frames, the whole clip follows ([PC] 4.2, 4.3)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from motionedit.core import kinematics
+from motionedit.core.bvh import edited_bytes, resampled_bytes, unedited_bytes
+from motionedit.core.editing.coefficient_edit import CoefficientEdit, Damped, GaussNewton, edit_by_coefficients
+from motionedit.core.editing.projection import Projection, project, project_resampled
+from motionedit.core.ground import axis_name
+from motionedit.core.pca.fit import components_for
+from motionedit.core.pca.model_file import read_model
+from motionedit.core.skeleton_match import match_joints
+from motionedit.core.timeline.warp import make_warp, round_half_up
+from motionedit.errors import ClipError
+from motionedit.jobs import resolve
+from motionedit.jobs.batch import Outcome, plan, run_batch
+from motionedit.jobs.clip_facts import facts_of
+from motionedit.jobs.edit_metrics import edit_metrics
+from motionedit.jobs.model_events import events_for_model, refuse_unknown_events
+from motionedit.jobs.pc_goals import ClipGoal, clip_goal, goal_record, is_met
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from motionedit.core.bvh import Clip
+    from motionedit.core.kinematics import WorldPoses
+    from motionedit.core.pca.model import MotionModel
+    from motionedit.jobs.batch import BatchResult, ClipTask, RunOptions
+    from motionedit.jobs.clip_facts import ClipFacts
+    from motionedit.spec.edit_pc import EditPcSpec
+    from motionedit.spec.load import LoadedSpec
+
+# A met goal whose coefficients lie further out than this times the database's largest norm is reported `far`.
+FAR = 1.75
+
+
+def run(
+    loaded: LoadedSpec[EditPcSpec], clips: Sequence[Path], output: str, model: Path, options: RunOptions
+) -> BatchResult:
+    """Edit clips within the style of a model, and write them.
+
+    Raises
+    ------
+    ModelError
+        The model cannot be read.
+    SpecError
+        The spec asks for more components than there are, or names an event that neither it nor the model has.
+    UsageError
+        As `plan`.
+    """
+    tasks = plan(clips, output, options=options, depends=(*loaded.files, model))
+    full = read_model(model)
+    refuse_unknown_events(loaded, full)
+    cut = full.truncated(_component_count(loaded, full))
+    others = tuple(task.relative for task in tasks)
+    return run_batch(tasks, _Edit(loaded, cut, str(model), others), options)
+
+
+def _component_count(loaded: LoadedSpec[EditPcSpec], model: MotionModel) -> int:
+    spec, available = loaded.model, len(model.components.explained_variance)
+    if spec.explained_variance is not None:
+        return components_for(model.components.explained_variance_ratio, spec.explained_variance)
+    if spec.components is not None and spec.components > available:
+        message = f"the model has {available} components, not {spec.components}"
+        raise loaded.error(("components",), message)
+    return spec.components or available
+
+
+@dataclass(frozen=True)
+class _Edit:
+    """The work on one clip."""
+
+    loaded: LoadedSpec[EditPcSpec]
+    model: MotionModel
+    model_label: str
+    others: tuple[str, ...]
+
+    def __call__(self, clip: Clip, task: ClipTask) -> Outcome:
+        spec, model = self.loaded.model, self.model
+        facts = facts_of(clip, up=axis_name(model.up), keep_rest_pose=model.rules["rest_pose"] == "keep")
+        if facts.last - facts.first < 1:
+            raise ClipError("has one frame; a motion needs two", file=task.label)
+        events = events_for_model(self.loaded, model, facts, task, model_label=self.model_label, others=self.others)
+        projection = self._projection(facts, task, events)
+        goals, poses = self._goals(facts, projection, task, events)
+        edit = edit_by_coefficients(
+            projection,
+            model,
+            [goal.request for goal in goals],
+            solver=self._solver(projection),
+            residual="keep" if spec.residual == "keep" else "drop",
+            first=facts.first if spec.timing == "original" else 0,
+        )
+        return self._outcome(facts, projection, edit, goals, before=poses)
+
+    def _projection(self, facts: ClipFacts, task: ClipTask, events: dict[str, float]) -> Projection:
+        model, motion = self.model, facts.clip.motion
+        joint_map = match_joints(
+            model.skeleton,
+            motion.skeleton,
+            height=facts.anatomy.height,
+            label=task.label,
+            against=f"the model {self.model_label}",
+        )
+        warp = make_warp(model.timeline, first=facts.first, last=facts.last, events=events, label=task.label)
+        align = model.rules["align"]
+        alignment = facts.alignment(
+            heading=align["heading"],
+            position=align["position"],
+            at=None if align["at"] is None else events[align["at"]],
+        )
+        view = project if self.loaded.model.timing == "original" else project_resampled
+        return view(motion, model, joint_map=joint_map, alignment=alignment, warp=warp)
+
+    def _goals(
+        self, facts: ClipFacts, projection: Projection, task: ClipTask, events: dict[str, float]
+    ) -> tuple[list[ClipGoal], WorldPoses]:
+        """Return the goals in the frames that are edited, and these frames' world transforms."""
+        spec, motion = self.loaded.model, facts.clip.motion
+        retimed = spec.timing == "normalized"
+        poses = kinematics.forward(projection.motion) if retimed else facts.poses
+        goals = []
+        for i, goal in enumerate(spec.goals):
+            place = resolve.Place(self.loaded, ("goals", i), task.label)
+            frame = resolve.frame(
+                goal.at, place.at("at"), frames=len(motion), frame_time=motion.frame_time, events=events
+            )
+            if retimed:
+                frame = self._frame_on_timeline(goal.at.event, goal.at.text, frame, facts, events)
+            found = clip_goal(
+                goal,
+                facts,
+                place,
+                frame=frame,
+                poses=poses,
+                scale=self.model.space.scale,
+                least_tolerance=self._solver_tolerance(),
+            )
+            goals.append(found)
+        return goals, poses
+
+    def _frame_on_timeline(
+        self, event: str | None, text: str, frame: int, facts: ClipFacts, events: dict[str, float]
+    ) -> int:
+        timeline = self.model.timeline
+        if event is not None and text == event and event in dict(timeline.events):
+            return dict(timeline.events)[event]
+        warp = make_warp(timeline, first=facts.first, last=facts.last, events=events, label=facts.clip.label)
+        return round_half_up(float(warp.to_timeline(np.array([float(frame)]))[0]))
+
+    def _solver(self, projection: Projection) -> GaussNewton | Damped:
+        spec, model = self.loaded.model, self.model
+        if spec.solver.method == "damped":
+            return Damped(
+                damping=spec.solver.damping,
+                tolerance=spec.solver.tolerance,
+                max_iterations=spec.solver.max_iterations,
+                unit=self._damping_unit() * model.space.scale,
+            )
+        return GaussNewton(self._bound(projection))
+
+    def _damping_unit(self) -> float:
+        """Return the damping unit in clip units."""
+        spec = self.loaded.model
+        return spec.solver.damping_unit.metres / (spec.unit.metres if spec.unit is not None else 1.0)
+
+    def _solver_tolerance(self) -> float:
+        """Return what the solver calls near enough, clip units."""
+        solver = self.loaded.model.solver
+        return solver.tolerance * self._damping_unit() if solver.method == "damped" else 0.0
+
+    def _bound(self, projection: Projection) -> float | None:
+        factor = self.loaded.model.plausibility_bound
+        if factor is None:
+            return None
+        return max(factor * self._largest(), float(self.model.mahalanobis(projection.coefficients)))
+
+    def _largest(self) -> float:
+        return float(self.model.mahalanobis(self.model.components.coefficients).max())
+
+    def _outcome(
+        self,
+        facts: ClipFacts,
+        projection: Projection,
+        edit: CoefficientEdit,
+        goals: Sequence[ClipGoal],
+        *,
+        before: WorldPoses,
+    ) -> Outcome:
+        spec, model, clip = self.loaded.model, self.model, facts.clip
+        retimed = spec.timing == "normalized"
+        changed = bool(edit.touched.any() or edit.moved.any())
+        after = kinematics.forward(edit.motion) if changed else before
+        records = [goal_record(goal, after) for goal in goals]
+        status = self._mark(records, edit)
+        solution, scale = edit.solution, model.space.scale
+        record = {
+            "message": None,
+            "unit": None if spec.unit is None else spec.unit.name,
+            "metrics": edit_metrics(facts, after.positions, retimed=retimed),
+            "goals": records,
+            "iterations": solution.iterations,
+            "stopped": solution.reason,
+            "history": [error / scale for error in solution.history],
+            "alpha": {"before": projection.coefficients, "after": edit.coefficients},
+            "mahalanobis": {
+                "before": float(model.mahalanobis(projection.coefficients)),
+                "after": float(model.mahalanobis(edit.coefficients)),
+                "bound": self._bound(projection),
+                "database_max": self._largest(),
+            },
+            "nearest": {"before": self._nearest(projection), "after": self._nearest(edit)},
+        }
+        record["message"] = _message(records, status)
+        return Outcome(
+            self._content(clip, projection, edit, changed=changed),
+            record,
+            status,
+            tuple(self._warnings(records, goals)),
+            motion=edit.motion if changed or retimed else None,
+            details=tuple(_detail(goal, before) for goal in goals),
+        )
+
+    def _mark(self, records: list[dict[str, Any]], edit: CoefficientEdit) -> str:
+        """Set each goal's status, and return the clip's."""
+        missed = "out_of_tolerance" if edit.solution.reason == "iterations" else "unreachable"
+        for record in records:
+            if not is_met(record):
+                record["status"] = missed
+        if any(record["status"] != "ok" for record in records):
+            return missed
+        norm = float(self.model.mahalanobis(edit.coefficients))
+        return "far" if records and norm > FAR * self._largest() else "ok"
+
+    def _content(self, clip: Clip, projection: Projection, edit: CoefficientEdit, *, changed: bool) -> bytes:
+        if self.loaded.model.timing == "normalized":
+            return resampled_bytes(clip, edit.motion)
+        if not changed:
+            return unedited_bytes(clip)
+        moved = np.zeros((len(edit.motion), len(clip.motion.skeleton.translated)), dtype=np.bool_)
+        moved[:, clip.motion.skeleton.translated == projection.travel] = edit.moved[:, None]
+        return edited_bytes(clip, edit.motion, touched=edit.touched, moved=moved)
+
+    def _nearest(self, where: Projection | CoefficientEdit) -> str:
+        distances = np.linalg.norm(self.model.components.coefficients - where.coefficients, axis=1)
+        return self.model.clips[int(np.argmin(distances))].name
+
+    def _warnings(self, records: Sequence[dict[str, Any]], goals: Sequence[ClipGoal]) -> list[str]:
+        lines = [_missed(record) for record in records if record["status"] != "ok"]
+        rows = sum(
+            (len(goal.request.axes) if goal.request.position is not None else 0)
+            + (3 if goal.request.rotation is not None else 0)
+            for goal in goals
+        )
+        count = len(self.model.components.explained_variance)
+        if rows > count:
+            lines.append(f"{rows} numbers are asked for and {count} components can move: a weighted compromise")
+        elif 2 * rows > count:
+            lines.append(f"{rows} numbers are asked for and {count} components can move: that may bend the style")
+        return lines
+
+
+def _message(records: Sequence[dict[str, Any]], status: str) -> str | None:
+    if status == "far":
+        return "met, but further from the database than its clips are from each other"
+    return "; ".join(_missed(record) for record in records if record["status"] != "ok") or None
+
+
+def _missed(record: dict[str, Any]) -> str:
+    parts = []
+    if record["error_max"] is not None:
+        parts.append(f"{record['error_max']:.4g} from its goal at frame {record['frame']}")
+    if record["error_angle_max"] is not None:
+        parts.append(f"turned {record['error_angle_max']:.4g} degrees from its goal at frame {record['frame']}")
+    limits = [
+        f"{record['tolerance']:.3g}" if record["tolerance"] is not None else "",
+        f"{record['tolerance_angle']:.3g} degrees" if record["tolerance_angle"] is not None else "",
+    ]
+    why = "out of reach of the database's motions" if record["status"] == "unreachable" else "the iterations ran out"
+    return f"{record['name']}: {' and '.join(parts)} (tolerance {', '.join(filter(None, limits))}): {why}"
+
+
+def _detail(goal: ClipGoal, poses: WorldPoses) -> str:
+    """Return the line that a dry run prints of a goal."""
+    request = goal.request
+    record = goal_record(goal, poses)
+    asked = []
+    if record["error_max"] is not None:
+        asked.append(f"{record['error_max']:.4g} away")
+    if record["error_angle_max"] is not None:
+        asked.append(f"{record['error_angle_max']:.4g} degrees away")
+    return f"{goal.name}: frame {request.frame}, {' and '.join(asked)}, weight {request.weight:g}"
