@@ -101,7 +101,7 @@ class Recruiting(SpecModel):
 class Placed(SpecModel):
     """What a constraint has that is measured in some frame of coordinates."""
 
-    frame: Annotated[str, kinds.FRAME] = Field(
+    frame: Annotated[kinds.Frame, kinds.FRAME] = Field(
         default="world", description="Axes of positions, shifts and orientations: world, or the character's heading."
     )
     relative_to: Annotated[str | None, kinds.JOINT] = Field(
@@ -149,10 +149,10 @@ class ComConstraint(Recruiting, ConstraintItem):
     support: Annotated[tuple[str, ...] | None, kinds.JOINTS] = Field(
         default=None, description="Joints the body stands on, the set A; default: feet and toes found in the skeleton."
     )
-    relative_to: Annotated[str, kinds.word("support", "world")] = Field(
+    relative_to: Annotated[Literal["support", "world"], kinds.word("support", "world")] = Field(
         default="support", description="support: moves as the support does; world: the input's own path."
     )
-    frame: Annotated[str, kinds.FRAME] = Field(
+    frame: Annotated[kinds.Frame, kinds.FRAME] = Field(
         default="world", description="Axes of shifts: world, or the character's heading."
     )
     axes: Annotated[tuple[int, ...], kinds.AXES] = Field(

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -27,7 +27,7 @@ class Document(SpecModel):
         description="What a length of the clips is: m, cm, mm, in, cmu (1/0.45 inch) or a number of metres. Converts "
         "nothing; serves reports in millimetres and the damped solver.",
     )
-    up: Annotated[str, kinds.word("y", "z", "auto")] = Field(
+    up: Annotated[Literal["y", "z", "auto"], kinds.word("y", "z", "auto")] = Field(
         default="auto", description="The axis that points up; auto: the one in which the head stands over the feet."
     )
 

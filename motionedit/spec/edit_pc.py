@@ -1,7 +1,7 @@
 """The spec of edit-pc: goals at single frames, met in the space of motion principal coefficients, [PC] 4.2-4.3."""
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import AfterValidator, Field
 
@@ -9,7 +9,7 @@ from motionedit.spec import kinds
 from motionedit.spec.document import Document
 from motionedit.spec.faults import Fault, faulty
 from motionedit.spec.items import EffectorItem, repeated_names, taken_apart
-from motionedit.spec.model import Context, Kind, SpecModel, mappings_in, not_both
+from motionedit.spec.model import Context, Kind, SpecModel, mappings_in
 from motionedit.spec.scalars import Vector, word
 from motionedit.spec.times import Time
 from motionedit.spec.values import UNITS, OrientationSpec, Tolerance, Unit
@@ -19,6 +19,9 @@ DEFAULT_PLAUSIBILITY = 3.0
 
 class PcGoal(EffectorItem):
     """Where an effector shall be at one frame."""
+
+    at_least_one = (("position", "shift", "orientation"),)
+    at_most_one = (("position", "shift"),)
 
     at: Annotated[Time, kinds.TIME] = Field(description="The instant of the goal.")
     position: Annotated[Vector | None, kinds.VECTOR] = Field(
@@ -32,7 +35,7 @@ class PcGoal(EffectorItem):
         default=None,
         description="How the effector's joint shall be turned, in degrees; alone or beside position or shift.",
     )
-    frame: Annotated[str, kinds.FRAME] = Field(
+    frame: Annotated[kinds.Frame, kinds.FRAME] = Field(
         default="world", description="Axes of position, shift and orientation: world, or the character's heading."
     )
     relative_to: Annotated[str | None, kinds.JOINT] = Field(
@@ -67,10 +70,7 @@ class PcGoal(EffectorItem):
     @classmethod
     def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
         """Yield what is wrong between keys."""
-        yield from not_both(data, "position", "shift")
         placed = "position" in data or "shift" in data
-        if not placed and "orientation" not in data:
-            yield Fault("needs one of position, shift, orientation")
         if "axes" in data and "orientation" in data and not placed:
             yield Fault("belongs to position or shift; an orientation has all its axes", ("axes",))
         if data.get("frame") == "heading" and "relative_to" in data:
@@ -86,7 +86,7 @@ class PcGoal(EffectorItem):
 class PcSolver(SpecModel):
     """How the coefficients are found."""
 
-    method: Annotated[str, kinds.word("gauss-newton", "damped")] = Field(
+    method: Annotated[Literal["gauss-newton", "damped"], kinds.word("gauss-newton", "damped")] = Field(
         default="gauss-newton", description="gauss-newton, or damped: the paper's Algorithm 1, which needs unit:."
     )
     damping: Annotated[float, kinds.number(above=0.0)] = Field(
@@ -128,6 +128,7 @@ def _goals_apart(goals: tuple[PcGoal, ...]) -> tuple[PcGoal, ...]:
 class EditPcSpec(Document):
     """Everything edit-pc is told."""
 
+    at_most_one = (("components", "explained_variance"),)
     # An event may be the model's own.
     knows_other_events: ClassVar[bool] = True
 
@@ -152,11 +153,11 @@ class EditPcSpec(Document):
     coefficients: Annotated[str, COEFFICIENTS] = Field(
         default="constant", description="One set of coefficients for the whole clip."
     )
-    residual: Annotated[str, kinds.word("keep", "drop")] = Field(
+    residual: Annotated[Literal["keep", "drop"], kinds.word("keep", "drop")] = Field(
         default="keep",
         description="keep what the model cannot express of the clip, or drop it (the paper's eq. 3 alone).",
     )
-    timing: Annotated[str, kinds.word("original", "normalized")] = Field(
+    timing: Annotated[Literal["original", "normalized"], kinds.word("original", "normalized")] = Field(
         default="original", description="Timing of the edited clip: the input's own, or the model's timeline."
     )
 
@@ -171,7 +172,6 @@ class EditPcSpec(Document):
     def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
         """Yield what is wrong between keys."""
         yield from super().faults_between_keys(data)
-        yield from not_both(data, "components", "explained_variance")
         yield from repeated_names(data, "goals")
         yield from _differing_priorities(data)
         solver = data.get("solver")

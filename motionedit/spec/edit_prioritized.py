@@ -1,7 +1,7 @@
 """The spec of edit-prioritized: constraints in strict layers of priority, [PRIO]."""
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field, ValidationInfo
 
@@ -20,7 +20,7 @@ _PASSES = {"passes": 3, "paper": 2}
 class Smoothing(SpecModel):
     """How the edit is kept continuous in time, section 5."""
 
-    method: Annotated[str, kinds.word("passes", "paper")] = Field(
+    method: Annotated[Literal["passes", "paper"], kinds.word("passes", "paper")] = Field(
         default="passes",
         description="passes: low-pass the displacement and solve again; paper: eq. (4) and a filter on the root.",
     )
@@ -100,12 +100,12 @@ class EditPrioritizedSpec(Document):
         default=1.0, description="Pull towards the input where the layers leave freedom: the vector z of eq. (1)."
     )
     smoothing: Smoothing = Field(default=Smoothing(), description="How the edit is kept continuous in time.")
-    curve: Annotated[str, kinds.word("time", "index")] = Field(
+    curve: Annotated[Literal["time", "index"], kinds.word("time", "index")] = Field(
         default="time",
         description="Parameter of the trajectory S: time, or the paper's index with piecewise-linear T(t).",
     )
     solver: LayeredSolver = Field(default=LayeredSolver(), description="Settings of the solver.")
-    recruiting_rule: Annotated[str, kinds.word("expand", "error", "ignore")] = Field(
+    recruiting_rule: Annotated[Literal["expand", "error", "ignore"], kinds.word("expand", "error", "ignore")] = Field(
         default="expand",
         description="What a breach of eq. (2) leads to: expand the layer above, an error, or nothing.",
     )

@@ -3,14 +3,14 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal, get_args
 
 from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
 from motionedit.spec import kinds, scalars
 from motionedit.spec.faults import Fault, FaultyValueError, faulty, show
-from motionedit.spec.model import Context, Kind, SpecModel, not_both, one_needed
+from motionedit.spec.model import Context, Kind, SpecModel
 from motionedit.spec.times import Interval, parse_event_name, parse_interval, unknown_event
 from motionedit.spec.values import EffectorSpec
 
@@ -83,19 +83,23 @@ def _event_in(value: object, context: Context) -> str:
 
 
 EVENT = Kind(_event_in, "an event's name", {"type": "string", "minLength": 1})
-MEASURE = kinds.word("height", "speed", "distance")
+Measure = Literal["height", "speed", "distance"]
+MEASURE = kinds.word(*get_args(Measure))
 
 
 class DetectRule(SpecModel):
     """The frame at which a measure of an effector is smallest or largest."""
 
+    exactly_one = (("minimum_of", "maximum_of"),)
+    at_most_one = (("between", "after"),)
+
     effector: Annotated[EffectorSpec, kinds.EFFECTOR] = Field(description="The point that is watched.")
-    minimum_of: Annotated[str | None, MEASURE] = Field(
+    minimum_of: Annotated[Measure | None, MEASURE] = Field(
         default=None,
         description="The event is where this is smallest: height over the ground, speed, or distance to the point "
         "`to`. One of minimum_of, maximum_of is needed.",
     )
-    maximum_of: Annotated[str | None, MEASURE] = Field(
+    maximum_of: Annotated[Measure | None, MEASURE] = Field(
         default=None, description="The event is where this is largest; as minimum_of."
     )
     to: Annotated[scalars.Vector | None, kinds.VECTOR] = Field(
@@ -109,9 +113,12 @@ class DetectRule(SpecModel):
     )
 
     @property
-    def measure(self) -> str:
+    def measure(self) -> Measure:
         """What is measured: height, speed or distance."""
-        return self.minimum_of or self.maximum_of or ""
+        measure = self.minimum_of or self.maximum_of
+        if measure is None:
+            raise ValueError("a rule has one of minimum_of, maximum_of")
+        return measure
 
     @property
     def is_minimum(self) -> bool:
@@ -121,8 +128,6 @@ class DetectRule(SpecModel):
     @classmethod
     def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
         """Yield what is wrong between keys."""
-        yield from one_needed(data, "minimum_of", "maximum_of")
-        yield from not_both(data, "between", "after")
         measures = [data[key] for key in ("minimum_of", "maximum_of") if key in data]
         if "distance" in measures and "to" not in data:
             yield Fault("is missing; distance is measured to a point [x, y, z]", ("to",))
@@ -132,6 +137,8 @@ class DetectRule(SpecModel):
 
 class EventSpec(SpecModel):
     """One event: known frames, and a rule for the clips that have none."""
+
+    at_least_one = (("frames", "detect"),)
 
     frames: Annotated[EventFrames | None, FRAMES] = Field(
         default=None,
@@ -143,8 +150,8 @@ class EventSpec(SpecModel):
     @classmethod
     def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
         """Yield what is wrong between keys."""
-        if "frames" not in data and "detect" not in data:
-            yield Fault("needs frames, detect, or both")
+        if data.get("detect", ...) is None:
+            yield Fault("needs a value: a rule with an effector and minimum_of or maximum_of", ("detect",))
 
 
 class OrFrame:

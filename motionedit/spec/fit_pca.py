@@ -1,18 +1,17 @@
 """The spec of fit-pca: how the motion PCA model is made, [PC] 4.1."""
 
-from collections.abc import Iterator, Mapping
-from typing import Annotated, Any
+from typing import Annotated, Literal
 
 from pydantic import Field
 
 from motionedit.spec import kinds
 from motionedit.spec.document import Document
-from motionedit.spec.faults import Fault
-from motionedit.spec.model import not_both
 
 
 class FitPcaSpec(Document):
     """Everything fit-pca is told; ``FitPcaSpec()`` holds the defaults of a run without a spec."""
+
+    at_most_one = (("components", "explained_variance"),)
 
     schema_id: Annotated[str, kinds.schema_id("fit-pca")] = Field(
         default="motionedit/fit-pca/v1", alias="schema", description="Which spec this is."
@@ -24,7 +23,7 @@ class FitPcaSpec(Document):
         default=None,
         description="Keep as many components as explain this share of the variance (sigma, eq. 4), 0 to 1.",
     )
-    rotation: Annotated[str, kinds.word("centred", "exponential")] = Field(
+    rotation: Annotated[Literal["centred", "exponential"], kinds.word("centred", "exponential")] = Field(
         default="centred",
         description="How rotations become vectors: centred on each joint's mean, or the paper's exponential map.",
     )
@@ -34,9 +33,3 @@ class FitPcaSpec(Document):
     exclude_joints: Annotated[tuple[str, ...], kinds.JOINTS_OR_NONE] = Field(
         default=(), description="Joints left out of the model; they are copied through."
     )
-
-    @classmethod
-    def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
-        """Yield what is wrong between keys."""
-        yield from super().faults_between_keys(data)
-        yield from not_both(data, "components", "explained_variance")

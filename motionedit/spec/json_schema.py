@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 
 DRAFT = "https://json-schema.org/draft/2020-12/schema"
 
+# Editors offer keys in this order.
+_FIRST = ("schema", "name", "type", "effector", "joints", "at", "points")
+
 
 class _SpecJsonSchema(GenerateJsonSchema):
     """Defaults that are values of our own are shown as one would write them."""
@@ -47,10 +50,17 @@ def _tidied(schema: Any) -> None:  # noqa: ANN401 (any part of a JSON document)
             _tidied(item)
     if not isinstance(schema, dict):
         return
+    # A word of OpenAPI, not of JSON Schema.
+    schema.pop("discriminator", None)
     for key, value in schema.items():
         if key == "properties":
             for item in value.values():
                 item.pop("title", None)
-                if item.get("default", ...) is None:
+                # Such a default stands for an absent key, which the description explains.
+                if item.get("default", ...) in (None, ""):
                     del item["default"]
+                if {"type": "null"} in item.get("anyOf", []):
+                    item["anyOf"].remove({"type": "null"})
+            first = [name for name in _FIRST if name in value]
+            schema[key] = {name: value[name] for name in (*first, *(n for n in value if n not in first))}
         _tidied(value)

@@ -1,7 +1,7 @@
 """The kinds of values that spec models are made of, each with its parser, its words and its JSON Schema."""
 
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, Literal, get_args
 
 from motionedit.spec import scalars, times, values
 from motionedit.spec.faults import Fault, FaultyValueError, faulty, show
@@ -20,13 +20,13 @@ _TIME: Schema = {
         {"type": "integer", "minimum": 0},
         {
             "type": "string",
-            "pattern": rf"^\s*(?:{_AMOUNT}\s*[s%]?|[A-Za-z_\u0080-\uffff][\w\u0080-\uffff-]*"
+            "pattern": rf"^\s*(?:\+?{_AMOUNT}\s*[s%]?|[A-Za-z_\u0080-\uffff][\w\u0080-\uffff-]*"
             rf"(?:\s*[-+]\s*{_AMOUNT}\s*s?)?)\s*$",
         },
     ]
 }
 _DURATION: Schema = {
-    "anyOf": [{"type": "integer", "minimum": 0}, {"type": "string", "pattern": rf"^\s*{_AMOUNT}\s*s?\s*$"}]
+    "anyOf": [{"type": "integer", "minimum": 0}, {"type": "string", "pattern": rf"^\s*\+?{_AMOUNT}\s*s?\s*$"}]
 }
 
 
@@ -172,7 +172,8 @@ UNIT = Kind(
     {"anyOf": [{"enum": list(values.UNITS)}, _POSITIVE]},
 )
 RECRUIT = Kind(_plainly(values.parse_recruit), values.RECRUIT_WORDS, _RECRUIT)
-FRAME = word("world", "heading")
+Frame = Literal["world", "heading"]
+FRAME = word(*get_args(Frame))
 EVENT_NAME = Kind(_plainly(times.parse_event_name), "an event's name", _NAME)
 
 

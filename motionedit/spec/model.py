@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import combinations
 from pathlib import Path
 from typing import Any, ClassVar, Self
 
@@ -71,6 +72,10 @@ class SpecModel(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
+    # Groups of keys of which exactly, at most or at least one is given.
+    exactly_one: ClassVar[tuple[tuple[str, ...], ...]] = ()
+    at_most_one: ClassVar[tuple[tuple[str, ...], ...]] = ()
+    at_least_one: ClassVar[tuple[tuple[str, ...], ...]] = ()
     # What stands at a key that is unknown here but not elsewhere: "belongs to ...".
     foreign_keys: ClassVar[Mapping[str, str]] = {}
 
@@ -85,16 +90,29 @@ class SpecModel(BaseModel):
         """Return the keys of the mapping, as YAML has them."""
         return tuple(info.alias or name for name, info in cls.model_fields.items())
 
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        json = handler.resolve_ref_schema(handler(schema))
+        rules: list[dict[str, Any]] = []
+        for kind, groups in (("oneOf", cls.exactly_one), ("anyOf", cls.at_least_one)):
+            rules += [{kind: [{"required": [key]} for key in group]} for group in groups]
+        for group in cls.at_most_one:
+            rules += [{"not": {"required": list(pair)}} for pair in combinations(group, 2)]
+        if rules:
+            json["allOf"] = rules
+        return json
+
     @model_validator(mode="wrap")
     @classmethod
     def _with_all_faults(cls, data: object, handler: ModelWrapValidatorHandler[Self], _info: ValidationInfo) -> Self:
         if not isinstance(data, dict):
             if isinstance(data, cls):
                 return data
-            raise faulty(f"must be a mapping with the keys {', '.join(cls.key_names())}; not {show(data)}")
+            wanted = f"a mapping with the keys {', '.join(cls.key_names())}"
+            raise faulty(f"needs a value: {wanted}" if data is None else f"must be {wanted}; not {show(data)}")
         faults = list(cls._unknown_keys(data))
         meant = cls._as_meant(data) if faults else data
-        faults += [*cls._missing_keys(meant), *cls.faults_between_keys(meant)]
+        faults += [*cls._missing_keys(meant), *cls._faults_in_groups(meant), *cls.faults_between_keys(meant)]
         try:
             model = handler(data)
         except ValidationError as error:
@@ -121,6 +139,16 @@ class SpecModel(BaseModel):
         """Return the data with misspelt keys put right, so that one slip is not reported as a missing key too."""
         names = cls.key_names()
         return {(key if key in names else nearest(key, names) or key): value for key, value in data.items()}
+
+    @classmethod
+    def _faults_in_groups(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
+        for group in (*cls.exactly_one, *cls.at_least_one):
+            if not any(key in data for key in group):
+                yield Fault(f"needs one of {', '.join(group)}")
+        for group in (*cls.exactly_one, *cls.at_most_one):
+            given = [key for key in data if key in group]
+            for key in given[1:]:
+                yield Fault(f"stands beside {given[0]}; give one of {', '.join(group)}", (key,))
 
     @classmethod
     def _missing_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
@@ -172,20 +200,6 @@ def _shape_words(kind: str, value: object) -> str:
     if value is None:
         return f"needs a value: {wanted}" + (", [] for an empty one" if wanted == "a list" else "")
     return f"must be {wanted}, not {show(value)}"
-
-
-def not_both(data: Mapping[str, Any], *names: str) -> Iterator[Fault]:
-    """Yield a fault at the second of keys of which at most one may be given."""
-    given = [name for name in data if name in names]
-    for name in given[1:]:
-        yield Fault(f"stands beside {given[0]}; give one of {', '.join(names)}", (name,))
-
-
-def one_needed(data: Mapping[str, Any], *names: str) -> Iterator[Fault]:
-    """Yield a fault unless exactly one of the keys is given."""
-    if not any(name in data for name in names):
-        yield Fault(f"needs one of {', '.join(names)}")
-    yield from not_both(data, *names)
 
 
 def mappings_in(data: Mapping[str, Any], key: str) -> Iterator[tuple[int, dict[str, Any]]]:

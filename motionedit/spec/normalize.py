@@ -1,7 +1,7 @@
 """The spec of normalize: clips of one behaviour onto one timeline, [PC] section 5."""
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
@@ -75,7 +75,7 @@ class NormalizeSpec(Document):
         default=None, description="Hz of the normalized clips; default: the clips' own, an error where they differ."
     )
     align: Align = Field(default=Align(), description="Alignment on the ground; edit-pc undoes it on output.")
-    rest_pose: Annotated[str, kinds.word("drop", "keep")] = Field(
+    rest_pose: Annotated[Literal["drop", "keep"], kinds.word("drop", "keep")] = Field(
         default="drop", description="What becomes of a T-pose in front of a take."
     )
     events: dict[str, Annotated[TimelineEvent, OrFrame()]] = Field(  # type: ignore[assignment]

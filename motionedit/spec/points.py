@@ -7,7 +7,7 @@ from pydantic import Field
 
 from motionedit.spec import kinds
 from motionedit.spec.faults import Fault
-from motionedit.spec.model import SpecModel, not_both, one_needed
+from motionedit.spec.model import SpecModel
 from motionedit.spec.scalars import Vector
 from motionedit.spec.times import Interval, Time
 from motionedit.spec.values import OrientationSpec
@@ -20,6 +20,9 @@ _HELD = {"tension": 1, "continuity": 0, "bias": 0}
 
 class Point(SpecModel):
     """A hold, a ride or an instant; which goals it may have depends on the constraint's type."""
+
+    exactly_one = (("hold", "during", "at"),)
+    at_most_one = (("position", "shift"),)
 
     hold: Annotated[Interval | None, kinds.INTERVAL] = Field(
         default=None, description="Stands still from a to b, [a, b]. One of hold, during, at is needed."
@@ -77,8 +80,6 @@ class Point(SpecModel):
     @classmethod
     def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
         """Yield what is wrong between keys."""
-        yield from one_needed(data, "hold", "during", "at")
-        yield from not_both(data, "position", "shift")
         if "during" in data:
             if "position" in data:
                 yield Fault("does not go with during, which rides the input; use shift, or hold", ("position",))
