@@ -144,11 +144,24 @@ def test_a_foot_of_five_toes_gives_the_same_toe_on_both_sides():
     assert [leg[3] for leg in legs] == ["LeftToe1", "RightToe1"]
 
 
+def test_a_metatarsal_is_no_toe():
+    bones = split(BONES, "LeftToeBase", "LeftMetatarsal", 0.4)
+    bones = split(bones, "RightToeBase", "RightMetatarsal", 0.4)
+    skeleton = skeleton_of(bones)
+    assert legs_of(skeleton, find_anatomy(skeleton)) == LEGS
+
+
+def test_a_toe_has_no_longer_tips_than_the_way_to_it():
+    bones = [*BONES, ("LeftToeTip", "LeftToeBase", (0, 0, 0.05)), ("RightToeTip", "RightToeBase", (0, 0, 0.05))]
+    skeleton = skeleton_of(bones, {})
+    assert legs_of(skeleton, find_anatomy(skeleton)) == LEGS
+
+
 def test_breasts_are_no_neck_and_eyes_no_limbs():
     bones = [*BONES]
     for side, sign in (("Left", 1.0), ("Right", -1.0)):
         bones += [
-            (side + "Breast", "Spine1", (sign * 0.1, 0.1, 0.4)),
+            (side + "Breast", "Spine1", (sign * 0.1, 0.1, 0.7)),
             (side + "Eye", "Head", (sign * 0.03, 0.1, 0.1)),
         ]
     skeleton = skeleton_of(bones)

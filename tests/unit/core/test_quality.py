@@ -34,11 +34,11 @@ def test_sliding_is_the_fastest_horizontal_speed_of_a_planted_point():
     positions = np.zeros((20, 2, 3))
     positions[:, 0, 0] = 0.01 * np.arange(20)  # 1 unit/s along the ground
     positions[:, 0, 1] = 0.5 * np.arange(20)  # height does not count
-    positions[12:, 0, 2] = 5.0  # after the plant
+    positions[11:, 0, 2] = 5.0  # after the plant
     plants = [Plant("left", 0, 2, 10), Plant("right", 1, 0, 19)]
     assert foot_slide_max(positions, plants, up=UP, frame_time=0.01) == pytest.approx(1.0)
     assert foot_slide_max(positions, [], up=UP, frame_time=0.01) == 0.0
-    assert foot_slide_max(positions, [Plant("left", 0, 11, 13)], up=UP, frame_time=0.01) > 100.0
+    assert foot_slide_max(positions, [Plant("left", 0, 10, 12)], up=UP, frame_time=0.01) > 100.0
 
 
 def test_drift_is_the_largest_distance_between_planted_points_of_two_motions():
