@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from data.generator.golf import BALL_HEIGHT, make_swing
 from data.generator.players import GROUPS, SHIPPED_RATE, shipped_swings
+from data.generator.walk import make_walk
 from motionedit.core.bvh import new_bytes
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ def shipped_files(*, noise: float = 1.0, rate: float = SHIPPED_RATE) -> Iterator
         for name, group, swing in zip(names, GROUPS, swings, strict=True)
     ]
     yield "golf/balls.tsv", ("clip\tstyle\tx\ty\tz\n" + "".join(balls)).encode()
+    yield "walk.bvh", new_bytes(make_walk(), decimals=DECIMALS)
 
 
 def write_shipped(folder: Path, *, noise: float = 1.0, rate: float = SHIPPED_RATE) -> Iterator[Path]:
