@@ -33,6 +33,11 @@ def mark(folder, item):
     return item
 
 
+def interrupt_itself(item):
+    os.kill(os.getpid(), signal.SIGINT)
+    return item
+
+
 @pytest.mark.parametrize("jobs", [0, 1, 2, 3])
 def test_results_are_in_order_for_any_number_of_workers(jobs):
     found = list(results_in_order(slow_first, range(6), options=RunOptions(jobs=jobs)))
@@ -48,6 +53,10 @@ def test_a_worker_that_dies_is_a_value_and_no_traceback():
     found = list(results_in_order(die_at_one, [1, 1], options=RunOptions(jobs=2)))
     assert [type(value) for value in found] == [WorkerDiedError] * 2
     assert "worker process was killed" in str(found[0])
+
+
+def test_ctrl_c_is_the_parents_to_answer():
+    assert list(results_in_order(interrupt_itself, [1, 2, 3], options=RunOptions(jobs=2))) == [1, 2, 3]
 
 
 @pytest.mark.parametrize("jobs", [1, 2])
@@ -83,10 +92,8 @@ list(results_in_order(work, range(2), options=RunOptions(jobs=2)))
     parent = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
     workers = [int(parent.stdout.readline()) for _ in range(2)]
     parent.send_signal(signal.SIGKILL)
-    parent.wait()
     # The pipe closes when the last process that holds it ends.
-    assert parent.stdout.read() == ""
-    parent.stdout.close()
+    assert parent.communicate(timeout=20)[0] == ""
     for worker in workers:
         with pytest.raises(ProcessLookupError):
             _wait_until_gone(worker)
