@@ -8,17 +8,22 @@ choices are a running exclusive or, the whole turns a running sum.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.motion import position_columns, rotation_columns
+from motionedit.core.motion import position_columns
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.motion import Motion
+
+    GivenRows = Callable[[int, int], FloatArray]
 
 _TURN = 2.0 * np.pi
 # Within this angle (rad, 1e-4 degrees) of gimbal lock the last angle is kept. The rebuilt rotation is off by no more
@@ -47,7 +52,7 @@ def joint_angles(motion: Motion, *, start: FloatArray) -> FloatArray:
         for axis, column in position_columns(skeleton, joint):
             values[:, column] = motion.translations[:, p, axis]
     for joint in range(len(skeleton)):
-        columns = rotation_columns(skeleton, [joint])[0]
+        columns = skeleton.columns(joint, "rotation")
         if columns:
             seed = np.radians(start[columns])
             angles = angles_near(motion.rotations[:, joint], skeleton.rotation_axes[joint], seed=seed)
@@ -56,29 +61,57 @@ def joint_angles(motion: Motion, *, start: FloatArray) -> FloatArray:
     return values
 
 
-def angle_track(motion: Motion, joint: int, *, given: FloatArray, touched: BoolArray) -> FloatArray:
-    """Return one joint's rotation channels, degrees, with the touched frames solved anew.
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """The touched frames from `start` up to `stop` of one joint.
+
+    They are solved from `seed`, shape (A,) rad, before them, or are kept as `angles`, shape (stop - start, A) degrees.
+    """
+
+    start: int
+    stop: int
+    seed: FloatArray
+    angles: FloatArray | None
+
+
+def joint_pieces(motion: Motion, joint: int, *, given: GivenRows, touched: BoolArray, size: int) -> list[Piece]:
+    """Return one joint's touched frames in pieces that can be solved by themselves, for `piece_angles`.
+
+    Each run of touched frames starts from the input's angles at the frame before it, or at frame 0, and meets the
+    frame after it without a turn that the input has not.
 
     Parameters
     ----------
-    given : shape (F, A), degrees
-        The input's values of the joint's rotation channels. Each run of touched frames starts from the frame before
-        it, or from frame 0, and meets the frame after it without a whole turn that the input has not.
+    given : callable
+        given(start, stop) are the input's channel values of those frames, shape (stop - start, C).
     touched : shape (F,)
         Where the joint's rotation is to be written.
-
-    Returns
-    -------
-    shape (F, A)
-        Degrees; as given where not touched.
+    size : int
+        No piece reaches over a multiple of this many frames. Clips of no more frames keep their angles, longer ones
+        solve them again piece by piece, which costs time but hardly any memory.
     """
     axes = motion.skeleton.rotation_axes[joint]
+    columns = motion.skeleton.columns(joint, "rotation")
     q = motion.rotations[:, joint]
-    radians = np.radians(given)
-    track = given.copy()
+    pieces = []
     for start, stop in runs(touched):
-        track[start:stop] = np.degrees(_run(q, axes, radians, start, stop))
-    return track
+        angles, plain = _run(q, axes, lambda a, b: np.radians(given(a, b)[:, columns]), start, stop)
+        keep = not plain or len(q) <= size
+        seed = np.radians(given(max(start - 1, 0), max(start, 1))[0, columns])
+        cuts = [start, *range((start // size + 1) * size, stop, size), stop]
+        for first, last in pairwise(cuts):
+            kept = np.degrees(angles[first - start : last - start]) if keep else None
+            pieces.append(Piece(first, last, seed, kept))
+            seed = angles[last - 1 - start].copy()
+    return pieces
+
+
+def piece_angles(motion: Motion, joint: int, *, piece: Piece) -> FloatArray:
+    """Return the angles of a piece of touched frames, shape (stop - start, A), degrees."""
+    if piece.angles is not None:
+        return piece.angles
+    q = motion.rotations[piece.start : piece.stop, joint]
+    return np.degrees(angles_near(q, motion.skeleton.rotation_axes[joint], seed=piece.seed))
 
 
 def angles_near(q: FloatArray, axes: tuple[int, ...], *, seed: FloatArray) -> FloatArray:
@@ -182,12 +215,20 @@ def _unwrap(angles: FloatArray, seed: FloatArray) -> FloatArray:
     return unwrapped
 
 
-def _run(q: FloatArray, axes: tuple[int, ...], given: FloatArray, start: int, stop: int) -> FloatArray:
-    """Return the angles (rad) of one run of touched frames, shape (stop - start, len(axes))."""
-    angles = angles_near(q[start:stop], axes, seed=given[max(start - 1, 0)])
-    if stop < len(given) and _turns(given, angles, stop).any():
-        return _meet_end(q[start:stop], axes, given, angles, start)
-    return angles
+def _run(q: FloatArray, axes: tuple[int, ...], given: GivenRows, start: int, stop: int) -> tuple[FloatArray, bool]:
+    """Return the angles (rad) of one run of touched frames, shape (stop - start, A), and whether none was put right.
+
+    The input's angles (rad) are given(first, last).
+    """
+    seed = given(max(start - 1, 0), max(start, 1))[0]
+    angles = angles_near(q[start:stop], axes, seed=seed)
+    if stop == len(q):
+        return angles, True
+    last, following = given(stop - 1, stop + 1)
+    if not _turns(last - angles[-1]).any():
+        return angles, True
+    steps = np.diff(given(start, stop), axis=0, prepend=seed[None])
+    return _meet_end(q[start:stop], axes, angles, steps, (seed, last, following)), False
 
 
 def runs(mask: BoolArray) -> list[tuple[int, int]]:
@@ -197,28 +238,33 @@ def runs(mask: BoolArray) -> list[tuple[int, int]]:
     return [(int(a), int(b)) for a, b in zip(edges[0::2], edges[1::2], strict=True)]
 
 
-def _turns(given: FloatArray, angles: FloatArray, stop: int) -> IntArray:
-    """Return the half turns by which the step to the first untouched frame differs from the input's own there."""
-    extra = given[stop - 1] - angles[-1]
+def _turns(extra: FloatArray) -> IntArray:
+    """Return the half turns by which the step to the first untouched frame exceeds the input's own there."""
     turns: IntArray = np.rint(extra / np.pi).astype(np.intp)
     return turns
 
 
-def _meet_end(q: FloatArray, axes: tuple[int, ...], given: FloatArray, angles: FloatArray, start: int) -> FloatArray:
+def _meet_end(
+    q: FloatArray,
+    axes: tuple[int, ...],
+    angles: FloatArray,
+    steps: FloatArray,
+    ends: tuple[FloatArray, FloatArray, FloatArray],
+) -> FloatArray:
     """Return a run's angles such that its last frame meets the input's next without a turn that the input has not.
 
     First the input's own wraps are carried: where its values jump by 360 degrees, so do the run's. Where that is not
     enough, the run is solved backwards from its end too and changes over from the one to the other at the frame
     where that jumps least: the jump cannot be avoided, for the edit winds another way round than the input.
+
+    `steps`, shape of angles, are the input's from the frame before each; `ends` its angles at the frame before the
+    run, at the run's last and at the frame after.
     """
-    stop = start + len(q)
-    before = given[max(start - 1, 0)]
-    steps = np.diff(given[start:stop], axis=0, prepend=before[None])
+    before, last, following = ends
     carried = angles + _TURN * np.cumsum(np.rint(steps / _TURN), axis=0)
-    if not _turns(given, carried, stop).any():
+    if not _turns(last - carried[-1]).any():
         return carried
-    backward = angles_near(q[::-1], axes, seed=given[stop])[::-1]
-    joined = np.concatenate((before[None], angles))
-    jumps = np.abs(np.concatenate((backward, given[stop][None])) - joined).sum(axis=-1)
-    change = int(np.argmin(jumps[:-1]))
+    backward = angles_near(q[::-1], axes, seed=following)[::-1]
+    jumps = np.abs(backward - np.concatenate((before[None], angles[:-1]))).sum(axis=-1)
+    change = int(np.argmin(jumps))
     return np.concatenate((angles[:change], backward[change:]))

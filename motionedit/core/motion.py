@@ -60,49 +60,30 @@ def motion_from_channels(skeleton: Skeleton, values: FloatArray, *, frame_time: 
         Rows of the file: degrees and clip units. A position channel replaces that axis of OFFSET.
     """
     rotations = np.empty((len(values), len(skeleton), 4))
-    groups = _joints_by_axes(skeleton)
-    if sum(map(len, groups.values())) < len(skeleton):
-        rotations[:] = rot.IDENTITY
-    for axes, joints in groups.items():
-        columns = np.array(rotation_columns(skeleton, joints)).T
-        # Blocks of frames stay in the processor's cache and keep the memory of a long clip down.
-        step = max(_BLOCK_VALUES // columns.size, 1)
-        for start in range(0, len(values), step):
-            # Angle by angle, so that each is contiguous.
-            angles = np.radians(values[start : start + step, columns].swapaxes(0, 1), order="C")
-            rotations[start : start + step, joints] = rot.from_euler(np.moveaxis(angles, 0, -1), axes)
-    translations = np.repeat(skeleton.offsets[None, skeleton.translated], len(values), axis=0)
-    for p, joint in enumerate(skeleton.translated):
-        for axis, column in position_columns(skeleton, int(joint)):
-            translations[:, p, axis] = values[:, column]
+    translations = np.empty((len(values), len(skeleton.translated), 3))
+    write_poses(skeleton, values, rotations=rotations, translations=translations)
     return Motion(skeleton, frozen(rotations), frozen(translations), frame_time)
 
 
-def rotation_columns(skeleton: Skeleton, joints: list[int]) -> list[list[int]]:
-    """Return the columns of the rotation channels of joints that have the same number of them, in channel order."""
-    return [
-        [
-            int(skeleton.channel_starts[j]) + c
-            for c, name in enumerate(skeleton.channels[j])
-            if name.endswith("rotation")
-        ]
-        for j in joints
-    ]
+def write_poses(skeleton: Skeleton, values: FloatArray, *, rotations: FloatArray, translations: FloatArray) -> None:
+    """Write the poses of channel values (F, C) into the arrays of a motion, (F, J, 4) and (F, P, 3)."""
+    groups = skeleton.rotation_groups
+    if sum(len(group.joints) for group in groups) < len(skeleton):
+        rotations[:] = rot.IDENTITY
+    for group in groups:
+        # Blocks of frames stay in the processor's cache and keep the memory of a long clip down.
+        step = max(_BLOCK_VALUES // group.columns.size, 1)
+        for start in range(0, len(values), step):
+            # Angle by angle, so that each is contiguous.
+            angles = values[start : start + step, group.columns.T].swapaxes(0, 1)
+            turned = rot.from_euler(np.moveaxis(np.radians(angles, order="C"), 0, -1), group.axes)
+            rotations[start : start + step, group.joints] = turned
+    translations[:] = skeleton.offsets[skeleton.translated]
+    for p, joint in enumerate(skeleton.translated.tolist()):
+        for axis, column in position_columns(skeleton, joint):
+            translations[:, p, axis] = values[:, column]
 
 
 def position_columns(skeleton: Skeleton, joint: int) -> list[tuple[int, int]]:
     """Return (axis, column) of each position channel of a joint."""
-    start = int(skeleton.channel_starts[joint])
-    return [
-        ("XYZ".index(name[0]), start + c)
-        for c, name in enumerate(skeleton.channels[joint])
-        if name.endswith("position")
-    ]
-
-
-def _joints_by_axes(skeleton: Skeleton) -> dict[tuple[int, ...], list[int]]:
-    groups: dict[tuple[int, ...], list[int]] = {}
-    for j, axes in enumerate(skeleton.rotation_axes):
-        if axes:
-            groups.setdefault(axes, []).append(j)
-    return groups
+    return list(zip(skeleton.position_axes[joint], skeleton.columns(joint, "position"), strict=True))

@@ -39,6 +39,15 @@ class LevelOrder:
 
 
 @dataclass(frozen=True, eq=False)
+class RotationGroup:
+    """G joints with the same A Euler axes: `joints` (G,) and the `columns` (G, A) of their channels, in that order."""
+
+    axes: tuple[int, ...]
+    joints: IntArray
+    columns: IntArray
+
+
+@dataclass(frozen=True, eq=False)
 class Skeleton:
     """A tree of J joints in file order, so that a parent stands before its children.
 
@@ -89,6 +98,27 @@ class Skeleton:
         return tuple(
             tuple("XYZ".index(name[0]) for name in names if name.endswith("position")) for names in self.channels
         )
+
+    @cached_property
+    def rotation_groups(self) -> tuple[RotationGroup, ...]:
+        """The joints with rotation channels, together where their axes are the same."""
+        groups: dict[tuple[int, ...], list[int]] = {}
+        for j, axes in enumerate(self.rotation_axes):
+            if axes:
+                groups.setdefault(axes, []).append(j)
+        return tuple(
+            RotationGroup(
+                axes,
+                frozen(np.array(joints, dtype=np.intp)),
+                frozen(np.array([self.columns(j, "rotation") for j in joints], dtype=np.intp)),
+            )
+            for axes, joints in groups.items()
+        )
+
+    def columns(self, joint: int, kind: str) -> list[int]:
+        """Return the columns of a joint's channels of one kind, `rotation` or `position`, in channel order."""
+        start = int(self.channel_starts[joint])
+        return [start + c for c, name in enumerate(self.channels[joint]) if name.endswith(kind)]
 
     @cached_property
     def translated(self) -> IntArray:

@@ -7,10 +7,13 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from motionedit.core.arrays import frozen
 from motionedit.core.bvh.header import Header, read_header
-from motionedit.core.bvh.rows import Rows, read_rows
+from motionedit.core.bvh.rows import Rows, read_rows, row_capacity, values_between
 from motionedit.core.bvh.scan import refusal
-from motionedit.core.motion import Motion, motion_from_channels
+from motionedit.core.motion import Motion, write_poses
 from motionedit.errors import BvhError
 
 if TYPE_CHECKING:
@@ -38,8 +41,6 @@ class Clip:
         The name that messages give it.
     motion : Motion
         Its F frames.
-    values : shape (F, C)
-        Channel values as in the file: degrees and clip units.
     text : BvhText
         The file's own bytes and their layout.
     warnings : tuple of str
@@ -48,9 +49,20 @@ class Clip:
 
     label: str
     motion: Motion
-    values: FloatArray
     text: BvhText
     warnings: tuple[str, ...] = ()
+
+    @cached_property
+    def values(self) -> FloatArray:
+        """Channel values as in the file, degrees and clip units, shape (F, C).
+
+        Read from the text when first asked for: a long clip that is only edited does not hold them.
+        """
+        return frozen(self.values_between(0, len(self.motion)))
+
+    def values_between(self, start: int, stop: int) -> FloatArray:
+        """Return the channel values of the frames from start up to stop, shape (stop - start, C)."""
+        return values_between(self.text.data, self.text.rows, start, stop)
 
     @cached_property
     def sha256(self) -> str:
@@ -86,23 +98,28 @@ def read_clip(path: Path, *, label: str | None = None, lenient: bool = False) ->
 def parse_clip(data: bytes, *, label: str, lenient: bool = False) -> Clip:
     """Return the clip that a BVH file's bytes hold; see `read_clip`."""
     header = read_header(data, label=label)
-    rows = read_rows(
-        data,
-        header.rows_start,
-        columns=header.skeleton.channel_count,
-        expected=header.frames,
-        label=label,
-        lenient=lenient,
-    )
+    skeleton, start = header.skeleton, header.rows_start
+    columns = skeleton.channel_count
+    capacity = row_capacity(data, start, columns=columns, expected=header.frames, lenient=lenient)
+    # Pages that are never written to cost no memory.
+    rotations = np.empty((capacity, len(skeleton), 4))
+    translations = np.empty((capacity, len(skeleton.translated), 3))
+
+    def take(first: int, values: FloatArray) -> None:
+        block = slice(first, first + len(values))
+        write_poses(skeleton, values, rotations=rotations[block], translations=translations[block])
+
+    rows = read_rows(data, start, columns=columns, expected=header.frames, label=label, lenient=lenient, take=take)
     warnings = _row_count_warnings(data, header, rows, label=label, lenient=lenient)
-    motion = motion_from_channels(header.skeleton, rows.values, frame_time=header.frame_time)
-    return Clip(label, motion, rows.values, BvhText(data, header, rows), warnings)
+    frames = len(rows.starts)
+    motion = Motion(skeleton, frozen(rotations[:frames]), frozen(translations[:frames]), header.frame_time)
+    return Clip(label, motion, BvhText(data, header, rows), warnings)
 
 
 def _row_count_warnings(data: bytes, header: Header, rows: Rows, *, label: str, lenient: bool) -> tuple[str, ...]:
     """Return the warnings for what --lenient accepts; refuse the rest."""
     place = header.frames_span[0]
-    found = len(rows.starts) + rows.surplus
+    found = rows.found
     if found == 0 and (header.frames == 0 or lenient):
         raise refusal(data, "the file has no frames", label=label, at=place)
     warnings = []

@@ -13,7 +13,11 @@ from motionedit.core.bvh.parse import FaultyWord, parse_block
 from motionedit.core.bvh.scan import line_blocks, line_breaks, quoted, refusal, words_between
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from motionedit.core.arrays import FloatArray, IntArray
+
+    TakeRows = Callable[[int, FloatArray], None]
 
 # A block and its arrays stay in the processor's cache.
 BLOCK_BYTES = 1 << 17
@@ -22,28 +26,26 @@ _CUT_NUMBER = re.compile(rb"[+-]?[0-9]*\.?[0-9]*(?:[eE][+-]?)?[0-9]*")
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """The rows of a file.
+    """Where the rows of a file stand.
 
     Attributes
     ----------
-    values : shape (F, C)
-        As in the file, double precision.
     starts, stops : shape (F,)
         First byte of each row's first value, and the byte after its last.
     decimals : int
         The largest number of decimals among the values.
     cut_off : int or None
         The byte where a last row begins that was cut short and left out (lenient only).
-    surplus : int
-        Rows after more than the expected ones, which were only counted: the file will be refused.
+    found : int
+        Rows in the file, the one that was cut short left out. More than F where a strict reading found too many and
+        only counted the rest.
     """
 
-    values: FloatArray
     starts: IntArray
     stops: IntArray
     decimals: int
     cut_off: int | None
-    surplus: int
+    found: int
 
 
 @dataclass(frozen=True)
@@ -54,28 +56,35 @@ class _Block:
     cut_off: int | None = None
 
 
-def read_rows(data: bytes, start: int, *, columns: int, expected: int, label: str, lenient: bool) -> Rows:
-    """Return the rows from byte `start` on.
+def row_capacity(data: bytes, start: int, *, columns: int, expected: int, lenient: bool) -> int:
+    """Return how many rows to set memory aside for: as many as declared, or as the file can hold."""
+    # A value and its blank take two bytes.
+    most = (len(data) - start + 1) // 2 // columns + 1
+    return most if lenient else min(most, expected)
+
+
+def read_rows(
+    data: bytes, start: int, *, columns: int, expected: int, label: str, lenient: bool, take: TakeRows
+) -> Rows:
+    """Read the rows from byte `start` on and return where they stand.
 
     Parameters
     ----------
     columns : int
         C, the number of channels.
     expected : int
-        Frames that the file declares; memory is set aside for so many, or for what the file can hold.
+        Frames that the file declares.
     lenient : bool
-        Whether a last row with too few values is left out instead of refused.
+        Whether a last row with too few values is left out instead of refused, and more rows than declared are read.
+    take : callable
+        Is given each block's first frame and values, shape (n, C), which are overwritten afterwards.
 
     Raises
     ------
     BvhError
         With the line, where a value is no finite number or a row has not C values.
     """
-    # A value and its blank take two bytes. Pages that are never written to cost nothing.
-    capacity = (len(data) - start + 1) // 2 // columns + 1
-    if not lenient:
-        capacity = min(capacity, expected + 1)
-    values = np.empty((capacity, columns))
+    scratch = np.empty((0, columns))
     starts, stops = [np.zeros(0, np.intp)], [np.zeros(0, np.intp)]
     count = surplus = decimals = 0
     cut_off = None
@@ -85,24 +94,31 @@ def read_rows(data: bytes, start: int, *, columns: int, expected: int, label: st
             continue
         words = _words(data, begin, end, columns, label, frame=count)
         room = len(words[0]) // columns + 1
-        if count + room > len(values):
-            # More rows than declared come in a strict reading: this block is read all the same, the next are counted.
-            values = np.concatenate((values[:count], np.empty((room, columns))))
-        out = values[count : count + room]
-        block = _read_block(data, begin, end, words, out, label, frame=count, lenient=lenient)
-        starts.append(block.starts)
-        stops.append(block.stops)
-        count += len(block.starts)
+        if len(scratch) < room:
+            scratch = np.empty((room, columns))
+        block = _read_block(data, begin, end, words, scratch, label, frame=count, lenient=lenient)
+        rows = len(block.starts)
+        take(count, scratch[: rows if lenient else max(min(rows, expected - count), 0)])
+        # Copies, for a slice would keep the places of all values.
+        starts.append(block.starts.copy())
+        stops.append(block.stops.copy())
+        count += rows
         decimals = max(decimals, block.decimals)
         cut_off = block.cut_off
-    return Rows(
-        frozen(values[:count]),
-        frozen(np.concatenate(starts)),
-        frozen(np.concatenate(stops)),
-        decimals,
-        cut_off,
-        surplus,
-    )
+    return Rows(frozen(np.concatenate(starts)), frozen(np.concatenate(stops)), decimals, cut_off, count + surplus)
+
+
+def values_between(data: bytes, rows: Rows, start: int, stop: int) -> FloatArray:
+    """Return the values of rows that were read, from frame start up to stop, shape (stop - start, C)."""
+    blocks = []
+    step = max(BLOCK_BYTES * len(rows.starts) // len(data), 1)
+    for first in range(start, stop, step):
+        last = min(first + step, stop)
+        words = words_between(data, int(rows.starts[first]), int(rows.stops[last - 1]))
+        values = np.empty((last - first, len(words[0]) // (last - first)))
+        parse_block(data, *words, out=values.reshape(-1))
+        blocks.append(values)
+    return np.concatenate(blocks)
 
 
 def _rows_within(data: bytes, begin: int, end: int) -> int:

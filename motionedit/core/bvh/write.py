@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from io import BytesIO
 from typing import TYPE_CHECKING
 
@@ -11,8 +12,8 @@ import numpy as np
 from motionedit.core.bvh.format import format_fixed, place
 from motionedit.core.bvh.rows import BLOCK_BYTES
 from motionedit.core.bvh.scan import words_between
-from motionedit.core.euler import angle_track, joint_angles, runs
-from motionedit.core.motion import position_columns, rotation_columns
+from motionedit.core.euler import joint_angles, joint_pieces, piece_angles, runs
+from motionedit.core.motion import position_columns
 from motionedit.errors import BvhError
 
 if TYPE_CHECKING:
@@ -20,12 +21,15 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.bvh.read import Clip
+    from motionedit.core.euler import Piece
     from motionedit.core.motion import Motion
     from motionedit.core.skeleton import Skeleton
 
 FEWEST_DECIMALS = 6
 # A double below 10 carries no more.
 MOST_DECIMALS = 17
+# Rows of a long clip that are solved and held at a time.
+SEGMENT = 1 << 14
 # Blanks between two values that are copied column by column; wider gaps are rare and copied one by one.
 _WIDE_GAP = 16
 
@@ -52,14 +56,18 @@ def edited_bytes(clip: Clip, motion: Motion, *, touched: BoolArray, moved: BoolA
     BvhError
         Where a value to be written is not finite.
     """
-    edit = _edit(clip, motion, touched, moved)
-    if not edit.cells.any():
+    plan = _plan(clip, motion, touched, moved)
+    if len(plan.columns) == 0:
         return clip.text.data
-    _check_finite(clip, edit.values, edit.cells)
     # A stream grows in place, where joining pieces would hold the file twice.
     stream = BytesIO()
-    stream.write(_head(clip, frames=len(clip.values)))
-    _splice_rows(stream, clip, edit)
+    stream.write(_head(clip, frames=len(motion)))
+    at = clip.text.header.rows_start
+    for start in range(0, len(motion), SEGMENT):
+        edit = _edit(plan, motion, touched, moved, slice(start, min(start + SEGMENT, len(motion))))
+        _check_finite(clip, edit.values, edit.cells, first=start)
+        at = _splice_rows(stream, clip, edit, start, at)
+    _write_tail(stream, clip, at)
     return stream.getvalue()
 
 
@@ -68,7 +76,7 @@ def resampled_bytes(clip: Clip, motion: Motion) -> bytes:
 
     `Frames:` and `Frame Time:` are put right; rows use the file's line ending and one blank between values.
     """
-    values = joint_angles(motion, start=clip.values[0])
+    values = joint_angles(motion, start=clip.values_between(0, 1)[0])
     _check_finite(clip, values)
     data, header = clip.text.data, clip.text.header
     head = _head(clip, frames=len(values), frame_time=motion.frame_time)
@@ -99,43 +107,66 @@ def _decimals(clip: Clip) -> int:
 
 
 @dataclass(frozen=True, eq=False)
+class _Plan:
+    """Which `columns` (K,) an edit touches, and each touched joint's frames in pieces."""
+
+    columns: IntArray
+    pieces: dict[int, list[Piece]]
+
+
+@dataclass(frozen=True, eq=False)
 class _Edit:
-    """What an edit rewrites: `columns` (K,) of the rows, their `values` (F, K), and which `cells` (F, K) of them."""
+    """What is rewritten in a segment of n rows: the `columns` (K,), their `values` (n, K), and which `cells` (n, K)."""
 
     columns: IntArray
     values: FloatArray
     cells: BoolArray
 
 
-def _edit(clip: Clip, motion: Motion, touched: BoolArray, moved: BoolArray | None) -> _Edit:
-    """Return the new values of the columns that an edit touches; the other columns cost no memory."""
+def _plan(clip: Clip, motion: Motion, touched: BoolArray, moved: BoolArray | None) -> _Plan:
     skeleton = clip.motion.skeleton
-    masks: dict[int, BoolArray] = {}
-    tracks: dict[int, FloatArray] = {}
+    # Joints mostly ask for the same few rows.
+    given = cache(clip.values_between)
+    pieces: dict[int, list[Piece]] = {}
+    columns: list[int] = []
     for joint in np.flatnonzero(touched.any(axis=0)).tolist():
-        columns = rotation_columns(skeleton, [joint])[0]
-        if columns:
-            angles = angle_track(motion, joint, given=clip.values[:, columns], touched=touched[:, joint])
-            for column, track in zip(columns, angles.T, strict=True):
-                masks[column], tracks[column] = touched[:, joint], track
+        if skeleton.rotation_axes[joint]:
+            pieces[joint] = joint_pieces(motion, joint, given=given, touched=touched[:, joint], size=SEGMENT)
+            columns += skeleton.columns(joint, "rotation")
     for p, joint in enumerate(skeleton.translated.tolist()):
         if moved is not None and moved[:, p].any():
-            for axis, column in position_columns(skeleton, joint):
-                masks[column], tracks[column] = moved[:, p], motion.translations[:, p, axis]
-    columns = sorted(masks)
-    values = np.empty((len(clip.values), len(columns)))
-    cells = np.empty((len(clip.values), len(columns)), dtype=np.bool_)
-    for k, column in enumerate(columns):
-        values[:, k], cells[:, k] = tracks.pop(column), masks[column]
-    return _Edit(np.array(columns, dtype=np.intp), values, cells)
+            columns += skeleton.columns(joint, "position")
+    return _Plan(np.array(sorted(columns), dtype=np.intp), pieces)
 
 
-def _check_finite(clip: Clip, values: FloatArray, cells: BoolArray | None = None) -> None:
+def _edit(plan: _Plan, motion: Motion, touched: BoolArray, moved: BoolArray | None, rows: slice) -> _Edit:
+    """Return the new values of a segment of rows; the columns that nothing touches take no memory."""
+    skeleton = motion.skeleton
+    place = {column: k for k, column in enumerate(plan.columns.tolist())}
+    values = np.empty((rows.stop - rows.start, len(place)))
+    cells = np.zeros(values.shape, dtype=np.bool_)
+    for joint, pieces in plan.pieces.items():
+        columns = [place[column] for column in skeleton.columns(joint, "rotation")]
+        for piece in pieces:
+            if rows.start <= piece.start < rows.stop:
+                angles = piece_angles(motion, joint, piece=piece)
+                for column, angle in zip(columns, angles.T, strict=True):
+                    values[piece.start - rows.start : piece.stop - rows.start, column] = angle
+        cells[:, columns] = touched[rows, joint, None]
+    for p, joint in enumerate(skeleton.translated.tolist()):
+        for axis, column in position_columns(skeleton, joint):
+            if moved is not None and column in place:
+                values[:, place[column]] = motion.translations[rows, p, axis]
+                cells[:, place[column]] = moved[rows, p]
+    return _Edit(plan.columns, values, cells)
+
+
+def _check_finite(clip: Clip, values: FloatArray, cells: BoolArray | None = None, *, first: int = 0) -> None:
     bad = ~np.isfinite(values)
     if cells is not None:
         bad &= cells
     if bad.any():
-        frame = int(np.argmax(bad.any(axis=1)))
+        frame = first + int(np.argmax(bad.any(axis=1)))
         message = f"the edit gives values at frame {frame} that are not finite; nothing is written"
         raise BvhError(message, file=clip.label)
 
@@ -152,35 +183,48 @@ def _head(clip: Clip, *, frames: int, frame_time: float | None = None) -> bytes:
     return data[:start] + count + data[stop:time_start] + time + data[time_stop : header.rows_start]
 
 
-def _splice_rows(stream: BytesIO, clip: Clip, edit: _Edit) -> None:
-    """Write everything from the rows on, with the new text of the touched values in place of the old."""
+def _splice_rows(stream: BytesIO, clip: Clip, edit: _Edit, first: int, at: int) -> int:
+    """Write a segment of rows from frame `first` on, with the new text of the touched values in place of the old.
+
+    What stands from byte `at` up to the last touched row is written; the byte after it is returned.
+    """
     data, rows = memoryview(clip.text.data), clip.text.rows
-    at = clip.text.header.rows_start
     decimals = _decimals(clip)
-    row_bytes = (len(data) - at) // len(rows.starts) + 1
-    for first, last in runs(np.asarray(edit.cells.any(axis=1))):
-        step = max(BLOCK_BYTES // row_bytes, 1)
-        for start in range(first, last, step):
-            stop = min(start + step, last)
-            begin, end = int(rows.starts[start]), int(rows.stops[stop - 1])
+    step = max(BLOCK_BYTES * len(rows.starts) // len(data), 1)
+    for start, stop in runs(np.asarray(edit.cells.any(axis=1))):
+        for block in range(start, stop, step):
+            chosen = slice(block, min(block + step, stop))
+            begin, end = int(rows.starts[first + block]), int(rows.stops[first + chosen.stop - 1])
             stream.write(data[at:begin])
-            stream.write(_spliced(clip, edit, slice(start, stop), decimals=decimals).data)
+            cells, values = edit.cells[chosen].reshape(-1), edit.values[chosen].reshape(-1)
+            stream.write(_spliced(clip, (begin, end), edit.columns, values, cells, decimals=decimals).data)
             at = end
-    if rows.cut_off is None:
-        stream.write(data[at:])
+    return at
+
+
+def _write_tail(stream: BytesIO, clip: Clip, at: int) -> None:
+    cut_off = clip.text.rows.cut_off
+    if cut_off is None:
+        stream.write(memoryview(clip.text.data)[at:])
     else:
         # What is left of a row that was cut short would make the file unreadable.
-        stream.write(clip.text.data[at : rows.cut_off].rstrip(b" \t"))
+        stream.write(clip.text.data[at:cut_off].rstrip(b" \t"))
 
 
-def _spliced(clip: Clip, edit: _Edit, rows: slice, *, decimals: int) -> NDArray[np.uint8]:
-    """Return the text of some rows, from the first value to the last, with the touched values replaced."""
-    data, layout = clip.text.data, clip.text.rows
-    begin, end = int(layout.starts[rows.start]), int(layout.stops[rows.stop - 1])
-    columns = clip.values.shape[1]
+def _spliced(
+    clip: Clip,
+    span: tuple[int, int],
+    columns: IntArray,
+    values: FloatArray,
+    cells: BoolArray,
+    *,
+    decimals: int,
+) -> NDArray[np.uint8]:
+    """Return the text of the rows in a span of bytes, with the touched cells of some columns replaced."""
+    data, (begin, end) = clip.text.data, span
     starts, stops = words_between(data, begin, end)
-    word = (np.arange(rows.stop - rows.start)[:, None] * columns + edit.columns).reshape(-1)
-    values, cells = edit.values[rows].reshape(-1), edit.cells[rows].reshape(-1)
+    width = clip.motion.skeleton.channel_count
+    word = (np.arange(0, len(starts), width)[:, None] + columns).reshape(-1)
     if not cells.all():
         word, values = word[cells], values[cells]
     new = format_fixed(values, decimals=decimals)
@@ -188,9 +232,9 @@ def _spliced(clip: Clip, edit: _Edit, rows: slice, *, decimals: int) -> NDArray[
     if len(word) == len(starts):
         words, shifted = new.chars, np.cumsum(new.lengths - lengths)
     else:
-        width = max(-(-int(lengths.max()) // 8) * 8, new.chars.shape[1])
-        words = _windows(data, stops, width)
-        words[word, width - new.chars.shape[1] :] = new.chars
+        wide = max(-(-int(lengths.max()) // 8) * 8, new.chars.shape[1])
+        words = _windows(data, stops, wide)
+        words[word, wide - new.chars.shape[1] :] = new.chars
         growth = np.zeros(len(starts), np.intp)
         growth[word] = new.lengths - lengths[word]
         shifted = np.cumsum(growth)
