@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 
 FRAMES, RATE = 145, 24.0
 # One stride (two steps) takes so many seconds and goes so far, cm; a foot stands for so much of it.
-STRIDE_TIME, STRIDE, STANCE = 1.2, 124.0, 0.62
+STRIDE_TIME, STRIDE, STANCE = 1.2, 120.0, 0.62
 # The hips pass over the ankle at this part of the stride; the ankles stand so far from the middle line, cm.
-_OVER_FOOT = 0.215
+_OVER_FOOT = 0.19
 _TRACK = 7.5
 _TOES_OUT = 7.0
 # Pitch of the foot, degrees, toes down: as the heel lands, and as the toes leave.
@@ -55,20 +55,22 @@ def _foot(side: str, times: FloatArray, seed: int) -> tuple[FloatArray, FloatArr
     u = strides - count
     prints = _prints(side, int(count[-1]) + 2, seed)
     here, following = prints[count], prints[count + 1]
-    step = _even_travel(u, STANCE, 1.0, rise=0.10, fall=0.17)
+    step = _even_travel(u, STANCE, 1.0, rise=0.10, fall=0.13)
     x, z, yaw = (here + step[:, None] * (following - here)).T
     pitch = (
         _LANDING * (1.0 - curves.smooth_step(u, 0.0, 0.11))
-        + _PUSH * curves.smooth_step(u, 0.39, 0.82)
+        + _PUSH * curves.smooth_step(u, 0.36, 0.82)
         + (_LANDING - _PUSH) * curves.smooth_step(u, 0.69, 0.995)
     )
     foot = rot.multiply(axis_turn("y", yaw), axis_turn("x", pitch))
     # The ball of the foot stays in place, but for the first moment, when the foot rolls on its heel.
-    flat = rot.multiply(axis_turn("y", yaw), axis_turn("x", 0.0 * pitch))
-    heel_roll = rot.rotate(foot, _TOE_IN_FOOT - _HEEL_IN_FOOT) - rot.rotate(flat, _TOE_IN_FOOT - _HEEL_IN_FOOT)
-    landing = np.where(u < 0.5, 1.0, curves.smooth_step(u, 0.78, 1.0))
+    landing = _LANDING * np.where(
+        u < 0.5, 1.0 - curves.smooth_step(u, 0.0, 0.11), curves.smooth_step(u, 0.80, 0.995)
+    )
+    flat = axis_turn("y", yaw)
+    rolled = rot.rotate(rot.multiply(flat, axis_turn("x", landing)), _TOE_IN_FOOT - _HEEL_IN_FOOT)
     toe = np.stack((x, np.full_like(x, figure.TOE_HEIGHT), z), axis=-1)
-    toe = toe + (landing * (pitch < 0.0))[:, None] * heel_roll
+    toe = toe + rolled - rot.rotate(flat, _TOE_IN_FOOT - _HEEL_IN_FOOT)
     s = np.clip((u - STANCE) / (1.0 - STANCE), 0.0, 1.0)
     toe[:, 1] += 6.5 * s**3 * (1.0 - s) ** 4 * (7.0**7 / (3.0**3 * 4.0**4))
     bend = curves.smooth_step(u, 0.36, 0.60) * (1.0 - curves.smooth_step(u, 0.60, 0.80))
@@ -109,7 +111,7 @@ def _torso(body: Figure, times: FloatArray, sway: FloatArray, feet: dict[str, tu
         axis_turn("y", yaw), rot.multiply(axis_turn("z", drop), axis_turn("x", 5.0 + 0.5 * sway[:, 2]))
     )
     x = 2.2 * np.cos(over) + 0.2 * sway[:, 3]
-    y = 98.6 - 1.4 * np.cos(2.0 * left - 0.5)
+    y = 98.3 - 1.4 * np.cos(2.0 * left - 0.5)
     z = STRIDE / STRIDE_TIME * times + 1.2 * np.sin(2.0 * left - 0.6)
     root = np.stack((x, y, z), axis=-1)
     body.root(root, pelvis)
