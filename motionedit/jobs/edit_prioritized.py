@@ -9,6 +9,8 @@ from motionedit.core.bvh import unedited_bytes
 from motionedit.errors import MotionEditErrors, SpecError
 from motionedit.jobs import resolve
 from motionedit.jobs.batch import Outcome, plan, run_batch
+from motionedit.jobs.clip_facts import facts_of
+from motionedit.jobs.edit_metrics import edit_metrics
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -48,7 +50,12 @@ class _Edit:
         """Return the clip's own bytes."""
         del task
         _check_joints(self.loaded, clip)
-        record: dict[str, Any] = {"unit": self.loaded.data.get("unit"), "constraints": []}
+        facts = facts_of(clip)
+        record: dict[str, Any] = {
+            "unit": self.loaded.data.get("unit"),
+            "metrics": edit_metrics(facts, facts.poses.positions),
+            "constraints": [],
+        }
         return Outcome(unedited_bytes(clip), record, details=("no constraints: the same bytes",))
 
 

@@ -17,7 +17,7 @@ def text_table(headings: Sequence[str], rows: Sequence[Sequence[object]]) -> str
     cells = [[number(value) for value in row] for row in rows]
     kept = [c for c in range(len(headings)) if any(row[c] for row in cells)]
     lines = [[headings[c] for c in kept], *([row[c] for c in kept] for row in cells)]
-    right = [all(isinstance(row[c], (int, float, type(None))) for row in rows) for c in kept]
+    right = [all(_is_number(row[c]) for row in cells) for c in kept]
     widths = [max(len(line[i]) for line in lines) for i in range(len(kept))]
     return "\n".join(
         "  ".join(
@@ -29,10 +29,14 @@ def text_table(headings: Sequence[str], rows: Sequence[Sequence[object]]) -> str
 
 
 def number(value: object) -> str:
-    """Return a value as a table shows it: four significant digits, nothing for None."""
+    """Return a value as a table shows it: four digits, no exponent for large numbers, nothing for None."""
     if value is None:
         return ""
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
+    if not isinstance(value, float):
+        return str(value)
+    if abs(value) >= 1000.0:
+        return f"{value:.0f}"
+    return f"{value:.4g}" if value == 0.0 or abs(value) >= 1e-3 else f"{value:.0e}"
 
 
 def results_table(records: Sequence[dict[str, Any]], seconds: Sequence[float], *, verbosity: int = 0) -> str:
@@ -65,7 +69,7 @@ def _row(record: dict[str, Any], seconds: float) -> tuple[object, ...]:
         worst.get("frame"),
         record.get("iterations"),
         _change(record, "foot_slide_max"),
-        _change(record, "jerk_rms"),
+        _ratio(record, "jerk_rms"),
         None if record["status"] == "failed" else f"{seconds:.2f}",
     )
 
@@ -84,8 +88,24 @@ def _goals_table(record: dict[str, Any]) -> str:
     return "\n" + text_table(headings, rows)
 
 
-def _change(record: dict[str, Any], key: str) -> str | None:
-    """Return a measure before and after the edit, as ``1.2 -> 1.3``."""
+def _measures(record: dict[str, Any], key: str) -> tuple[float, float] | None:
+    """Return a measure before and after the edit, None where one is not known."""
     metrics = record.get("metrics") or {}
-    values = [number(metrics[side][key]) for side in ("before", "after") if key in (metrics.get(side) or {})]
-    return " -> ".join(value for value in values if value) or None
+    before, after = ((metrics.get(side) or {}).get(key) for side in ("before", "after"))
+    return None if before is None or after is None else (before, after)
+
+
+def _change(record: dict[str, Any], key: str) -> str | None:
+    """Return a measure before and after, as ``1.2 -> 1.3``."""
+    found = _measures(record, key)
+    return found and f"{number(found[0])} -> {number(found[1])}"
+
+
+def _ratio(record: dict[str, Any], key: str) -> str | None:
+    """Return a measure after over before, as ``1.04 x``."""
+    found = _measures(record, key)
+    return f"{found[1] / found[0]:.2f} x" if found and found[0] > 0.0 else None
+
+
+def _is_number(text: str) -> bool:
+    return not text or text.replace(".", "").replace("e-", "").removeprefix("-").removesuffix(" x").isdecimal()

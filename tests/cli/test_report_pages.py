@@ -1,0 +1,78 @@
+"""Reports and tables: rounded, ordered, readable."""
+
+import json
+
+import numpy as np
+import pytest
+
+from motionedit.report.record import plain, report_bytes
+from motionedit.report.table import number, results_table, text_table
+
+
+def test_numbers_are_rounded_and_what_is_not_finite_is_null():
+    assert plain(0.1 + 0.2) == 0.3
+    assert plain([1 / 3, float("nan"), float("inf"), -0.0, True, None, 7]) == [
+        0.333333333,
+        None,
+        None,
+        0.0,
+        True,
+        None,
+        7,
+    ]
+    assert str(plain(-0.0)) == "0.0"
+
+
+def test_arrays_and_keys_become_plain():
+    assert plain({1: np.array([1.5, 2.0]), "b": (np.float64(0.25), np.int64(3))}) == {"1": [1.5, 2.0], "b": [0.25, 3]}
+
+
+def test_a_report_is_utf8_whatever_its_names_are():
+    data = report_bytes("info", [{"clip": "größe.bvh"}, {"clip": "\udcff.bvh"}])
+    assert "größe.bvh" in data.decode()
+    assert json.loads(data)["clips"][1] == {"clip": "?.bvh"}
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(None, ""), (3, "3"), (0.0, "0"), (12.34567, "12.35"), (10183.4, "10183"), (3.2e-6, "3e-06"), ("x", "x")],
+)
+def test_a_number_in_a_table_is_short(value, text):
+    assert number(value) == text
+
+
+def test_columns_line_up_and_empty_ones_are_left_out():
+    assert text_table(("clip", "error", "none", "n"), [("a.bvh", 1.5, None, 3), ("long.bvh", 10.25, None, 12)]) == (
+        "clip      error   n\na.bvh       1.5   3\nlong.bvh  10.25  12"
+    )
+
+
+def record(name, status="ok", **more):
+    return {"clip": name, "output": None, "status": status, "message": None, **more}
+
+
+def test_the_results_show_the_worst_goal_and_the_side_effects():
+    goals = [
+        {"name": "left", "priority": 2, "error_max": 0.5, "frame": 3, "status": "ok", "gave_way_to": []},
+        {"name": "right", "priority": 1, "error_max": 1.8, "frame": 58, "status": "far", "gave_way_to": ["left"]},
+    ]
+    metrics = {
+        "before": {"foot_slide_max": 1.25, "jerk_rms": 100.0},
+        "after": {"foot_slide_max": 1.5, "jerk_rms": 104.0},
+    }
+    records = [record("a.bvh", constraints=goals, metrics=metrics)]
+    assert results_table(records, [0.123]).splitlines() == [
+        "clip   status  worst error  of     frame  foot slide     jerk  seconds",
+        "a.bvh  ok              1.8  right     58  1.25 -> 1.5  1.04 x     0.12",
+    ]
+    assert "right         1          1.8     58  far     left" in results_table(records, [0.1], verbosity=1)
+
+
+def test_of_many_clips_only_those_that_are_not_ok_get_a_row():
+    records = [record(f"{n}.bvh", "failed" if n == 7 else "ok") for n in range(200)]
+    assert results_table(records, [0.1] * 200).splitlines() == [
+        "clip   status",
+        "7.bvh  failed",
+        "200 clips: 199 ok, 1 failed",
+    ]
+    assert len(results_table(records, [0.1] * 200, verbosity=1).splitlines()) == 202
