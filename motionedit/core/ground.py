@@ -98,15 +98,12 @@ def find_up(motion: Motion, poses: WorldPoses, anatomy: Anatomy) -> FloatArray:
     return axis_vector(("-" if stand[axis] < 0.0 else "") + "xyz"[axis])
 
 
-def heading_frame(
-    motion: Motion, poses: WorldPoses, anatomy: Anatomy, *, up: FloatArray, frame: int, travel: int
-) -> Frame:
+def heading_frame(poses: WorldPoses, anatomy: Anatomy, *, up: FloatArray, frame: int, travel: int) -> Frame:
     """Return the heading frame at one frame: x to the character's left, y up, z forward.
 
     Its origin lies on the ground (up = 0) under the joint that carries the travel. Left is the line of the hips,
     where they are level enough, else of the shoulders; without either the frame has the file's own axes.
     """
-    del motion
     places = poses.positions[frame]
     left = reference_axes(up)[0]
     for a, b in _sideways(anatomy):

@@ -44,7 +44,7 @@ class ClipFacts:
         if at is not None:
             motion = resample(motion, np.array([at]), frame_time=motion.frame_time)
             poses, frame = kinematics.forward(motion), 0
-        return ground.heading_frame(motion, poses, self.anatomy, up=self.up, frame=frame, travel=self.travel)
+        return ground.heading_frame(poses, self.anatomy, up=self.up, frame=frame, travel=self.travel)
 
     def alignment(self, *, heading: bool, position: bool, at: float | None) -> Alignment:
         """Return the alignment of a clip on the ground, by its heading frame at a frame (None: the first)."""

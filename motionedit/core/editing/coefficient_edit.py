@@ -174,6 +174,8 @@ def component_displacement(
 def _solve(
     goals: Sequence[Goal], model: MotionModel, solver: GaussNewton | Damped, *, start: FloatArray
 ) -> CoefficientSolution:
+    if not goals:
+        return CoefficientSolution(np.zeros(len(start)), 0, (0.0,), "converged")
     if isinstance(solver, GaussNewton):
         variance = model.components.explained_variance
         return solve_goals(goals, explained_variance=variance, start=start, bound=solver.bound)

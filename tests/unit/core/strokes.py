@@ -44,7 +44,7 @@ def place(motion, timeline, *, hit):
     anatomy = find_anatomy(motion.skeleton, poses=poses)
     up = ground.find_up(motion, poses, anatomy)
     travel = ground.travel_joint(motion)
-    frame = ground.heading_frame(motion, poses, anatomy, up=up, frame=0, travel=travel)
+    frame = ground.heading_frame(poses, anatomy, up=up, frame=0, travel=travel)
     alignment = align_to(frame, heading=True, position=True)
     warp = make_warp(timeline, first=0, last=len(motion) - 1, events={"hit": hit}, label="stroke")
     return alignment, warp, travel, up

@@ -125,7 +125,7 @@ def test_toes_point_forward():
         up = find_up(motion, poses, anatomy)
         ahead = []
         for frame in range(0, len(motion), max(1, len(motion) // 20)):
-            heading = heading_frame(motion, poses, anatomy, up=up, frame=frame, travel=travel_joint(motion))
+            heading = heading_frame(poses, anatomy, up=up, frame=frame, travel=travel_joint(motion))
             toes = sum(poses.positions[frame, leg.toe] - poses.positions[frame, leg.ankle] for leg in anatomy.legs)
             ahead.append(toes @ heading.axes[2] / np.linalg.norm(toes))
         assert np.median(ahead) > 0.5, file.name

@@ -38,7 +38,7 @@ def frame_of(motion, frame=0, up=None):
     poses = forward(motion)
     anatomy = find_anatomy(motion.skeleton)
     up = find_up(motion, poses, anatomy) if up is None else up
-    return heading_frame(motion, poses, anatomy, up=up, frame=frame, travel=travel_joint(motion))
+    return heading_frame(poses, anatomy, up=up, frame=frame, travel=travel_joint(motion))
 
 
 @pytest.mark.parametrize("name", FILES)

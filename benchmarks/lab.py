@@ -1,0 +1,115 @@
+"""The tool's own jobs as functions over a scratch folder: normalize, fit, edit, and what came out, measured by FK."""
+
+from __future__ import annotations
+
+import itertools
+import json
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from motionedit.core import kinematics
+from motionedit.core.bvh import Clip, read_clip, resampled_bytes
+from motionedit.core.kinematics import Effector
+from motionedit.core.motion import Motion
+from motionedit.jobs import edit_pc, fit_pca, normalize
+from motionedit.jobs.batch import RunOptions
+from motionedit.spec.load import load_spec
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from motionedit.core.arrays import FloatArray
+
+DIRECTIONS = np.vstack((np.eye(3), -np.eye(3)))
+
+
+@dataclass(frozen=True)
+class Edited:
+    """One edited clip: the file written, its record in the report."""
+
+    path: Path
+    record: dict[str, Any]
+
+
+class Lab:
+    """A scratch folder in which every step gets a place of its own."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self._count = itertools.count()
+
+    def place(self) -> Path:
+        """Return a new folder."""
+        path = self.folder / f"{next(self._count):05d}"
+        path.mkdir(parents=True)
+        return path
+
+    def _spec(self, content: dict[str, Any], command: str) -> Path:
+        path = self.place() / "spec.yaml"
+        path.write_text(json.dumps({"schema": f"motionedit/{command}/v1", **content}))
+        return path
+
+    def model(self, clips: Sequence[Path], spec: dict[str, Any], *, fit: dict[str, Any] | None = None) -> Path:
+        """Return the model of clips, normalized by a spec."""
+        folder = self.place()
+        loaded = load_spec(self._spec(spec, "normalize"), "normalize")
+        result = normalize.run(loaded, clips, folder, RunOptions(keep_going=False))
+        if result.failures:
+            raise result.failures[0]
+        model = self.place() / "model.npz"
+        fit_pca.run(folder, model, load_spec(self._spec(fit or {}, "fit-pca"), "fit-pca"), RunOptions())
+        return model
+
+    def edit(self, clip: Path, model: Path, spec: dict[str, Any]) -> Edited:
+        """Return a clip edited by a spec."""
+        loaded = load_spec(self._spec(spec, "edit-pc"), "edit-pc")
+        folder = self.place()
+        result = edit_pc.run(loaded, [clip], str(folder), model, RunOptions())
+        if result.failures:
+            raise result.failures[0]
+        return Edited(folder / clip.name, result.records[0])
+
+    def cut(self, clip: Clip, start: int, stop: int, name: str) -> Path:
+        """Return a file with frames start to stop (both in) of a clip."""
+        rows = slice(start, stop + 1)
+        motion = clip.motion
+        part = Motion(motion.skeleton, motion.rotations[rows], motion.translations[rows], motion.frame_time)
+        path = self.place() / name
+        path.write_bytes(resampled_bytes(clip, part))
+        return path
+
+
+def effector_path(path: Path, joint: str, *, end_site: bool = False, offset: Sequence[float] = (0, 0, 0)) -> FloatArray:
+    """Return the world positions of a point over all frames of a file, shape (F, 3)."""
+    motion = read_clip(path).motion
+    index = motion.skeleton.names.index(joint)
+    local = np.array(offset, dtype=float)
+    if end_site:
+        local = next(site.offset for site in motion.skeleton.end_sites if site.joint == index)
+    return kinematics.effector_positions(kinematics.forward(motion), Effector(index, local))
+
+
+def joint_positions(path: Path) -> FloatArray:
+    """Return the world positions of all joints of a file, shape (F, J, 3)."""
+    return kinematics.forward(read_clip(path).motion).positions
+
+
+def jerk(positions: FloatArray) -> float:
+    """Return the root mean square third difference."""
+    return float(np.sqrt(np.mean(np.diff(positions, 3, axis=0) ** 2)))
+
+
+def largest_jerk(positions: FloatArray) -> float:
+    """Return the largest third difference."""
+    return float(np.linalg.norm(np.diff(positions, 3, axis=0), axis=-1).max())
+
+
+def print_table(title: str, rows: Sequence[Sequence[str]]) -> None:
+    """Print rows under a title, the columns aligned."""
+    widths = [max(len(row[c]) for row in rows) for c in range(len(rows[0]))]
+    print(f"\n{title}\n")
+    for row in rows:
+        print("  " + "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
