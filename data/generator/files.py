@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from data.generator.golf import BALL_HEIGHT, make_swing
+from data.generator.kick import make_kick
 from data.generator.players import GROUPS, SHIPPED_RATE, shipped_swings
 from data.generator.walk import make_walk
 from motionedit.core.bvh import new_bytes
@@ -38,6 +39,7 @@ def shipped_files(*, noise: float = 1.0, rate: float = SHIPPED_RATE) -> Iterator
     ]
     yield "golf/balls.tsv", ("clip\tstyle\tx\ty\tz\n" + "".join(balls)).encode()
     yield "walk.bvh", new_bytes(make_walk(), decimals=DECIMALS)
+    yield "kick.bvh", new_bytes(make_kick(), decimals=DECIMALS)
 
 
 def write_shipped(folder: Path, *, noise: float = 1.0, rate: float = SHIPPED_RATE) -> Iterator[Path]:

@@ -64,9 +64,7 @@ def _foot(side: str, times: FloatArray, seed: int) -> tuple[FloatArray, FloatArr
     )
     foot = rot.multiply(axis_turn("y", yaw), axis_turn("x", pitch))
     # The ball of the foot stays in place, but for the first moment, when the foot rolls on its heel.
-    landing = _LANDING * np.where(
-        u < 0.5, 1.0 - curves.smooth_step(u, 0.0, 0.11), curves.smooth_step(u, 0.80, 0.995)
-    )
+    landing = _LANDING * np.where(u < 0.5, 1.0 - curves.smooth_step(u, 0.0, 0.11), curves.smooth_step(u, 0.80, 0.995))
     flat = axis_turn("y", yaw)
     rolled = rot.rotate(rot.multiply(flat, axis_turn("x", landing)), _TOE_IN_FOOT - _HEEL_IN_FOOT)
     toe = np.stack((x, np.full_like(x, figure.TOE_HEIGHT), z), axis=-1)
