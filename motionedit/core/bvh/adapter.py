@@ -7,6 +7,7 @@ this package's own reader has accepted. It is imported where it is used, for it 
 from __future__ import annotations
 
 import tempfile
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -65,9 +66,7 @@ class VerifyResult:
 
 def to_bvhio(motion: Motion) -> Any:  # noqa: ANN401 (bvhio has no types)
     """Return the motion as a `bvhio.BvhContainer`, in single precision; of several End Sites the last."""
-    import bvhio
-    import glm
-
+    bvhio, glm = _bvhio_and_glm()
     skeleton = motion.skeleton
     nodes: list[Any] = []
     for j, name in enumerate(skeleton.names):
@@ -201,9 +200,17 @@ def _plain_bytes(clip: Clip) -> bytes:
     return "".join(f"{line}\n" for line in lines).encode()
 
 
-def _nodes_of(data: bytes) -> list[Any]:
-    import bvhio
+def _bvhio_and_glm() -> tuple[Any, Any]:
+    with warnings.catch_warnings():
+        # bvhio imports its vector library by a name that the library is about to give up.
+        warnings.simplefilter("ignore", PendingDeprecationWarning)
+        import bvhio
+        import glm
+    return bvhio, glm
 
+
+def _nodes_of(data: bytes) -> list[Any]:
+    bvhio, _ = _bvhio_and_glm()
     with tempfile.TemporaryDirectory(prefix="motionedit-") as folder:
         path = Path(folder) / "clip.bvh"
         path.write_bytes(data)
