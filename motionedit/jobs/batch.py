@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import sys
-import time
 from contextlib import closing
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from motionedit.errors import (
     EXIT_CLIP_FAILED,
@@ -18,14 +16,13 @@ from motionedit.errors import (
     MotionEditErrors,
 )
 from motionedit.jobs.files import atomic_write, clean_leftovers
+from motionedit.jobs.one_clip import Done, Outcome, RunOne, Work, flatten, read_task
 from motionedit.jobs.plan import ClipTask, RunOptions, find_clips, no_progress, plan
 from motionedit.jobs.pool import results_in_order
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from motionedit.core.bvh import Clip
-    from motionedit.core.motion import Motion
 
 __all__ = [
     "BatchResult",
@@ -48,41 +45,6 @@ Value = TypeVar("Value")
 
 # What --strict counts as a goal that was not met.
 _MISSED = frozenset({"out_of_tolerance", "unreachable"})
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """What the work on one clip came to.
-
-    Attributes
-    ----------
-    content : bytes or None
-        The file to write; None writes none.
-    record : dict
-        The clip's entry in the report, from `message` on; plain values only.
-    status : str
-        ``ok``, ``far``, ``out_of_tolerance`` or ``unreachable``; the last two are what `strict` looks at.
-    warnings : tuple of str
-        One line each, without the clip's name.
-    motion : Motion or None
-        What the content should read back as, for `verify`; None is the clip's own.
-    details : tuple of str
-        Lines that --dry-run prints: layers, recruited joints, intervals, goals.
-    """
-
-    content: bytes | None
-    record: dict[str, Any] = field(default_factory=dict)
-    status: str = "ok"
-    warnings: tuple[str, ...] = ()
-    motion: Motion | None = None
-    details: tuple[str, ...] = ()
-
-
-class Work(Protocol):
-    """What is done to each clip: a frozen dataclass that can be pickled."""
-
-    def __call__(self, clip: Clip, task: ClipTask) -> Outcome:
-        """Return the outcome for one clip, or raise a MotionEditError that fails it."""
 
 
 @dataclass(frozen=True)
@@ -132,8 +94,8 @@ def run_batch(tasks: Sequence[ClipTask], work: Work, options: RunOptions) -> Bat
 
     waiting = [task for task in tasks if not task.current]
     folders = [task.output.parent for task in waiting if task.output is not None]
-    run_one = _RunOne(work, replace(options, progress=no_progress))
-    done: list[_Done] = []
+    run_one = RunOne(work, replace(options, progress=no_progress))
+    done: list[Done] = []
     try:
         if not options.dry_run:
             clean_leftovers(folders)
@@ -143,7 +105,7 @@ def run_batch(tasks: Sequence[ClipTask], work: Work, options: RunOptions) -> Bat
         )
         with closing(results), options.progress(len(waiting)) as advance:
             for result in results:
-                done.append(result if isinstance(result, _Done) else _Done(errors=(result,)))
+                done.append(result if isinstance(result, Done) else Done(errors=(result,)))
                 advance()
     finally:
         # Workers that were ended in the middle of a file could not clean up themselves.
@@ -171,85 +133,6 @@ def map_tasks(
     return values
 
 
-def read_task(task: ClipTask, *, lenient: bool) -> Clip:
-    """Return the clip of a task, from its file or from standard input.
-
-    Raises
-    ------
-    BvhError
-        The file is no BVH clip.
-    ClipError
-        It cannot be read at all.
-    """
-    from motionedit.core.bvh import parse_clip, read_clip
-
-    try:
-        if task.source is None:
-            return parse_clip(sys.stdin.buffer.read(), label=task.label, lenient=lenient)
-        return read_clip(task.source, label=task.label, lenient=lenient)
-    except OSError as error:
-        raise ClipError(f"cannot be read: {error.strerror or error}", file=task.label) from error
-
-
-def flatten(group: ExceptionGroup[MotionEditError]) -> tuple[MotionEditError, ...]:
-    """Return the errors of a group and of the groups in it, in order."""
-    errors: list[MotionEditError] = []
-    for error in group.exceptions:
-        errors.extend(flatten(error) if isinstance(error, ExceptionGroup) else (error,))
-    return tuple(errors)
-
-
-@dataclass(frozen=True)
-class _Done:
-    """What a worker sends back: an Outcome without its arrays, or errors."""
-
-    outcome: Outcome = field(default_factory=lambda: Outcome(None))
-    written: bool = False
-    errors: tuple[MotionEditError, ...] = ()
-    seconds: float = 0.0
-
-
-@dataclass(frozen=True)
-class _RunOne:
-    """All that is done to one clip, as a worker runs it."""
-
-    work: Work
-    options: RunOptions
-
-    def __call__(self, task: ClipTask) -> _Done:
-        start = time.perf_counter()
-        try:
-            done = self._run(task)
-        except MotionEditErrors as group:
-            done = _Done(errors=flatten(group))
-        except MotionEditError as error:
-            done = _Done(errors=(error,))
-        except Exception as error:
-            if self.options.verbosity > 1:
-                raise
-            message = f"unexpected {type(error).__name__}: {error}; please report it (-vv shows where)"
-            done = _Done(errors=(ClipError(" ".join(message.split()), file=task.label),))
-        return replace(done, seconds=time.perf_counter() - start)
-
-    def _run(self, task: ClipTask) -> _Done:
-        clip = read_task(task, lenient=self.options.lenient)
-        outcome = self.work(clip, task)
-        warnings = (*clip.warnings, *outcome.warnings)
-        content = outcome.content
-        if content is None or self.options.dry_run:
-            return _Done(replace(outcome, content=None, motion=None, warnings=warnings))
-        record = outcome.record
-        if self.options.verify:
-            record = {**record, "verify": _verify(clip, content, outcome.motion or clip.motion)}
-        if task.output is not None:
-            try:
-                atomic_write(task.output, content)
-            except OSError as error:
-                raise ClipError(f"cannot be written: {error.strerror or error}", file=str(task.output)) from error
-            content = None
-        return _Done(Outcome(content, record, outcome.status, warnings), written=True)
-
-
 @dataclass(frozen=True)
 class _Guarded:
     """A function whose errors are values, as a worker runs it."""
@@ -268,23 +151,8 @@ class _Guarded:
             return ClipError(error.strerror or str(error), file=error.filename and str(error.filename))
 
 
-def _verify(clip: Clip, content: bytes, motion: Motion) -> dict[str, Any]:
-    """Return what bvhio, an independent reader, found in the bytes to write; a difference fails the clip."""
-    from motionedit.core.anatomy import find_anatomy
-    from motionedit.core.bvh import check_with_bvhio
-
-    result = check_with_bvhio(content, motion, leg_length=find_anatomy(motion.skeleton).leg_length)
-    if not result.ok:
-        raise ClipError(
-            f"--verify: bvhio reads joint {result.joint} at frame {result.frame} {result.distance:.4g} from its "
-            "place; the file was not kept",
-            file=clip.label,
-        )
-    return {"distance": result.distance, "frames_skipped": result.skipped}
-
-
-def _has_failed(result: _Done | MotionEditError) -> bool:
-    return not isinstance(result, _Done) or bool(result.errors)
+def _has_failed(result: Done | MotionEditError) -> bool:
+    return not isinstance(result, Done) or bool(result.errors)
 
 
 def _absolute(task: ClipTask) -> ClipTask:
@@ -296,7 +164,7 @@ def _absolute(task: ClipTask) -> ClipTask:
     )
 
 
-def _collect(waiting: Sequence[ClipTask], done: Sequence[_Done], total: int, options: RunOptions) -> BatchResult:
+def _collect(waiting: Sequence[ClipTask], done: Sequence[Done], total: int, options: RunOptions) -> BatchResult:
     pairs = list(zip(waiting, done, strict=False))  # shorter after --fail-fast
     failures = [_named(error, task) for task, one in pairs for error in one.errors]
     return BatchResult(
@@ -312,7 +180,7 @@ def _collect(waiting: Sequence[ClipTask], done: Sequence[_Done], total: int, opt
     )
 
 
-def _record(task: ClipTask, done: _Done) -> dict[str, Any]:
+def _record(task: ClipTask, done: Done) -> dict[str, Any]:
     output = None if task.output is None else str(task.output)
     head = {"clip": task.label, "output": output}
     if done.errors:
@@ -335,7 +203,7 @@ def _heading(task: ClipTask) -> str:
     return f"{task.label} -> {task.output or 'standard output'}"
 
 
-def _exit_code(waiting: Sequence[ClipTask], done: Sequence[_Done], *, strict: bool) -> int:
+def _exit_code(waiting: Sequence[ClipTask], done: Sequence[Done], *, strict: bool) -> int:
     failed = [one for one in done if one.errors]
     if failed:
         fault_of_the_spec = len(failed) == len(waiting) and all(

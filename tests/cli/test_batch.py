@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from motionedit.core.bvh import unedited_bytes
+from motionedit.core.bvh import VerifyResult, unedited_bytes
 from motionedit.errors import ClipError, MotionEditErrors, SpecError
 from motionedit.jobs.batch import Outcome, RunOptions, map_tasks, plan, run_batch
 
@@ -81,6 +81,21 @@ def test_a_clip_that_fails_fails_alone(go, fault, jobs):
     }
     assert [str(error) for error in result.failures] == expected[fault]
     assert result.records[1]["message"] == "; ".join(expected[fault])
+
+
+def test_with_vv_a_fault_of_ours_is_raised_to_show_its_place(go):
+    with pytest.raises(KeyError, match="bug"):
+        go("bug", verbosity=2)
+
+
+def test_a_file_that_bvhio_reads_as_another_motion_is_not_kept(go, monkeypatch):
+    def look(_data, _motion, *, leg_length):
+        return VerifyResult(distance=leg_length, frame=7, joint="Hips", skipped=0, tolerance=0.1)
+
+    monkeypatch.setattr("motionedit.core.bvh.check_with_bvhio", look)
+    result = go("a", verify=True)
+    assert "in/a.bvh: --verify: bvhio reads joint Hips at frame 7" in str(result.failures[0])
+    assert not Path("out").exists()
 
 
 def test_fail_fast_does_not_begin_the_clips_after_a_failed_one(go):

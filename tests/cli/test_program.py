@@ -1,5 +1,7 @@
 """The program as such: its help, its version, and the one place where errors become lines."""
 
+import io
+import json
 import os
 import subprocess
 import sys
@@ -11,6 +13,7 @@ from motionedit import __version__
 from motionedit.cli import main
 from motionedit.cli.boundary import run_guarded
 from motionedit.cli.program import COMMANDS
+from motionedit.cli.progress import progress_on_terminal
 from motionedit.errors import ClipError, MotionEditErrors, SpecError
 
 COMMAND_LINE = [sys.executable, "-m", "motionedit"]
@@ -85,6 +88,8 @@ def test_without_a_command_the_help_is_shown_as_an_error(run):
         (["edit-pc", "a.bvh", "--skeleton", "b.bvh"], "--skeleton is not supported yet"),
         (["preview", "a.bvh", "-o", "x.html", "--report=x"], "--report is not supported yet"),
         (["diff", "s.yaml", "s.yaml", "--tolerance-angle", "nan"], "nan is below 0"),
+        (["info", ""], "an empty name"),
+        (["edit-prioritized", "a.bvh", "-s", "s.yaml", "-o", ""], "an empty name"),
         (["schema", "info"], "'info' is not one of"),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, list) else "",
@@ -139,9 +144,47 @@ def test_a_fault_of_ours_shows_its_place_only_with_vv(run, monkeypatch, verbose,
     assert "motionedit: error: unexpected KeyError: 'x'; please report it" in result.stderr
 
 
+def test_ctrl_c_is_exit_code_130(run, monkeypatch):
+    def stop(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("motionedit.spec.schema_of", stop)
+    result = run("schema", "edit-pc")
+    assert (result.exit_code, result.stderr) == (130, "motionedit: error: interrupted\n")
+
+
+@pytest.mark.parametrize("name", ["normalize", "fit-pca", "edit-pc", "edit-prioritized"])
+def test_the_schema_of_each_spec_is_json(run, name):
+    assert json.loads(run("schema", name).stdout)["properties"]["schema"]
+
+
+def test_a_bar_moves_only_on_a_terminal_and_for_more_than_one_clip(monkeypatch):
+    def shown(length, *, terminal):
+        stream = io.StringIO()
+        stream.isatty = lambda: terminal
+        monkeypatch.setattr("sys.stderr", stream)
+        with progress_on_terminal(length) as advance:
+            advance()
+        return stream.getvalue()
+
+    assert "1/2" in shown(2, terminal=True)
+    assert shown(1, terminal=True) == shown(2, terminal=False) == ""
+
+
 def test_the_module_is_the_same_program():
     done = subprocess.run([*COMMAND_LINE, "--help"], capture_output=True, text=True, check=True)
     assert done.stdout.startswith("Usage: motionedit [OPTIONS]")
+
+
+def test_the_shell_completes_commands():
+    environment = {
+        **os.environ,
+        "COMP_WORDS": "motionedit edit",
+        "COMP_CWORD": "1",
+        "_MOTIONEDIT_COMPLETE": "bash_complete",
+    }
+    done = subprocess.run(COMMAND_LINE, env=environment, capture_output=True, text=True, check=False)
+    assert done.stdout == "plain,edit-pc\nplain,edit-prioritized\n"
 
 
 def test_a_reader_that_stops_reading_is_no_error():
