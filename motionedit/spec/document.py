@@ -38,6 +38,13 @@ class Document(SpecModel):
         return tuple(found.file for found in frames if found is not None and found.file is not None)
 
     @classmethod
+    def key_names(cls) -> tuple[str, ...]:
+        """Return the keys of the spec, its own before those that all specs share."""
+        names = super().key_names()
+        shared = Document.model_fields
+        return tuple(sorted(names, key=lambda name: name in shared))
+
+    @classmethod
     def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
         """Yield what is wrong between keys."""
         yield from (fault.under("events") for fault in event_faults(data.get("events")))

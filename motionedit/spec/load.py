@@ -164,7 +164,7 @@ def _together(faults: Sequence[Fault], tree: Node, file: str) -> MotionEditError
 
 def _located(fault: Fault, tree: Node, file: str) -> SpecError:
     if fault.file is not None:
-        return SpecError(fault.message, file=fault.file, line=fault.line, key=dotted(fault.keys) or None)
+        return SpecError(fault.message, file=fault.file, line=fault.line)
     if fault.line is not None:
         return SpecError(fault.message, file=file, line=fault.line, key=dotted(fault.keys) or None)
     way = _way(tree, fault.keys)

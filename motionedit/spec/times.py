@@ -27,6 +27,7 @@ DURATION_WORDS = "whole frames such as 40, or seconds such as 0.8s"
 
 # A half frame that binary fractions put a hair too low is still a half: 1.5 s at 0.04 s a frame is 37.5 frames.
 _HALF_SLACK = 1e-6
+_FARTHEST = 1e9
 
 
 @dataclass(frozen=True)
@@ -75,10 +76,10 @@ class Time:
             Where the event is unknown or the frame is outside the clip; the message is one line.
         """
         instant = self.instant(frames=frames, frame_time=frame_time, events=events)
-        # A number without end is as far outside as any.
-        nearest = math.floor(instant + 0.5 + _HALF_SLACK) if math.isfinite(instant) else -1
-        if not 0 <= nearest < frames:
-            where = "" if self.text == str(nearest) else f" (frame {nearest})"
+        # Floors of huge or endless numbers are no help, in arithmetic or in a message.
+        nearest = math.floor(instant + 0.5 + _HALF_SLACK) if abs(instant) < _FARTHEST else None
+        if nearest is None or not 0 <= nearest < frames:
+            where = "" if nearest is None or self.text == str(nearest) else f" (frame {nearest})"
             raise ValueError(f"{self.text}{where} is outside the clip, whose frames are 0 to {frames - 1}")
         return nearest
 
@@ -135,9 +136,9 @@ def parse_time(value: object) -> Time:
     text = _text(value)
     if text is not None:
         if match := _INSTANT.fullmatch(text):
-            return _instant(text, match)
+            return _instant(value, text, match)
         if match := _FROM_EVENT.fullmatch(text):
-            return _from_event(text, match)
+            return _from_event(value, text, match)
     raise faulty(f"must be a time: {TIME_WORDS}; not {show(value)}")
 
 
@@ -145,26 +146,28 @@ def _text(value: object) -> str | None:
     if isinstance(value, bool):
         return None
     if isinstance(value, float):
+        if not math.isfinite(value):
+            return None
         return str(int(value)) if value.is_integer() else repr(value)
     return str(value).strip() if isinstance(value, (int, str)) else None
 
 
-def _instant(text: str, match: re.Match[str]) -> Time:
+def _instant(value: object, text: str, match: re.Match[str]) -> Time:
     amount = float(match["amount"])
     if amount < 0.0 or text.startswith("-"):
-        raise faulty(f"must not be negative: frames count from 0; not {show(text)}")
+        raise faulty(f"must not be negative: frames count from 0; not {show(value)}")
     if not math.isfinite(amount):
         raise faulty("must be a finite time")
     if match["unit"] == "s":
         return Time(text, seconds=amount)
     if match["unit"] == "%":
         if amount > 100.0:
-            raise faulty(f"must be from 0% to 100% of the clip, not {show(text)}")
+            raise faulty(f"must be from 0% to 100% of the clip, not {show(value)}")
         return Time(text, percent=amount)
-    return Time(text, frames=_whole_frames(text, amount))
+    return Time(text, frames=_whole_frames(value, amount))
 
 
-def _from_event(text: str, match: re.Match[str]) -> Time:
+def _from_event(value: object, text: str, match: re.Match[str]) -> Time:
     if match["sign"] is None:
         return Time(text, event=match["event"])
     amount = float(match["sign"] + match["amount"])
@@ -172,12 +175,12 @@ def _from_event(text: str, match: re.Match[str]) -> Time:
         raise faulty("must be a finite time")
     if match["unit"] == "s":
         return Time(text, event=match["event"], seconds=amount)
-    return Time(text, event=match["event"], frames=_whole_frames(text, amount))
+    return Time(text, event=match["event"], frames=_whole_frames(value, amount))
 
 
-def _whole_frames(text: str, amount: float) -> int:
+def _whole_frames(value: object, amount: float) -> int:
     if not amount.is_integer():
-        raise faulty(f"must be a whole frame, or seconds such as 3.76s; not {show(text)}")
+        raise faulty(f"must be a whole frame, or seconds such as 3.76s; not {show(value)}")
     return int(amount)
 
 

@@ -44,7 +44,7 @@ _SYNTAX = (
     ("unknown escape character", "an unknown escape in double quotes; use single quotes"),
     ("expected node content", "a value that is not there"),
     ("expected the node content", "a value that is not there"),
-    ("expected '-' indicator", "a line that does not fit the list above; indent it as the lines it belongs to"),
+    ("expected '-' indicator", "a line that does not fit the lines above; indent it as the lines it belongs to"),
     ("expected <block end>", "a line that does not fit the lines above; indent it as the lines it belongs to"),
     ("expected key", "a line that does not fit the lines above; indent it as the lines it belongs to"),
     ("cannot start any token", "a character that cannot begin a value; put quotes around the text"),
@@ -211,7 +211,7 @@ class _Builder:
         kinds = {"str": str, "int": int, "float": float, "bool": bool, "null": type(None)}
         kind = kinds.get(tag.removeprefix(_CORE))
         if kind is None:
-            raise self._faulty(f"the tag {show(tag)} is not supported", line)
+            raise self._faulty(f"the tag {_short(tag)} is not supported", line)
         value = text if kind is str else scalar(text)
         if kind is float and isinstance(value, int):
             value = float(value)
@@ -253,7 +253,7 @@ class _Builder:
         if level is not None and isinstance(level.node.value, dict) and level.key is None:
             raise self._faulty("a key must be a word, not a list or mapping", node.line)
         if event.tag not in (None, "!", _CORE + kind):
-            raise self._faulty(f"the tag {show(event.tag)} is not supported", node.line)
+            raise self._faulty(f"the tag {_short(event.tag)} is not supported", node.line)
         self._count_nodes(1, node.line)
         if len(self._stack) + 1 > DEEPEST:
             raise self._faulty(f"nested more than {DEEPEST} deep", node.line)
@@ -307,6 +307,10 @@ class _Builder:
 
 # No key of a file can be equal to it: YAML allows no such character.
 _MERGE = "\0merge"
+
+
+def _short(tag: str) -> str:
+    return show(tag.replace(_CORE, "!!"))
 
 
 def scalar(text: str) -> object:
