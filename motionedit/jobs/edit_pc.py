@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
+    from motionedit.core.arrays import IntArray
     from motionedit.core.bvh import Clip
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.pca.model import MotionModel
@@ -86,8 +87,15 @@ class _Edit:
         facts = facts_of(clip, up=axis_name(model.up), keep_rest_pose=model.rules["rest_pose"] == "keep")
         if facts.last - facts.first < 1:
             raise ClipError("has one frame; a motion needs two", file=task.label)
+        joint_map = match_joints(
+            model.skeleton,
+            clip.motion.skeleton,
+            height=facts.anatomy.height,
+            label=task.label,
+            against=f"the model {self.model_label}",
+        )
         events = events_for_model(self.loaded, model, facts, task, model_label=self.model_label, others=self.others)
-        projection = self._projection(facts, task, events)
+        projection = self._projection(facts, task, events, joint_map)
         goals, poses = self._goals(facts, projection, task, events)
         edit = edit_by_coefficients(
             projection,
@@ -99,15 +107,10 @@ class _Edit:
         )
         return self._outcome(facts, projection, edit, goals, before=poses)
 
-    def _projection(self, facts: ClipFacts, task: ClipTask, events: dict[str, float]) -> Projection:
+    def _projection(
+        self, facts: ClipFacts, task: ClipTask, events: dict[str, float], joint_map: IntArray
+    ) -> Projection:
         model, motion = self.model, facts.clip.motion
-        joint_map = match_joints(
-            model.skeleton,
-            motion.skeleton,
-            height=facts.anatomy.height,
-            label=task.label,
-            against=f"the model {self.model_label}",
-        )
         warp = make_warp(model.timeline, first=facts.first, last=facts.last, events=events, label=task.label)
         align = model.rules["align"]
         alignment = facts.alignment(

@@ -1,6 +1,5 @@
 """J(alpha) of eq. (11) against central differences, for every kind of goal row."""
 
-
 import numpy as np
 import pytest
 

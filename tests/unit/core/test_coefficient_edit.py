@@ -41,9 +41,7 @@ def request_of(motion, frame, shift, *, joint=HAND, offset=(0.0, -0.15, 0.0), **
 
 
 def edited(model, projection, requests, *, bound=50.0, residual="keep", first=0):
-    return edit_by_coefficients(
-        projection, model, requests, solver=GaussNewton(bound), residual=residual, first=first
-    )
+    return edit_by_coefficients(projection, model, requests, solver=GaussNewton(bound), residual=residual, first=first)
 
 
 def place_of(motion, request):
@@ -107,9 +105,7 @@ def test_a_goal_along_other_axes_and_in_another_joints_frame_is_met(model):
     inside = rot.rotate(rot.conjugate(poses.rotations[36, spine]), hand - poses.positions[36, spine])
     relative = request_of(motion, 36, 0.0, offset=(0, 0, 0), position=inside + [0.02, 0.01, 0], relative_to=spine)
     after = kinematics.forward(edited(model, projection, [relative]).motion)
-    seen = rot.rotate(
-        rot.conjugate(after.rotations[36, spine]), after.positions[36, HAND] - after.positions[36, spine]
-    )
+    seen = rot.rotate(rot.conjugate(after.rotations[36, spine]), after.positions[36, HAND] - after.positions[36, spine])
     np.testing.assert_allclose(seen, relative.position, atol=1e-5)
 
 
@@ -154,6 +150,4 @@ def test_rows_put_back_unchanged_are_the_motion(model):
     motion = stroke(28, heading=1.0)
     projection = projected(model, motion, 36.0)
     again = with_rows(projection, model.space, projection.rows)
-    np.testing.assert_allclose(
-        kinematics.forward(again).positions, kinematics.forward(motion).positions, atol=1e-12
-    )
+    np.testing.assert_allclose(kinematics.forward(again).positions, kinematics.forward(motion).positions, atol=1e-12)

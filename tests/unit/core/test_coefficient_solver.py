@@ -139,9 +139,7 @@ def test_a_goal_that_no_component_moves_is_left_as_it_is():
 
 
 def damped(goal, *, damping=10.0, tolerance=1.0, max_iterations=1500):
-    return solve_damped(
-        [goal], size=8, damping=damping, tolerance=tolerance, max_iterations=max_iterations, unit=0.01
-    )
+    return solve_damped([goal], size=8, damping=damping, tolerance=tolerance, max_iterations=max_iterations, unit=0.01)
 
 
 def test_the_papers_algorithm_stops_within_a_centimetre():

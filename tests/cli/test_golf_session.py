@@ -1,0 +1,297 @@
+"""The session of the README on the golf swings: normalize, fit-pca, edit-pc, as typed."""
+
+import json
+
+import numpy as np
+import pytest
+from lab import effector_path
+
+from motionedit.core.bvh import parse_clip, read_clip, resampled_bytes
+from motionedit.core.motion import Motion
+
+
+@pytest.fixture(scope="module")
+def configs():
+    from pathlib import Path
+
+    return Path(__file__).resolve().parents[2] / "configs"
+
+
+@pytest.fixture(scope="module")
+def data(configs):
+    return configs.parent / "data" / "golf"
+
+
+def edit_spec(path, **more):
+    goal = {"name": "ball", "at": "hit", "effector": {"end_site": "Club"}, "shift": [0, 0, 10]}
+    path.write_text(json.dumps({"schema": "motionedit/edit-pc/v1", "unit": "cm", "goals": [goal], **more}))
+    return path
+
+
+def test_the_session_of_the_readme(run, configs, data, tmp_path):
+    assert run("normalize", data, "-s", configs / "golf-normalize.yaml", "-o", "n").exit_code == 0
+    assert len(list((tmp_path / "n").glob("*.bvh"))) == 10
+    listing = json.loads((tmp_path / "n" / "normalization.json").read_text())
+    assert (listing["frames"], listing["frame_rate"]) == (132, 25.0)
+    fit = run("fit-pca", "n", "-o", "golf.npz", "-s", configs / "golf-fit.yaml")
+    assert fit.exit_code == 0
+    assert fit.stdout == "golf.npz\n"
+    assert "100.00" in fit.stderr
+    edit = run("edit-pc", data / "swing04.bvh", "-m", "golf.npz", "-s", configs / "golf-edit.yaml", "-o", "e.bvh")
+    assert edit.exit_code == 0
+    frame = 92
+    before, after = (
+        effector_path(path, "Club", end_site=True)[frame] for path in (data / "swing04.bvh", tmp_path / "e.bvh")
+    )
+    np.testing.assert_allclose(after - before, [0, 0, 10], atol=0.01)
+
+
+def test_the_same_bytes_for_any_number_of_jobs(run, configs, data, tmp_path):
+    for jobs in ("1", "2"):
+        run("normalize", data, "-s", configs / "golf-normalize.yaml", "-o", f"n{jobs}", "-j", jobs)
+        run("fit-pca", f"n{jobs}", "-o", f"m{jobs}.npz", "-j", jobs)
+        spec = edit_spec(tmp_path / "e.yaml")
+        run("edit-pc", data, "-m", f"m{jobs}.npz", "-s", spec, "-o", f"e{jobs}", "-j", jobs)
+    for folder in ("n", "e"):
+        first, second = (sorted((tmp_path / f"{folder}{jobs}").iterdir()) for jobs in ("1", "2"))
+        assert [path.read_bytes() for path in first] == [path.read_bytes() for path in second]
+        assert len(first) >= 10
+    assert (tmp_path / "m1.npz").read_bytes() == (tmp_path / "m2.npz").read_bytes()
+
+
+def test_an_edit_that_asks_for_nothing_writes_the_inputs_bytes(run, golf, data, tmp_path):
+    still = edit_spec(tmp_path / "still.yaml")
+    result = run("edit-pc", data, "-m", golf.model, "-s", still, "-o", "out", "--set", "goals.ball.shift=[0, 0, 0]")
+    assert result.exit_code == 0
+    empty = golf.spec(tmp_path / "empty.yaml", goals=[])
+    run("edit-pc", data, "-m", golf.model, "-s", empty, "-o", "none")
+    for clip in data.glob("*.bvh"):
+        assert (tmp_path / "out" / clip.name).read_bytes() == clip.read_bytes()
+        assert (tmp_path / "none" / clip.name).read_bytes() == clip.read_bytes()
+
+
+def test_verify_reads_the_edit_back_with_another_reader(run, golf, data, tmp_path):
+    result = run(
+        *("edit-pc", data / "swing01.bvh", "-m", golf.model, "-s", edit_spec(tmp_path / "e.yaml")),
+        *("-o", "e.bvh", "--verify", "--report", "r.json"),
+    )
+    assert result.exit_code == 0
+    assert json.loads((tmp_path / "r.json").read_text())["clips"][0]["verify"]["distance"] < 0.09
+
+
+def test_a_far_goal_is_unreachable_and_strict_says_so(run, golf, data, tmp_path):
+    far = edit_spec(tmp_path / "far.yaml")
+    arguments = ("edit-pc", data / "swing01.bvh", "-m", golf.model, "-s", far, "-o", "e.bvh")
+    result = run(*arguments, "--set", "goals.ball.shift=[0, 0, 150]", "--strict", "--report", "r.json")
+    assert result.exit_code == 3
+    record = json.loads((tmp_path / "r.json").read_text())["clips"][0]
+    assert record["status"] == "unreachable"
+    assert record["mahalanobis"]["after"] <= record["mahalanobis"]["bound"] * (1 + 1e-4)
+    assert "out of reach of the database's motions" in result.stderr
+    off = run(*arguments, "--set", "goals.ball.shift=[0, 0, 150]", "--set", "goals.ball.tolerance=off", "--strict")
+    assert off.exit_code == 0
+
+
+def test_the_report_has_the_fixed_keys(run, golf, data, tmp_path):
+    spec = edit_spec(tmp_path / "e.yaml")
+    run("edit-pc", data / "swing01.bvh", "-m", golf.model, "-s", spec, "-o", "e.bvh", "--report", "r.json")
+    report = json.loads((tmp_path / "r.json").read_text())
+    assert list(report)[:4] == ["schema", "version", "command", "spec"]
+    clip = report["clips"][0]
+    assert {"clip", "output", "status", "message", "unit", "metrics", "goals", "iterations", "history"} <= set(clip)
+    assert {"alpha", "mahalanobis", "nearest"} <= set(clip)
+    for moment in ("before", "after"):
+        assert {"foot_slide_max", "jerk_rms"} <= set(clip["metrics"][moment])
+        assert len(clip["alpha"][moment]) == 9
+    goal = clip["goals"][0]
+    assert {"name", "priority", "error_max", "error_rms", "error_angle_max", "frame", "status"} <= set(goal)
+    assert len(clip["history"]) == clip["iterations"] + 1
+
+
+def test_a_dry_run_says_what_it_would_do_and_writes_nothing(run, golf, data, tmp_path):
+    spec = edit_spec(tmp_path / "e.yaml")
+    before = sorted(tmp_path.iterdir())
+    result = run("edit-pc", data / "swing01.bvh", "-m", golf.model, "-s", spec, "-o", "e.bvh", "--dry-run")
+    assert result.exit_code == 0
+    assert "ball: frame 93, 10 away" in result.stdout
+    assert sorted(tmp_path.iterdir()) == before
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ("goals.ball.at=top", "no event 'top' in this spec or in the model; there are: 'hit'"),
+        ("components=10", "the model has 9 components, not 10"),
+        ("goals.ball.effector={end_site: Clubb}", "no joint 'Clubb' in"),
+        ("goals.ball.at=500", "500 is outside the clip, whose frames are 0 to 130"),
+        ("coefficients=per_goal", "per_goal is not supported yet"),
+        ("events={hit: 0}", "'hit' at frame 0 is not after its first frame"),
+    ],
+)
+def test_what_the_clip_or_the_model_lacks_is_said_in_one_line(run, golf, data, tmp_path, change, message):
+    spec = edit_spec(tmp_path / "e.yaml")
+    result = run("edit-pc", data / "swing01.bvh", "-m", golf.model, "-s", spec, "-o", "e.bvh", "--set", change)
+    assert result.exit_code in {1, 2}
+    errors = [line for line in result.stderr.splitlines() if line.startswith("motionedit: error:")]
+    assert len(errors) == 1
+    assert message in errors[0]
+    assert not (tmp_path / "e.bvh").exists()
+
+
+def test_a_clip_of_another_skeleton_fails_alone(run, golf, data, clip, tmp_path):
+    other = clip("other.bvh")
+    spec = edit_spec(tmp_path / "e.yaml")
+    result = run("edit-pc", data / "swing01.bvh", other, "-m", golf.model, "-s", spec, "-o", "out")
+    assert result.exit_code == 1
+    assert "another skeleton than the model" in result.stderr
+    assert (tmp_path / "out" / "swing01.bvh").exists()
+
+
+def changed_copy(data, path, *, rate=1, scale=1.0):
+    """Write swing01 at a share of its rate, or with another scale."""
+    from dataclasses import replace
+
+    clip = read_clip(data / "swing01.bvh")
+    motion = clip.motion
+    skeleton = replace(motion.skeleton, offsets=motion.skeleton.offsets * scale)
+    motion = Motion(skeleton, motion.rotations[::rate], motion.translations[::rate] * scale, motion.frame_time * rate)
+    path.parent.mkdir(exist_ok=True, parents=True)
+    path.write_bytes(resampled_bytes(clip, motion))
+    return path
+
+
+def test_rates_that_differ_need_a_frame_rate(run, configs, data, tmp_path):
+    changed_copy(data, tmp_path / "in" / "slow.bvh", rate=2)
+    (tmp_path / "in" / "swing01.bvh").write_bytes((data / "swing01.bvh").read_bytes())
+    arguments = ("normalize", "in", "-s", configs / "golf-normalize.yaml", "-o", "n")
+    result = run(*arguments)
+    assert result.exit_code == 2
+    assert "frame_rate: the clips' rates differ: in/slow.bvh has 12.5 Hz" in result.stderr
+    assert "set frame_rate: 12.5" in result.stderr
+    assert not (tmp_path / "n").exists() or not list((tmp_path / "n").iterdir())
+    assert run(*arguments, "--set", "frame_rate=12.5").exit_code == 0
+
+
+def test_normalize_fails_as_a_whole_unless_told_to_keep_going(run, configs, data, clip, tmp_path):
+    clip("in/other.bvh", frames=40)
+    for name in ("swing01.bvh", "swing02.bvh"):
+        (tmp_path / "in" / name).write_bytes((data / name).read_bytes())
+    arguments = ("normalize", "in", "-s", configs / "golf-normalize.yaml", "-o", "n")
+    result = run(*arguments)
+    assert result.exit_code == 1
+    assert not (tmp_path / "n" / "normalization.json").exists()
+    result = run(*arguments, "--keep-going")
+    assert result.exit_code == 1
+    listing = json.loads((tmp_path / "n" / "normalization.json").read_text())
+    assert [each["clip"] for each in listing["clips"]] == ["swing01.bvh", "swing02.bvh"]
+
+
+def test_update_leaves_a_finished_normalization_alone(run, configs, data, tmp_path):
+    arguments = ("normalize", data, "-s", configs / "golf-normalize.yaml", "-o", "n", "--update")
+    assert run(*arguments).stdout.count("\n") == 10
+    again = run(*arguments)
+    assert (again.exit_code, again.stdout) == (0, "")
+    assert "10 up to date" in again.stderr
+
+
+def test_one_clip_is_normalized_with_a_warning_but_is_no_database(run, configs, data, tmp_path):
+    result = run("normalize", data / "swing01.bvh", "-s", configs / "golf-normalize.yaml", "-o", "n")
+    assert result.exit_code == 0
+    assert "is the only clip" in result.stderr
+    fit = run("fit-pca", "n", "-o", "m.npz")
+    assert fit.exit_code == 2
+    assert "lists 1 clip; a PCA needs two or more" in fit.stderr
+
+
+def test_equal_clips_are_no_database(run, configs, data, tmp_path):
+    (tmp_path / "in").mkdir()
+    for name in ("a.bvh", "b.bvh"):
+        (tmp_path / "in" / name).write_bytes((data / "swing01.bvh").read_bytes())
+    assert run("normalize", "in", "-s", configs / "golf-normalize.yaml", "-o", "n").exit_code == 0
+    fit = run("fit-pca", "n", "-o", "m.npz")
+    assert fit.exit_code == 2
+    assert "the motions are all the same" in fit.stderr
+    assert not (tmp_path / "m.npz").exists()
+
+
+def test_events_come_from_a_table_and_a_clip_that_has_none_is_named(run, configs, data, tmp_path):
+    table = "clip,frame\n" + "".join(f"swing{n:02d},{90 + n}\n" for n in range(1, 10))
+    (tmp_path / "hits.csv").write_text(table)
+    spec = tmp_path / "n.yaml"
+    spec.write_text("schema: motionedit/normalize/v1\nevents:\n  hit: {frames: hits.csv}\n")
+    result = run("normalize", data, "-s", spec, "-o", "n")
+    assert result.exit_code == 1
+    assert f"no frame for {data / 'swing10.bvh'}; add it to frames, or give detect" in result.stderr
+
+
+def test_a_clip_that_is_not_in_the_database_gets_its_event_by_the_models_rule(run, golf, data, tmp_path):
+    late = read_clip(data / "swing01.bvh")
+    motion = late.motion
+    part = Motion(motion.skeleton, motion.rotations[6:], motion.translations[6:], motion.frame_time)
+    (tmp_path / "late.bvh").write_bytes(resampled_bytes(late, part))
+    spec = edit_spec(tmp_path / "e.yaml")
+    result = run("edit-pc", "late.bvh", "-m", golf.model, "-s", spec, "-o", "e.bvh", "--report", "r.json")
+    assert result.exit_code == 0
+    assert json.loads((tmp_path / "r.json").read_text())["clips"][0]["goals"][0]["frame"] == 93 - 6
+
+
+def test_a_clip_from_standard_input_goes_to_standard_output(run, golf, data, tmp_path):
+    spec = edit_spec(tmp_path / "e.yaml", events={"hit": 93})
+    piped = run("edit-pc", "-", "-m", golf.model, "-s", spec, "-o", "-", stdin=(data / "swing01.bvh").read_bytes())
+    assert piped.exit_code == 0
+    clip = parse_clip(piped.stdout_bytes, label="piped")
+    assert len(clip.motion) == 131
+
+
+def test_shifts_in_the_heading_frame_are_the_characters_own(run, golf, data, tmp_path):
+    spec = edit_spec(tmp_path / "e.yaml")
+    run(
+        *("edit-pc", data / "swing01.bvh", "-m", golf.model, "-s", spec, "-o", "h.bvh"),
+        *("--set", "goals.ball.frame=heading", "--set", "goals.ball.shift=[0, 0, 5]"),
+    )
+    before, after = (effector_path(p, "Club", end_site=True)[93] for p in (data / "swing01.bvh", tmp_path / "h.bvh"))
+    assert np.linalg.norm(after - before) == pytest.approx(5.0, abs=1e-3)
+    info = run("info", data / "swing01.bvh", "--report", "i.json")
+    assert info.exit_code == 0
+    heading = np.radians(json.loads((tmp_path / "i.json").read_text())["clips"][0]["heading"])
+    np.testing.assert_allclose(after - before, 5.0 * np.array([np.sin(heading), 0.0, np.cos(heading)]), atol=1e-2)
+
+
+def test_in_metres_the_same_edit_comes_out(run, configs, data, tmp_path):
+    for name, scale in (("cm", 1.0), ("m", 0.01)):
+        for n in range(1, 5):
+            clip = read_clip(data / f"swing{n:02d}.bvh")
+            motion = clip.motion
+            text = clip_scaled(clip, scale)
+            path = tmp_path / name / f"swing{n:02d}.bvh"
+            path.parent.mkdir(exist_ok=True)
+            path.write_bytes(text)
+            assert len(motion)
+        run("normalize", name, "-s", configs / "golf-normalize.yaml", "-o", f"n-{name}")
+        run("fit-pca", f"n-{name}", "-o", f"{name}.npz")
+        spec = edit_spec(tmp_path / f"{name}.yaml", unit=name)
+        result = run(
+            *("edit-pc", f"{name}/swing01.bvh", "-m", f"{name}.npz", "-s", spec, "-o", f"{name}.bvh"),
+            *("--set", f"goals.ball.shift=[0, 0, {2 * scale}]"),
+        )
+        assert result.exit_code == 0
+    from motionedit.core import rotations as rot
+
+    a, b = (read_clip(tmp_path / f"{name}.bvh").motion.rotations for name in ("cm", "m"))
+    assert np.degrees(rot.angle_between(a, b)).max() < 1e-3
+
+
+def clip_scaled(clip, scale):
+    from dataclasses import replace
+
+    from motionedit.core.bvh import new_bytes
+    from motionedit.core.skeleton import EndSite
+
+    skeleton = clip.motion.skeleton
+    scaled = replace(
+        skeleton,
+        offsets=skeleton.offsets * scale,
+        end_sites=tuple(EndSite(site.joint, site.offset * scale) for site in skeleton.end_sites),
+    )
+    motion = Motion(scaled, clip.motion.rotations, clip.motion.translations * scale, clip.motion.frame_time)
+    return new_bytes(motion, decimals=9)

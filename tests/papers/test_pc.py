@@ -1,0 +1,140 @@
+"""The claims of [PC], one test each, on the golf swings of data/."""
+
+import numpy as np
+import pytest
+from lab import effector_path, joint_positions
+
+from motionedit.core.bvh import read_clip
+from motionedit.core.ik.chain import evaluate
+from motionedit.core.pca.model_file import read_model
+
+STYLES = (1, 2, 3, 1, 3, 2, 1, 2, 3, 1)
+
+
+@pytest.fixture(scope="module")
+def model(golf):
+    return read_model(golf.model)
+
+
+def head(path):
+    return effector_path(path, "Club", end_site=True)
+
+
+def test_a_pose_has_93_degrees_of_freedom_and_a_motion_132_poses(golf, model):
+    assert model.space.size == 93
+    assert model.timeline.frames == 132
+    assert model.component_rows.shape[1:] == (132, 93)
+
+
+def test_ten_motions_make_nine_components_the_tenth_is_negligible(model):
+    assert len(model.components.explained_variance) == 9
+    assert model.components.explained_variance_ratio.sum() == pytest.approx(1.0, abs=1e-12)
+
+
+def test_all_motions_hit_at_the_same_normalized_frame(golf, model):
+    frame = dict(model.timeline.events)["hit"]
+    folder = golf.lab.place()
+    for clip in golf.swings:
+        same = golf.edit(clip, timing="normalized")
+        heights = head(same.path)[:, 1]
+        window = slice(frame - 12, frame + 13)
+        assert abs(int(np.argmin(heights[window])) - 12) <= 1
+    assert folder.exists()
+
+
+def test_motions_of_one_style_cluster_in_the_first_two_coefficients(model):
+    # Figure 6: the styles' centres lie further apart than their members from their own centre.
+    alpha = model.components.coefficients[:, :3]
+    centres = np.stack([alpha[[s == style for s in STYLES]].mean(axis=0) for style in (1, 2, 3)])
+    nearest = 1 + np.argmin(np.linalg.norm(alpha[:, None] - centres, axis=-1), axis=1)
+    assert sum(int(n == s) for n, s in zip(nearest, STYLES, strict=True)) >= 8
+
+
+def test_one_constraint_at_one_frame_moves_the_whole_clip_without_a_break(golf):
+    clip = golf.swings[3]
+    edit = golf.edit(clip, (0.0, 0.0, 10.0))
+    moved = np.linalg.norm(head(edit.path) - head(clip), axis=1)
+    frame = edit.record["goals"][0]["frame"]
+    assert moved[frame] == pytest.approx(10.0, abs=1e-3)
+    assert moved.min() > 0.5
+    before, after = (np.abs(np.diff(joint_positions(path), 3, axis=0)).max() for path in (clip, edit.path))
+    assert after < 1.5 * before
+
+
+def test_an_edited_swing_keeps_its_style(golf, model):
+    # Figures 6 and 7: the goals are other swings' balls, the edited swing stays in its own cluster.
+    hits = {clip.stem: head(clip)[golf.edit(clip).record["goals"][0]["frame"]] for clip in golf.swings}
+    style = {clip.stem: s for clip, s in zip(golf.swings, STYLES, strict=True)}
+    kept = total = 0
+    for clip in golf.swings[:5]:
+        for other, ball in hits.items():
+            if np.linalg.norm(ball - hits[clip.stem]) < 15.0:
+                edit = golf.edit(clip, goal={"position": list(map(float, ball))})
+                total += 1
+                kept += style[edit.record["nearest"]["after"]] == style[clip.stem]
+    assert total >= 20
+    assert kept / total >= 0.9
+
+
+def test_the_jacobian_has_as_many_columns_as_there_are_components(golf, model):
+    # Figure 1: p x m in place of p x n.
+    from motionedit.core.ik.chain import CoefficientChain
+
+    count = len(model.components.explained_variance)
+    chain = CoefficientChain(
+        np.eye(3),
+        np.zeros(3),
+        np.zeros((1, 3)),
+        np.eye(3)[None],
+        np.zeros((1, 3)),
+        np.zeros((1, 3, count)),
+        np.zeros((3, count)),
+        np.zeros(3),
+    )
+    assert evaluate(chain, np.zeros(count)).position_rows.shape == (3, 9)
+
+
+def damped(golf, clip, components, **solver):
+    spec = {"solver": {"method": "damped", **solver}, "components": components}
+    return golf.edit(clip, (0.0, 0.0, 6.0), **spec).record
+
+
+def test_more_components_converge_in_fewer_iterations(golf):
+    # Table 1: thousands of iterations below five components, hundreds from seven on; the counts are the data's own.
+    few, many = (
+        np.median([damped(golf, clip, m, max_iterations=3000)["iterations"] for clip in golf.swings[:4]])
+        for m in (2, 9)
+    )
+    assert few > 4 * many
+
+
+def test_without_damping_a_goal_is_met_in_less_than_twelve_iterations(golf):
+    for clip in golf.swings:
+        record = golf.edit(clip, (0.0, 0.0, 8.0)).record
+        assert record["status"] == "ok"
+        assert record["iterations"] < 12
+
+
+def test_damping_is_slower_and_ends_within_a_centimetre(golf):
+    record = damped(golf, golf.swings[0], 8)
+    assert record["stopped"] == "converged"
+    assert record["iterations"] > 12
+    assert record["goals"][0]["error_max"] <= 1.0
+    assert all(b <= a for a, b in zip(record["history"], record["history"][1:], strict=False))
+
+
+def test_an_unreachable_goal_ends_at_the_edge_of_what_the_database_knows(golf):
+    record = golf.edit(golf.swings[0], (0.0, 0.0, 150.0)).record
+    assert record["status"] == "unreachable"
+    assert record["mahalanobis"]["after"] <= record["mahalanobis"]["bound"] * (1 + 1e-4)
+    assert record["goals"][0]["error_max"] < 150.0
+
+
+def test_eq_3_alone_is_the_papers_output_on_the_timeline(golf, model):
+    edit = golf.edit(golf.swings[2], (0.0, 0.0, 5.0), residual="drop", timing="normalized")
+    motion = read_clip(edit.path).motion
+    assert len(motion) == 132
+    assert motion.frame_rate == pytest.approx(25.0)
+    frame = edit.record["goals"][0]["frame"]
+    assert frame == dict(model.timeline.events)["hit"]
+    assert edit.record["goals"][0]["error_max"] < 1e-2
