@@ -169,9 +169,9 @@ def solve_angles(q: FloatArray, axes: tuple[int, ...]) -> FloatArray:
     length = np.sqrt(sine * sine + cosine * cosine)
     other_length = np.sqrt(other_sine * other_sine + other_cosine * other_cosine)
     angles = np.empty((3, *w.shape))
-    np.add(plus, minus, out=angles[0])
-    np.subtract(2.0 * np.arctan2(length, other_length), np.pi / 2.0, out=angles[1])
-    np.multiply(sign, plus - minus, out=angles[2])
+    angles[0] = plus + minus
+    angles[1] = 2.0 * np.arctan2(length, other_length) - np.pi / 2.0
+    angles[2] = sign * (plus - minus)
     return angles
 
 

@@ -6,7 +6,6 @@ this package's own reader has accepted. It is imported where it is used, for it 
 
 from __future__ import annotations
 
-import tempfile
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
@@ -210,6 +209,8 @@ def _bvhio_and_glm() -> tuple[Any, Any]:
 
 
 def _nodes_of(data: bytes) -> list[Any]:
+    import tempfile
+
     bvhio, _ = _bvhio_and_glm()
     with tempfile.TemporaryDirectory(prefix="motionedit-") as folder:
         path = Path(folder) / "clip.bvh"

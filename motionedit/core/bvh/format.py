@@ -115,6 +115,7 @@ def _lay_digits(chars: NDArray[np.uint8], numbers: NDArray[np.int64], *, stop: i
 def _format_large(values: FloatArray, *, decimals: int, ends: NDArray[np.uint8] | None) -> Words:
     """Format one by one values that are too large for the digit table."""
     words = [f"{value:.{decimals}f}".encode() for value in values.tolist()]
+    words = [word if float(word) else word.lstrip(b"-") for word in words]
     if ends is not None:
         words = [word + bytes((end,)) for word, end in zip(words, ends.tolist(), strict=True)]
     lengths = np.array([len(word) for word in words])

@@ -1,0 +1,69 @@
+"""The Jacobians of an effector's position and orientation agree with central differences."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from motionedit.core import rotations as rot
+from motionedit.core.kinematics import (
+    Effector,
+    effector_positions,
+    forward,
+    orientation_jacobian,
+    position_jacobian,
+)
+from motionedit.core.motion import Motion
+from motionedit.core.skeleton import Skeleton
+
+STEP = 1e-6
+SKELETON = Skeleton(
+    names=("root", "hip", "knee", "ankle", "other"),
+    parents=np.array([-1, 0, 1, 2, 0]),
+    offsets=np.random.default_rng(1).normal(size=(5, 3)),
+    channels=(("Xposition", "Yposition", "Zposition", "Zrotation", "Xrotation", "Yrotation"),)
+    + (("Zrotation", "Xrotation", "Yrotation"),) * 4,
+)
+
+
+@pytest.fixture
+def motion():
+    rng = np.random.default_rng(2)
+    return Motion(SKELETON, rot.normalize(rng.normal(size=(4, 5, 4))), rng.normal(size=(4, 1, 3)), 0.01)
+
+
+def turned(motion, joint, w):
+    """Return the motion with one joint turned by a world rotation vector: q <- exp(R_parent^-1 w) q."""
+    parent = SKELETON.parents[joint]
+    local = np.broadcast_to(w, (len(motion), 3))
+    if parent >= 0:
+        local = rot.rotate(rot.conjugate(forward(motion).rotations[:, parent]), local)
+    rotations = motion.rotations.copy()
+    rotations[:, joint] = rot.multiply(rot.exp(local), rotations[:, joint])
+    return replace(motion, rotations=rotations)
+
+
+@pytest.mark.parametrize("effector", [Effector(3, np.zeros(3)), Effector(3, np.array([0.3, -1.0, 0.5]))])
+def test_position_jacobian(motion, effector):
+    joints = SKELETON.chain(3)
+    J = position_jacobian(forward(motion), effector, joints=joints)
+    assert J.shape == (4, 3, 12)
+    for k, joint in enumerate(joints):
+        for a in range(3):
+            w = STEP * np.eye(3)[a]
+            plus = effector_positions(forward(turned(motion, joint, w)), effector)
+            minus = effector_positions(forward(turned(motion, joint, -w)), effector)
+            np.testing.assert_allclose((plus - minus) / (2 * STEP), J[:, :, 3 * k + a], atol=1e-8)
+
+
+def test_orientation_jacobian(motion):
+    joints = SKELETON.chain(3)
+    J = orientation_jacobian(len(motion), joints=joints)
+    assert J.shape == (4, 3, 12)
+    for k, joint in enumerate(joints):
+        for a in range(3):
+            w = STEP * np.eye(3)[a]
+            plus = forward(turned(motion, joint, w)).rotations[:, 3]
+            minus = forward(turned(motion, joint, -w)).rotations[:, 3]
+            change = rot.log(rot.multiply(plus, rot.conjugate(minus))) / (2 * STEP)
+            np.testing.assert_allclose(change, J[:, :, 3 * k + a], atol=1e-8)

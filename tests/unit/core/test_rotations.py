@@ -1,0 +1,137 @@
+"""Rotations agree with closed forms and with scipy, near 0 and near pi too."""
+
+from itertools import permutations, product
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from motionedit.core import rotations as rot
+
+ORDERS = ["".join(order) for order in permutations("XYZ")]
+ANGLES = [0.0, 1e-300, 1e-12, 9.9e-5, 1.01e-4, 0.3, np.pi / 2, np.pi - 1e-9, np.pi]
+AXIS = np.array([2.0, -1.0, 2.0]) / 3.0
+
+
+@pytest.fixture
+def rng():
+    return np.random.default_rng(11)
+
+
+def random_quaternions(rng, *shape):
+    return rot.normalize(rng.normal(size=(*shape, 4)))
+
+
+def scipy_of(q):
+    return Rotation.from_quat(np.reshape(q, (-1, 4)), scalar_first=True)
+
+
+def same_rotation(a, b, *, atol=1e-14):
+    np.testing.assert_allclose(rot.angle_between(a, b), 0.0, atol=atol)
+
+
+@pytest.mark.parametrize("angle", ANGLES)
+def test_exp_and_log_have_their_closed_forms(angle):
+    q = rot.exp(angle * AXIS)
+    np.testing.assert_allclose(q[0], np.cos(angle / 2), atol=4e-16)
+    np.testing.assert_allclose(q[1:], np.sin(angle / 2) * AXIS, rtol=1e-15, atol=1e-300)
+    back = rot.log(q)
+    np.testing.assert_allclose(back, angle * AXIS, rtol=2e-15, atol=1e-300)
+    np.testing.assert_allclose(rot.log(-q), back, rtol=2e-15, atol=1e-15)
+
+
+def test_log_of_any_sign_is_at_most_half_a_turn(rng):
+    q = random_quaternions(rng, 200)
+    np.testing.assert_allclose(rot.log(-q), rot.log(q), atol=1e-15)
+    assert np.linalg.norm(rot.log(q), axis=-1).max() <= np.pi + 1e-15
+    np.testing.assert_allclose(rot.log(q), scipy_of(q).as_rotvec(), atol=1e-14)
+
+
+def test_products_and_inverses_are_scipys(rng):
+    a, b = random_quaternions(rng, 50), random_quaternions(rng, 50)
+    same_rotation(rot.multiply(a, b), (scipy_of(a) * scipy_of(b)).as_quat(scalar_first=True))
+    same_rotation(rot.conjugate(a), scipy_of(a).inv().as_quat(scalar_first=True))
+    v = rng.normal(size=(50, 3))
+    np.testing.assert_allclose(rot.rotate(a, v), scipy_of(a).apply(v), atol=1e-14)
+    np.testing.assert_allclose(rot.angle_between(a, b), (scipy_of(a).inv() * scipy_of(b)).magnitude(), atol=1e-14)
+
+
+def test_cross_and_skew_are_the_cross_product(rng):
+    a, b = rng.normal(size=(7, 4, 3)), rng.normal(size=(7, 4, 3))
+    np.testing.assert_allclose(rot.cross(a, b), np.cross(a, b), atol=1e-15)
+    np.testing.assert_allclose((rot.skew(a) @ b[..., None])[..., 0], np.cross(a, b), atol=1e-15)
+
+
+def test_matrices_are_scipys_and_come_back_near_half_turns_too(rng):
+    half_turns = np.concatenate((np.zeros((50, 1)), rng.normal(size=(50, 3))), axis=1)
+    axes = np.eye(4)[1:]
+    near = half_turns + 1e-9 * rng.normal(size=(50, 4))
+    q = rot.normalize(np.concatenate((random_quaternions(rng, 50), half_turns, axes, near)))
+    np.testing.assert_allclose(rot.to_matrix(q), scipy_of(q).as_matrix(), atol=1e-14)
+    back = rot.from_matrix(rot.to_matrix(q))
+    same_rotation(back, q, atol=1e-13)
+    assert (back[:, 0] >= 0.0).all()
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_euler_angles_are_bvh_channels_in_their_order(order, rng):
+    angles = rng.uniform(-7.0, 7.0, size=(40, 3))
+    q = rot.from_euler(angles, rot.euler_axes(order))
+    same_rotation(q, Rotation.from_euler(order, angles).as_quat(scalar_first=True))
+    np.testing.assert_allclose(np.linalg.norm(q, axis=-1), 1.0, atol=1e-15)
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_euler_angles_at_quarter_and_half_turns_keep_full_precision(order):
+    angles = np.radians(list(product((-540.0, -180.0, -90.0, 0.0, 90.0, 180.0, 360.0, 1e6), repeat=3)))
+    q = rot.from_euler(angles, rot.euler_axes(order))
+    same_rotation(q, Rotation.from_euler(order, angles).as_quat(scalar_first=True), atol=1e-9)
+    q = rot.from_euler(angles[np.abs(angles).max(axis=1) < 7.0], rot.euler_axes(order))
+    assert np.abs(np.linalg.norm(q, axis=-1) - 1.0).max() < 4e-16
+
+
+def test_fewer_than_three_axes_and_a_single_pose_work(rng):
+    angles = rng.uniform(-3.0, 3.0, size=3)
+    same_rotation(
+        rot.from_euler(angles, (2, 0, 1)),
+        rot.multiply(rot.from_euler(angles[:2], (2, 0)), rot.from_euler(angles[2:], (1,))),
+    )
+    assert rot.from_euler(np.zeros((5, 0)), ()).tolist() == [[1.0, 0.0, 0.0, 0.0]] * 5
+    given = rng.uniform(size=(4, 3))
+    kept = given.copy()
+    rot.from_euler(given, (0, 1, 2))
+    np.testing.assert_array_equal(given, kept)
+
+
+def test_slerp_turns_evenly_along_the_shorter_arc(rng):
+    a, b = random_quaternions(rng, 30), random_quaternions(rng, 30)
+    for t in (0.0, 0.25, 1.0):
+        middle = rot.slerp(a, b, np.full(30, t))
+        np.testing.assert_allclose(rot.angle_between(a, middle), t * rot.angle_between(a, b), atol=1e-14)
+        np.testing.assert_allclose(rot.angle_between(middle, b), (1 - t) * rot.angle_between(a, b), atol=1e-14)
+
+
+def test_the_mean_is_scipys_whatever_the_signs(rng):
+    q = rot.multiply(random_quaternions(rng, 1), rot.exp(0.4 * rng.normal(size=(60, 3))))
+    q *= rng.choice([-1.0, 1.0], size=(60, 1))
+    same_rotation(rot.mean(q), scipy_of(q).mean().as_quat(scalar_first=True), atol=1e-12)
+    same_rotation(rot.mean(q.reshape(12, 5, 4), axis=1), rot.mean(np.swapaxes(q.reshape(12, 5, 4), 0, 1)))
+
+
+@pytest.mark.parametrize("angle", [0.0, 1e-9, 9.9e-5, 1.01e-4, 1.0, 3.1])
+def test_the_left_jacobian_is_its_own_series(angle):
+    V = rot.skew(angle * AXIS)
+    term, series = np.eye(3), np.eye(3)
+    for k in range(2, 40):
+        term = term @ V / k
+        series = series + term
+    np.testing.assert_allclose(rot.left_jacobian(angle * AXIS), series, atol=2e-12)
+
+
+@pytest.mark.parametrize("angle", [1e-6, 0.5, 3.0])
+def test_the_left_jacobian_agrees_with_central_differences(angle):
+    v, h = angle * AXIS, 1e-6
+    for a in range(3):
+        dv = h * np.eye(3)[a]
+        turn = rot.multiply(rot.exp(v + dv), rot.conjugate(rot.exp(v - dv)))
+        np.testing.assert_allclose(rot.log(turn) / (2 * h), rot.left_jacobian(v)[:, a], atol=1e-8)
