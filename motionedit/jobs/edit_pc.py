@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,7 +22,8 @@ from motionedit.jobs.batch import Outcome, plan, run_batch
 from motionedit.jobs.clip_facts import facts_of
 from motionedit.jobs.edit_metrics import edit_metrics
 from motionedit.jobs.model_events import events_for_model, refuse_unknown_events
-from motionedit.jobs.pc_goals import ClipGoal, clip_goal, goal_record, is_met
+from motionedit.jobs.pc_goals import ClipGoal, clip_goal
+from motionedit.jobs.pc_record import edit_record, goal_line, largest_norm
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -36,9 +37,6 @@ if TYPE_CHECKING:
     from motionedit.jobs.clip_facts import ClipFacts
     from motionedit.spec.edit_pc import EditPcSpec
     from motionedit.spec.load import LoadedSpec
-
-# A met goal whose coefficients lie further out than this times the database's largest norm is reported `far`.
-FAR = 1.75
 
 
 def run(
@@ -182,10 +180,7 @@ class _Edit:
         factor = self.loaded.model.plausibility_bound
         if factor is None:
             return None
-        return max(factor * self._largest(), float(self.model.mahalanobis(projection.coefficients)))
-
-    def _largest(self) -> float:
-        return float(self.model.mahalanobis(self.model.components.coefficients).max())
+        return max(factor * largest_norm(self.model), float(self.model.mahalanobis(projection.coefficients)))
 
     def _outcome(
         self,
@@ -196,50 +191,23 @@ class _Edit:
         *,
         before: WorldPoses,
     ) -> Outcome:
-        spec, model, clip = self.loaded.model, self.model, facts.clip
-        retimed = spec.timing == "normalized"
+        retimed = self.loaded.model.timing == "normalized"
         changed = bool(edit.touched.any() or edit.moved.any())
         after = kinematics.forward(edit.motion) if changed else before
-        records = [goal_record(goal, after) for goal in goals]
-        status = self._mark(records, edit)
-        solution, scale = edit.solution, model.space.scale
-        record = {
-            "message": None,
-            "unit": None if spec.unit is None else spec.unit.name,
+        unit = self.loaded.model.unit
+        about = {
+            "unit": None if unit is None else unit.name,
             "metrics": edit_metrics(facts, after.positions, retimed=retimed),
-            "goals": records,
-            "iterations": solution.iterations,
-            "stopped": solution.reason,
-            "history": [error / scale for error in solution.history],
-            "alpha": {"before": projection.coefficients, "after": edit.coefficients},
-            "mahalanobis": {
-                "before": float(model.mahalanobis(projection.coefficients)),
-                "after": float(model.mahalanobis(edit.coefficients)),
-                "bound": self._bound(projection),
-                "database_max": self._largest(),
-            },
-            "nearest": {"before": self._nearest(projection), "after": self._nearest(edit)},
         }
-        record["message"] = _message(records, status)
+        result = edit_record(self.model, projection, edit, goals, poses=after, bound=self._bound(projection))
         return Outcome(
-            self._content(clip, projection, edit, changed=changed),
-            record,
-            status,
-            tuple(self._warnings(records, goals)),
+            self._content(facts.clip, projection, edit, changed=changed),
+            {"message": result.message, **about, **result.record},
+            result.status,
+            result.warnings,
             motion=edit.motion if changed or retimed else None,
-            details=tuple(_detail(goal, before) for goal in goals),
+            details=tuple(goal_line(goal, before) for goal in goals),
         )
-
-    def _mark(self, records: list[dict[str, Any]], edit: CoefficientEdit) -> str:
-        """Set each goal's status, and return the clip's."""
-        missed = "out_of_tolerance" if edit.solution.reason == "iterations" else "unreachable"
-        for record in records:
-            if not is_met(record):
-                record["status"] = missed
-        if any(record["status"] != "ok" for record in records):
-            return missed
-        norm = float(self.model.mahalanobis(edit.coefficients))
-        return "far" if records and norm > FAR * self._largest() else "ok"
 
     def _content(self, clip: Clip, projection: Projection, edit: CoefficientEdit, *, changed: bool) -> bytes:
         if self.loaded.model.timing == "normalized":
@@ -249,53 +217,3 @@ class _Edit:
         moved = np.zeros((len(edit.motion), len(clip.motion.skeleton.translated)), dtype=np.bool_)
         moved[:, clip.motion.skeleton.translated == projection.travel] = edit.moved[:, None]
         return edited_bytes(clip, edit.motion, touched=edit.touched, moved=moved)
-
-    def _nearest(self, where: Projection | CoefficientEdit) -> str:
-        distances = np.linalg.norm(self.model.components.coefficients - where.coefficients, axis=1)
-        return self.model.clips[int(np.argmin(distances))].name
-
-    def _warnings(self, records: Sequence[dict[str, Any]], goals: Sequence[ClipGoal]) -> list[str]:
-        lines = [_missed(record) for record in records if record["status"] != "ok"]
-        rows = sum(
-            (len(goal.request.axes) if goal.request.position is not None else 0)
-            + (3 if goal.request.rotation is not None else 0)
-            for goal in goals
-        )
-        count = len(self.model.components.explained_variance)
-        if rows > count:
-            lines.append(f"{rows} numbers are asked for and {count} components can move: a weighted compromise")
-        elif 2 * rows > count:
-            lines.append(f"{rows} numbers are asked for and {count} components can move: that may bend the style")
-        return lines
-
-
-def _message(records: Sequence[dict[str, Any]], status: str) -> str | None:
-    if status == "far":
-        return "met, but further from the database than its clips are from each other"
-    return "; ".join(_missed(record) for record in records if record["status"] != "ok") or None
-
-
-def _missed(record: dict[str, Any]) -> str:
-    parts = []
-    if record["error_max"] is not None:
-        parts.append(f"{record['error_max']:.4g} from its goal at frame {record['frame']}")
-    if record["error_angle_max"] is not None:
-        parts.append(f"turned {record['error_angle_max']:.4g} degrees from its goal at frame {record['frame']}")
-    limits = [
-        f"{record['tolerance']:.3g}" if record["tolerance"] is not None else "",
-        f"{record['tolerance_angle']:.3g} degrees" if record["tolerance_angle"] is not None else "",
-    ]
-    why = "out of reach of the database's motions" if record["status"] == "unreachable" else "the iterations ran out"
-    return f"{record['name']}: {' and '.join(parts)} (tolerance {', '.join(filter(None, limits))}): {why}"
-
-
-def _detail(goal: ClipGoal, poses: WorldPoses) -> str:
-    """Return the line that a dry run prints of a goal."""
-    request = goal.request
-    record = goal_record(goal, poses)
-    asked = []
-    if record["error_max"] is not None:
-        asked.append(f"{record['error_max']:.4g} away")
-    if record["error_angle_max"] is not None:
-        asked.append(f"{record['error_angle_max']:.4g} degrees away")
-    return f"{goal.name}: frame {request.frame}, {' and '.join(asked)}, weight {request.weight:g}"
