@@ -28,7 +28,7 @@ BALL_HEIGHT = 2.1
 # The left hand holds the shaft this far above the right, cm.
 HANDS_APART = 9.0
 # How each hand holds the club: angle of the shaft off square in the palm, and turn of the hand about the shaft, degrees.
-GRIP_ANGLE = 35.0
+GRIP_ANGLE = 28.0
 GRIP_TURN = {"Left": -25.0, "Right": 0.0}
 # At the address the head rests this far behind the ball, cm.
 _ADDRESS_GAP = 3.5
@@ -94,9 +94,10 @@ class SwingModel:
             t.takeaway + 0.62 * back,
             t.top,
             t.top + 0.42 * down,
-            t.top + 0.76 * down,
+            t.top + 0.74 * down,
+            t.top + 0.86 * down,
             t.hit,
-            t.hit + 0.13 * through,
+            t.hit + 0.07 * through,
             t.hit + 0.30 * through,
             t.hit + 0.58 * through,
             t.finish,
@@ -204,20 +205,15 @@ class SwingModel:
         hub = 0.5 * (left + right)
         local = np.stack((p["finish_x"], p["finish_y"], p["finish_z"]), axis=-1)
         finish = hub + rot.rotate(body.rotations["Spine1"], local)
-        slips = grips(p["slip"])
-        forearm = arm
-        for _ in range(2):
-            # The left wrist is flat where the back of the hand stands square to forearm and shaft.
-            back = unit(rot.cross(shaft, forearm))
-            club = rot.multiply(figure.frame_of(unit(rot.cross(shaft, back)), -shaft), axis_turn("y", p["face"]))
-            hands = {side: rot.multiply(club, rot.conjugate(grip)) for side, grip in slips.items()}
-            wrist = left + figure.reach_at(figure.UPPER_ARM, figure.FOREARM, p["left_bend"])[:, None] * arm
-            grip = wrist + rot.rotate(hands["Left"], _GRIP["Left"]) - rot.rotate(club, _UP_SHAFT)
-            grip = grip + p["finish"][:, None] * (finish - grip)
-            grip = _within_reach(grip, club, hands, {"Left": left, "Right": right})
-            wrist = wrist_of("Left", grip, club, hands["Left"])
-            elbow = figure.two_bones(left, wrist, figure.UPPER_ARM, figure.FOREARM, _elbow_pole(body, p, "Left"))[0]
-            forearm = unit(wrist - elbow)
+        # The face stands square to the path in the plane, turned about the shaft by the forearms' roll.
+        turn = np.radians(p["arm"] + p["cock"])[:, None]
+        path = -np.sin(turn) * e1 + np.cos(turn) * e2
+        club = rot.multiply(figure.frame_of(rot.cross(shaft, path), -shaft), axis_turn("y", p["face"]))
+        hands = {side: rot.multiply(club, rot.conjugate(held)) for side, held in grips(p["slip"]).items()}
+        wrist = left + figure.reach_at(figure.UPPER_ARM, figure.FOREARM, p["left_bend"])[:, None] * arm
+        grip = wrist + rot.rotate(hands["Left"], _GRIP["Left"]) - rot.rotate(club, _UP_SHAFT)
+        grip = grip + p["finish"][:, None] * (finish - grip)
+        grip = _within_reach(grip, club, hands, {"Left": left, "Right": right})
         return hands, club, grip
 
     # -- the whole figure ------------------------------------------------------------------------------------------
@@ -302,7 +298,7 @@ def _within_reach(
     for side in ("Right", "Left", "Right"):
         gap = wrist_of(side, grip, club, hands[side]) - shoulders[side]
         far = np.linalg.norm(gap, axis=-1)
-        grip = grip - (curves.soft_excess(far - longest, 0.25) / far)[:, None] * gap
+        grip = grip - (curves.soft_excess(far - longest, 0.4) / far)[:, None] * gap
     return grip
 
 

@@ -17,7 +17,7 @@ BALL = (4.0, 64.0)
 BALL_SPREAD = (5.8, 5.8)
 # The ten that ship: group of style by clip, and the seed of all the rest, chosen so that nothing correlates.
 GROUPS = (0, 1, 2, 0, 2, 1, 0, 1, 2, 0)
-SEED = 912
+SEED = 1702
 SHIPPED_RATE = 25.0
 
 
