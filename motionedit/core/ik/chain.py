@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 # Below this angle (rad) the three factors of exp and its Jacobian are taken from their series.
 _SMALL_ANGLE = 1e-4
+_SERIES = np.array([[[1.0], [1.0 / 2.0], [1.0 / 6.0]], [[-1.0 / 6.0], [-1.0 / 24.0], [-1.0 / 120.0]]])
 
 # [v]x = (v @ _SKEW).reshape(3, 3)
 _SKEW = np.array(
@@ -76,41 +77,46 @@ def evaluate(chain: CoefficientChain, unknowns: FloatArray) -> EffectorState:
     """Return the effector's state at the given unknowns, shape (m,).
 
     J(alpha) = J(Theta) J(E)_tk, eq. (11): a change dv of a joint's rotation vector is the world-axis increment
-    w = R_parent R_ref J_l(v) dv, which moves the effector by w x (p_e - p_j).
+    w = R_parent R_ref J_l(v) dv, which moves the effector by w x (p_e - p_j). Since J_l(v) = exp(v) J_l(v)^T, that
+    is w = R_j J_l(v)^T dv with the joint's own world rotation R_j.
     """
     turns, jacobians = _exp_and_left_jacobian(chain.vectors + chain.rows @ unknowns)
-    local = chain.references @ turns
-    count = len(local)
-    parents = np.empty((count, 3, 3))
-    origins = np.empty((count, 3))
-    R, p = chain.base_rotation, chain.base_position
-    travel = chain.travel_rows @ unknowns
-    for j in range(count):
-        parents[j] = R
-        p = p + R.dot(chain.translations[j] + travel if j == 0 else chain.translations[j])
-        origins[j] = p
-        R = R.dot(local[j])
-    end = p + R.dot(chain.offset)
-    increments = parents @ chain.references @ jacobians
-    levers = ((origins - end) @ _SKEW).reshape(count, 3, 3) @ increments
+    count = len(turns)
+    # Rotation and translation in one product a joint: numpy's calls cost more than its arithmetic here.
+    local, world = np.zeros((count, 4, 4)), np.zeros((count + 1, 4, 4))
+    local[:, :3, :3] = chain.references @ turns
+    local[:, :3, 3] = chain.translations
+    local[0, :3, 3] += chain.travel_rows @ unknowns
+    local[:, 3, 3] = 1.0
+    world[0, :3, :3], world[0, :3, 3], world[0, 3, 3] = chain.base_rotation, chain.base_position, 1.0
+    for parent, own, here in zip(world[:-1], local, world[1:], strict=True):
+        np.dot(parent, own, out=here)
+    R = world[1:, :3, :3]
+    end = world[-1, :3, 3] + R[-1] @ chain.offset
+    increments = R @ jacobians.swapaxes(1, 2)
+    levers = ((world[1:, :3, 3] - end) @ _SKEW).reshape(count, 3, 3) @ increments
     rows = chain.rows.reshape(3 * count, -1)
-    position_rows = np.swapaxes(levers, 0, 1).reshape(3, -1) @ rows
+    position_rows = levers.swapaxes(0, 1).reshape(3, -1) @ rows
     position_rows += chain.base_rotation @ chain.travel_rows
-    rotation_rows = np.swapaxes(increments, 0, 1).reshape(3, -1) @ rows
-    return EffectorState(end, R, position_rows, rotation_rows)
+    rotation_rows = increments.swapaxes(0, 1).reshape(3, -1) @ rows
+    return EffectorState(end, R[-1], position_rows, rotation_rows)
 
 
 def _exp_and_left_jacobian(v: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return exp([v]x) and J_l(v), shapes (c, 3, 3): both are polynomials in the same [v]x."""
     t2 = np.einsum("ij,ij->i", v, v)
-    t = np.sqrt(t2)
-    small = t < _SMALL_ANGLE
-    safe = np.where(small, 1.0, t)
-    sine, cosine = np.sin(safe), np.cos(safe)
-    a = np.where(small, 1.0 - t2 / 6.0, sine / safe)
-    b = np.where(small, 0.5 - t2 / 24.0, (1.0 - cosine) / (safe * safe))
-    c = np.where(small, 1.0 / 6.0 - t2 / 120.0, (safe - sine) / (safe * safe * safe))
+    small = t2 < _SMALL_ANGLE * _SMALL_ANGLE
+    some = small.any()
+    safe = np.where(small, 1.0, t2) if some else t2
+    t = np.sqrt(safe)
+    factors = np.empty((3, len(v), 1, 1))
+    a, b, c = flat = factors[:, :, 0, 0]
+    np.divide(np.sin(t), t, out=a)
+    np.divide(1.0 - np.cos(t), safe, out=b)
+    np.divide(1.0 - a, safe, out=c)
+    if some:
+        flat[:, small] = _SERIES[0] + _SERIES[1] * t2[small]
+    a, b, c = factors
     V = (v @ _SKEW).reshape(-1, 3, 3)
     V2 = V @ V
-    a, b, c = a[:, None, None], b[:, None, None], c[:, None, None]
     return _EYE + a * V + b * V2, _EYE + b * V + c * V2

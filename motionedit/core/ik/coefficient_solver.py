@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.ik.goals import stacked_errors
+from motionedit.core.ik.penalty_search import PenaltySearch
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -34,9 +35,8 @@ STALL = 1e-10
 
 # How closely the bound is kept, relative to it.
 BOUND_TOLERANCE = 1e-4
-_FIRST_PENALTY = 1e2
-_LEAST_PENALTY = 1e-12
-_MOST_BISECTIONS = 60
+# With a penalty, steps below this part of the solution move its norm by less than the bound's tolerance.
+_PENALISED_STALL = 1e-6
 
 # Algorithm 1 without a cap ends where this many iterations in a row brought no nearer error than this share.
 _PATIENCE = 1000
@@ -71,7 +71,9 @@ def step_metric(explained_variance: FloatArray) -> FloatArray:
     Unit-norm components alone keep the style but spend weak components freely; a Mahalanobis metric alone slides
     along the first component, which is the style.
     """
-    metric: FloatArray = 1.0 + np.median(explained_variance) / explained_variance
+    # Not np.median: it imports numpy.ma, which takes ten times as long as a solve.
+    in_order, middle = np.sort(explained_variance), len(explained_variance) // 2
+    metric: FloatArray = 1.0 + 0.5 * (in_order[middle] + in_order[-1 - middle]) / explained_variance
     return metric
 
 
@@ -167,7 +169,7 @@ def _gauss_newton_step(
 
 
 def _levenberg_marquardt(
-    evaluate: Evaluate, y: FloatArray, progress: _Progress
+    evaluate: Evaluate, y: FloatArray, progress: _Progress, *, stall: float = STALL
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Minimise |e|^2 from y on with Nielsen's rule for the damping; the history grows by the accepted steps."""
     error, jacobian = evaluate(y)
@@ -178,7 +180,7 @@ def _levenberg_marquardt(
         if float(np.linalg.norm(error)) < ERROR_STOP:
             break
         step = np.linalg.solve(A + mu * np.eye(len(y)), g)
-        if float(np.linalg.norm(step)) <= STALL * (float(np.linalg.norm(y)) + STALL):
+        if float(np.linalg.norm(step)) <= stall * (float(np.linalg.norm(y)) + stall):
             progress.reason = "stalled"
             break
         error_new, jacobian_new = evaluate(y + step)
@@ -196,25 +198,19 @@ def _levenberg_marquardt(
 def _bounded_solution(
     evaluate: Evaluate, *, offset: FloatArray, slope: FloatArray, bound: float
 ) -> tuple[CoefficientSolution, FloatArray]:
-    """Minimise |e|^2 + mu |z|^2, z = offset + slope y, with mu lowered, then bisected, until |z| meets the bound."""
-    y = np.zeros(len(offset))
+    """Minimise |e|^2 + mu |z|^2, z = offset + slope y, with mu lowered until |z| meets the bound."""
+    best = np.zeros(len(offset))
     progress = _Progress([])
-    inside, outside = _FIRST_PENALTY, 0.0
-    best = y
-    penalty = inside
-    for _ in range(_MOST_BISECTIONS):
-        y, size = _penalised(evaluate, best, offset=offset, slope=slope, penalty=penalty)
+    search = PenaltySearch((1.0 - 0.5 * BOUND_TOLERANCE) * bound)
+    while not search.ended:
+        y, size = _penalised(evaluate, best, offset=offset, slope=slope, penalty=search.penalty)
         progress.history.append(size)
         norm = float(np.linalg.norm(offset + slope * y))
         if norm <= bound:
-            inside, best = penalty, y
-            if size < ERROR_STOP or norm >= (1.0 - BOUND_TOLERANCE) * bound or penalty < _LEAST_PENALTY:
+            best = y
+            if size < ERROR_STOP or norm >= (1.0 - BOUND_TOLERANCE) * bound:
                 break
-        else:
-            outside = penalty
-            if outside > inside * (1.0 - STALL):
-                break
-        penalty = 0.1 * inside if outside == 0.0 else float(np.sqrt(inside * outside))
+        search.tried(norm, within=norm <= bound)
     error = float(np.linalg.norm(evaluate(best)[0]))
     progress.history.append(error)
     progress.reason = "converged" if error < ERROR_STOP else "bound"
@@ -232,7 +228,7 @@ def _penalised(
         return np.concatenate((error, -weight * (offset + slope * y))), np.vstack((jacobian, weight * np.diag(slope)))
 
     inner = _Progress([0.0])
-    y, error, _ = _levenberg_marquardt(stacked, y, inner)
+    y, error, _ = _levenberg_marquardt(stacked, y, inner, stall=_PENALISED_STALL)
     return y, float(np.linalg.norm(error[: -len(offset)]))
 
 
