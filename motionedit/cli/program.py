@@ -33,6 +33,8 @@ _BLAS_THREADS = (
     "BLIS_NUM_THREADS",
     "VECLIB_MAXIMUM_THREADS",
 )
+# Searching every installed package for plugins of pydantic takes time, and none is to change what a spec means.
+_PYDANTIC_PLUGINS = ("PYDANTIC_DISABLE_PLUGINS", "__all__")
 
 
 class _Program(click.Group):
@@ -42,6 +44,7 @@ class _Program(click.Group):
         """Run one command line and exit with its code."""
         for name in _BLAS_THREADS:
             os.environ[name] = "1"
+        os.environ.setdefault(*_PYDANTIC_PLUGINS)
         extra.update(standalone_mode=False, prog_name="motionedit")
         sys.exit(run_guarded(lambda: super(_Program, self).main(*args, **extra)))
 

@@ -3,13 +3,8 @@
 from __future__ import annotations
 
 import importlib
-import multiprocessing
 import os
-import signal
 import sys
-import threading
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from motionedit.errors import MotionEditError, UsageError
@@ -74,6 +69,11 @@ def _in_processes(
     workers: int,
     is_last: Callable[[Result | WorkerDiedError], bool],
 ) -> Generator[Result | WorkerDiedError]:
+    # Imported here, and below: a run without workers starts in less time.
+    import multiprocessing
+    from concurrent.futures import ProcessPoolExecutor
+    from concurrent.futures.process import BrokenProcessPool
+
     # Forked workers start in a millisecond with every module loaded; only Linux forks safely.
     context = multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
     others = set(multiprocessing.active_children())
@@ -102,6 +102,9 @@ def _in_processes(
 
 
 def _start_worker() -> None:
+    import signal
+    import threading
+
     # Ctrl-C reaches every process of the terminal; the parent alone answers it, and ends its workers.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
@@ -109,6 +112,8 @@ def _start_worker() -> None:
 
 def _end_with_parent() -> None:
     """End this worker when its parent is killed: nobody would take its result."""
+    import multiprocessing
+
     parent = multiprocessing.parent_process()
     if parent is not None:
         parent.join()
