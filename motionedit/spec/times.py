@@ -25,7 +25,7 @@ RESERVED_NAMES = ("first", "mean", "event")
 TIME_WORDS = "a frame such as 94, or 3.76s, 71.2%, an event's name, or hit + 1.5s"
 DURATION_WORDS = "whole frames such as 40, or seconds such as 0.8s"
 
-# A half frame that binary fractions put a hair too low is still a half: 1.5 s at 0.04 s a frame is 37.5 frames.
+# A half frame that binary fractions put a hair too low is still a half: 0.145 s at 0.01 s a frame is 14.5 frames.
 _HALF_SLACK = 1e-6
 _FARTHEST = 1e9
 
@@ -212,7 +212,7 @@ def parse_interval(value: object) -> Interval:
 def _certainly_before(a: Time, b: Time) -> bool:
     parts = [(t.event, t.frames != 0, t.seconds != 0.0, t.percent != 0.0) for t in (a, b)]
     kinds = [sum(part[1:]) for part in parts]
-    if a.event != b.event or max(kinds) == 0:
+    if a.event != b.event:
         return False
     # Two kinds of amounts (frames against seconds) compare only once the clip's rate is known.
     if kinds == [1, 1] and parts[0] != parts[1]:

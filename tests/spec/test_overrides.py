@@ -41,8 +41,9 @@ def test_a_missing_key_is_made_with_the_mappings_above_it(load):
 
 
 def test_a_key_that_holds_dots_is_found(load):
-    loaded = load(TEXT, "edit-pc", "events.hit.frames.swing.01=7")
-    assert loaded.model.events["hit"].frames.by_clip == {"swing.01": 7}
+    text = TEXT.replace("{swing.01: 3}", "{swing: 1, swing.01: 3}")
+    loaded = load(text, "edit-pc", "events.hit.frames.swing.01=7")
+    assert loaded.model.events["hit"].frames.by_clip == {"swing": 1, "swing.01": 7}
 
 
 def test_values_are_read_by_the_rules_of_the_file(load):

@@ -123,6 +123,10 @@ def test_a_rotation_vector_is_in_degrees_and_a_quaternion_is_made_a_unit_one():
     assert angle(quaternion, expected) < 1e-9
 
 
+def test_a_quaternion_is_a_unit_one_from_the_start():
+    assert parse_orientation({"quaternion": [0, 3, 0, 4]}).values == (0.0, 0.6, 0.0, 0.8)
+
+
 def angle(found, expected):
     w, x, y, z = found
     assert np.isclose(np.linalg.norm(found), 1.0)

@@ -30,7 +30,7 @@ def frame(text, *, frames=100, rate=25.0, **events):
         ("0%", 0),
         ("100%", 99),
         ("50%", 50),  # 49.5, halves up
-        ("1.5s", 38),  # 37.5 frames, which 1/25 puts a hair below
+        ("1.5s", 38),  # 37.5
         ("hit", 40),
         ("hit + 1.5s", 78),  # 40 + 37.5
         ("hit + 10", 50),
@@ -50,6 +50,11 @@ def test_a_frame_written_in_seconds_or_percent_is_that_frame(frames, data, rate)
     assert frame(f"{n / rate!r}s", frames=frames, rate=rate) == n
     if frames > 1:
         assert frame(f"{100.0 * n / (frames - 1)!r}%", frames=frames, rate=rate) == n
+
+
+def test_a_half_frame_that_binary_fractions_put_a_hair_too_low_is_rounded_up():
+    assert 0.145 / (1.0 / 100.0) < 14.5
+    assert frame("0.145s", rate=100.0) == 15
 
 
 @given(frames=st.integers(2, 100_000))
