@@ -84,22 +84,19 @@ def natural_spline(rows: FloatArray, at: FloatArray) -> FloatArray:
 
 
 def _second_derivatives(rows: FloatArray) -> FloatArray:
-    """Solve M[i-1] + 4 M[i] + M[i+1] = 6 (second difference), M = 0 at both ends.
-
-    The matrix is diagonal in the sine basis (eigenvalues 4 + 2 cos(pi k / (F - 1))), so an FFT of the odd
-    extension solves all columns at once.
-    """
-    last = len(rows) - 1
-    M = np.zeros_like(rows)
-    if last >= 2:
-        second = 6.0 * (rows[2:] - 2.0 * rows[1:-1] + rows[:-2])
-        odd = np.zeros((2 * last, *rows.shape[1:]))
-        odd[1:last] = second
-        odd[last + 1 :] = -second[::-1]
-        spectrum = np.fft.rfft(odd, axis=0)
-        eigenvalues = 4.0 + 2.0 * np.cos(np.pi * np.arange(last + 1) / last)
-        spectrum /= eigenvalues.reshape(-1, *(1,) * (rows.ndim - 1))
-        M[1:last] = np.fft.irfft(spectrum, n=2 * last, axis=0)[1:last]
+    """Solve M[i-1] + 4 M[i] + M[i+1] = 6 (second difference), M = 0 at both ends, by elimination."""
+    M = np.zeros(rows.shape)
+    if len(rows) > 2:
+        inner = M[1:-1].reshape(len(rows) - 2, -1)
+        inner[:] = (6.0 * (rows[2:] - 2.0 * rows[1:-1] + rows[:-2])).reshape(inner.shape)
+        pivots = [4.0]
+        for i in range(1, len(inner)):
+            inner[i] -= inner[i - 1] / pivots[-1]
+            pivots.append(4.0 - 1.0 / pivots[-1])
+        inner[-1] /= pivots[-1]
+        for i in range(len(inner) - 2, -1, -1):
+            inner[i] -= inner[i + 1]
+            inner[i] /= pivots[i]
     return M
 
 
