@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import yaml
 
 from motionedit.spec.faults import Fault, FaultyValueError, Keys, show
+from motionedit.spec.syntax import syntax_fault
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -29,26 +30,6 @@ _LONGEST_INTEGER = 40
 _CORE = "tag:yaml.org,2002:"
 _NULLS = ("", "~", "null")
 _BOOLEANS = {"true": True, "false": False}
-
-# Parts of the parsers' messages (libyaml's and PyYAML's own) and what they mean to a person.
-_SYNTAX = (
-    (
-        "mapping values are not allowed",
-        "a second ': ' on the line, or a wrong indentation; quote a text that holds ': '",
-    ),
-    ("could not find expected ':'", "a key without ': ' after it"),
-    ("while scanning a simple key", "a key without ': ' after it"),
-    ("',' or ']'", "a list that is not closed; put ] at its end"),
-    ("',' or '}'", "a mapping in braces that is not closed; put } at its end"),
-    ("unexpected end of stream", "a quote that is not closed"),
-    ("unknown escape character", "an unknown escape in double quotes; use single quotes"),
-    ("expected node content", "a value that is not there"),
-    ("expected the node content", "a value that is not there"),
-    ("expected '-' indicator", "a line that does not fit the lines above; indent it as the lines it belongs to"),
-    ("expected <block end>", "a line that does not fit the lines above; indent it as the lines it belongs to"),
-    ("expected key", "a line that does not fit the lines above; indent it as the lines it belongs to"),
-    ("cannot start any token", "a character that cannot begin a value; put quotes around the text"),
-)
 
 
 @dataclass
@@ -96,7 +77,7 @@ def read_tree(text: str) -> tuple[Node | None, list[Fault]]:
     except FaultyValueError as error:
         return None, [*builder.faults, *error.faults]
     except yaml.YAMLError as error:
-        return None, [*builder.faults, _syntax_fault(error, text)]
+        return None, [*builder.faults, syntax_fault(error, text)]
     return builder.root, builder.faults
 
 
@@ -118,27 +99,6 @@ def _events(text: str) -> Iterator[Any]:
     # libyaml's parser is ten times faster; the other one serves where PyYAML was built without it.
     loader = getattr(yaml, "CLoader", yaml.Loader)
     return yaml.parse(text, Loader=loader)
-
-
-def _syntax_fault(error: yaml.YAMLError, text: str) -> Fault:
-    mark = getattr(error, "problem_mark", None)
-    if mark is None:
-        # Only a character that YAML does not allow has no mark.
-        position = getattr(error, "position", 0)
-        line = text.count("\n", 0, position) + 1
-        return Fault("not valid YAML: a control character; remove it", line=line)
-    lines = text.splitlines()
-    line = min(mark.line + 1, max(len(lines), 1))
-    here = lines[line - 1] if lines else ""
-    problem = f"{getattr(error, 'context', '')} {getattr(error, 'problem', '')}"
-    if "\t" in here[: len(here) - len(here.lstrip())] or here[mark.column : mark.column + 1] == "\t":
-        return Fault("not valid YAML: a tab; indent with blanks", line=line)
-    context = getattr(error, "context_mark", None)
-    opened = f" (opened on line {context.line + 1})" if context is not None and context.line + 1 < line else ""
-    for part, meaning in _SYNTAX:
-        if part in problem:
-            return Fault(f"not valid YAML: {meaning}{opened if 'closed' in meaning else ''}", line=line)
-    return Fault(f"not valid YAML: {getattr(error, 'problem', '') or 'it cannot be read'}", line=line)
 
 
 @dataclass
