@@ -50,7 +50,7 @@ def through_keys(
     """
     count = int(np.ceil((stop - start) / spacing)) + 7
     first = start - 3 * spacing
-    grid = first + spacing * np.arange(count)
+    grid: FloatArray = first + spacing * np.arange(count, dtype=np.float64)
     return Curves(monotone_cubic(np.asarray(keys, dtype=float), np.asarray(values), grid), first, spacing)
 
 

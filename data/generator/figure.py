@@ -1,4 +1,4 @@
-"""The stick figure: skeletons with CMU's names, and poses built joint by joint from world rotations and two-bone limbs."""
+"""The stick figure: skeletons with CMU's names, poses built joint by joint, and limbs of two bones."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The golf swing: curves of posture over key instants, a tilted plane for arm and club, and the ball as the one goal."""
+"""The golf swing: curves of posture, a tilted plane for arm and club, and the ball as the one goal."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ import numpy as np
 
 from data.generator import curves, figure
 from data.generator.figure import Figure, axis_turn, unit
-from data.generator.styles import ENVELOPES, KEYS, NOISE, PARAMETERS, RESPONSE, STYLES, key_values
+from data.generator.grip import HEAD_IN_CLUB, IN_HAND, UP_SHAFT, above_ground, grips, within_reach, wrist_of
+from data.generator.styles import ENVELOPES, NOISE, PARAMETERS, RESPONSE, STYLES, key_values
 from motionedit.core import rotations as rot
 
 if TYPE_CHECKING:
@@ -17,7 +18,10 @@ if TYPE_CHECKING:
     from motionedit.core.motion import Motion
 
 # The feet, in cm and degrees: ankles this far left and right of the origin, toes turned out by so much.
-ANKLES = {"Left": np.array([21.0, figure.ANKLE_HEIGHT, -15.0]), "Right": np.array([-21.0, figure.ANKLE_HEIGHT, -15.0])}
+ANKLES = {
+    "Left": np.array([21.0, figure.ANKLE_HEIGHT, -15.0]),
+    "Right": np.array([-21.0, figure.ANKLE_HEIGHT, -15.0]),
+}
 TOES_OUT = {"Left": 22.0, "Right": -10.0}
 # How the noise splits: what is a person's own throughout, and what changes in the course of the swing.
 PERSON, MOMENT = 0.25, 0.9
@@ -25,11 +29,6 @@ PERSON, MOMENT = 0.25, 0.9
 USUAL_BALL = np.array([4.0, 64.0])
 # The club's head at the hit stands this high: the middle of a ball on the ground.
 BALL_HEIGHT = 2.1
-# The left hand holds the shaft this far above the right, cm.
-HANDS_APART = 9.0
-# How each hand holds the club: angle of the shaft off square in the palm, and turn of the hand about the shaft, degrees.
-GRIP_ANGLE = 28.0
-GRIP_TURN = {"Left": -25.0, "Right": 0.0}
 # At the address the head rests this far behind the ball, cm.
 _ADDRESS_GAP = 3.5
 
@@ -42,6 +41,9 @@ class Timing(NamedTuple):
     hit: float
     finish: float
     end: float
+
+
+USUAL_TIMING = Timing(2.04, 3.20, 3.76, 4.72, 5.24)
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +61,7 @@ class Swing:
     """
 
     ball: tuple[float, float]
-    timing: Timing = Timing(2.04, 3.20, 3.76, 4.72, 5.24)
+    timing: Timing = USUAL_TIMING
     style: tuple[float, float, float] = (1.0, 0.0, 0.0)
     seed: int = 0
     noise: float = 1.0
@@ -103,7 +105,7 @@ class SwingModel:
             t.finish,
             max(t.end, t.finish + 0.2),
         )
-        values = sum(w * key_values(s) for w, s in zip(swing.style, STYLES, strict=True))
+        values = np.tensordot(np.array(swing.style), np.array([key_values(style) for style in STYLES]), axes=1)
         self._base = curves.through_keys(keys, values, start=0.0, stop=t.end)
         self._envelopes = curves.through_keys(keys, np.array(list(ENVELOPES.values())).T, start=0.0, stop=t.end)
         rng = np.random.default_rng(swing.seed)
@@ -132,13 +134,16 @@ class SwingModel:
                 y = np.linalg.lstsq(J, error, rcond=None)[0]
                 y *= min(1.0, 10.0 / np.linalg.norm(error))
                 self._adapt[row, free] += weights[free] * y
+            else:
+                message = f"no swing reaches a ball at {self.swing.ball}"
+                raise ValueError(message)
 
     def _head(self, times: FloatArray, row: int, steps: FloatArray) -> FloatArray:
         parameters = self.parameters(times)
         parameters += self._envelopes(times)[:, row : row + 1] * steps
-        pose = self._torso(times, parameters)
+        pose = self._torso(parameters)
         _, club, grip = self._club(parameters, pose)
-        return grip + rot.rotate(club, np.array([0.0, -figure.CLUB_LENGTH, 0.0]))
+        return grip + rot.rotate(club, HEAD_IN_CLUB)
 
     def parameters(self, times: FloatArray) -> FloatArray:
         """Return the values of all curves at times (F,), shape (F, P)."""
@@ -147,7 +152,7 @@ class SwingModel:
 
     # -- the body --------------------------------------------------------------------------------------------------
 
-    def _torso(self, times: FloatArray, parameters: FloatArray) -> Figure:
+    def _torso(self, parameters: FloatArray) -> Figure:
         p = dict(zip(PARAMETERS, parameters.T, strict=True))
         body = Figure(figure.golfer_skeleton())
         pelvis = _tilted(p["pelvis_tilt"], p["pelvis_lean"], p["pelvis_turn"])
@@ -197,7 +202,8 @@ class SwingModel:
 
         def on_cone(angle: FloatArray, below: FloatArray) -> FloatArray:
             a, b = np.radians(angle)[:, None], np.radians(below)[:, None]
-            return np.cos(b) * (np.cos(a) * e1 + np.sin(a) * e2) - np.sin(b) * normal
+            direction: FloatArray = np.cos(b) * (np.cos(a) * e1 + np.sin(a) * e2) - np.sin(b) * normal
+            return direction
 
         arm = on_cone(p["arm"], p["arm_cone"])
         shaft = on_cone(p["arm"] + p["cock"], p["club_cone"])
@@ -211,9 +217,9 @@ class SwingModel:
         club = rot.multiply(figure.frame_of(rot.cross(shaft, path), -shaft), axis_turn("y", p["face"]))
         hands = {side: rot.multiply(club, rot.conjugate(held)) for side, held in grips(p["slip"]).items()}
         wrist = left + figure.reach_at(figure.UPPER_ARM, figure.FOREARM, p["left_bend"])[:, None] * arm
-        grip = wrist + rot.rotate(hands["Left"], _GRIP["Left"]) - rot.rotate(club, _UP_SHAFT)
+        grip = wrist + rot.rotate(hands["Left"], IN_HAND["Left"]) - rot.rotate(club, UP_SHAFT)
         grip = grip + p["finish"][:, None] * (finish - grip)
-        grip = _within_reach(grip, club, hands, {"Left": left, "Right": right})
+        grip = within_reach(grip, club, hands, {"Left": left, "Right": right})
         return hands, club, grip
 
     # -- the whole figure ------------------------------------------------------------------------------------------
@@ -222,9 +228,9 @@ class SwingModel:
         """Return the poses at times (F,)."""
         parameters = self.parameters(times)
         p = dict(zip(PARAMETERS, parameters.T, strict=True))
-        body = self._torso(times, parameters)
+        body = self._torso(parameters)
         hands, club, grip = self._club(parameters, body)
-        grip = _above_ground(grip, club)
+        grip = above_ground(grip, club)
         for side in ("Left", "Right"):
             self._leg(body, side, p)
             wrist = wrist_of(side, grip, club, hands[side])
@@ -259,47 +265,6 @@ class SwingModel:
         after = rot.multiply(axis_turn("y", 78.0 + p["head_yaw"]), axis_turn("x", 6.0 + p["head_pitch"]))
         after = rot.multiply(after, axis_turn("z", p["head_roll"]))
         body.share(("Neck", "Neck1", "Head"), rot.slerp(down, after, free))
-
-
-def grips(slip: FloatArray) -> dict[str, FloatArray]:
-    """Return the club's rotation in each hand's frame, (F, 4): the right hand lets it slip by `slip` degrees."""
-    c, s = np.cos(np.radians(GRIP_ANGLE)), np.sin(np.radians(GRIP_ANGLE))
-    right = rot.from_matrix(np.array([[c, 0.0, s], [s, 0.0, -c], [0.0, 1.0, 0.0]]).T)
-    left = rot.from_matrix(np.array([[-c, 0.0, s], [-s, 0.0, -c], [0.0, -1.0, 0.0]]).T)
-    out = {}
-    for side, grip in (("Left", left), ("Right", right)):
-        turned = rot.multiply(grip, axis_turn("y", np.full_like(slip, GRIP_TURN[side])))
-        out[side] = rot.multiply(turned, axis_turn("z", slip)) if side == "Right" else turned
-    return out
-
-
-_GRIP = {"Left": np.array([7.0, -2.5, 1.0]), "Right": np.array(figure.GRIP_IN_HAND)}
-_UP_SHAFT = np.array([0.0, HANDS_APART, 0.0])
-
-
-def wrist_of(side: str, grip: FloatArray, club: FloatArray, hand: FloatArray) -> FloatArray:
-    """Return where a hand's wrist is when it holds the club, (F, 3)."""
-    held = grip + rot.rotate(club, _UP_SHAFT) if side == "Left" else grip
-    return held - rot.rotate(hand, _GRIP[side])
-
-
-def _above_ground(grip: FloatArray, club: FloatArray) -> FloatArray:
-    """Lift the grip softly where the club's head would graze the ground; at the ball it changes nothing."""
-    head = grip + rot.rotate(club, np.array([0.0, -figure.CLUB_LENGTH, 0.0]))
-    lift = curves.soft_excess(1.0 - head[:, 1], 0.08)
-    return grip + lift[:, None] * np.array([0.0, 1.0, 0.0])
-
-
-def _within_reach(
-    grip: FloatArray, club: FloatArray, hands: dict[str, FloatArray], shoulders: dict[str, FloatArray]
-) -> FloatArray:
-    """Draw the grip softly toward a shoulder whose elbow would be bent by less than 9 degrees."""
-    longest = figure.reach_at(figure.UPPER_ARM, figure.FOREARM, 9.0)
-    for side in ("Right", "Left", "Right"):
-        gap = wrist_of(side, grip, club, hands[side]) - shoulders[side]
-        far = np.linalg.norm(gap, axis=-1)
-        grip = grip - (curves.soft_excess(far - longest, 0.4) / far)[:, None] * gap
-    return grip
 
 
 def _elbow_pole(body: Figure, p: dict[str, FloatArray], side: str) -> FloatArray:

@@ -11,6 +11,8 @@ from data.generator.figure import Figure, axis_turn
 from motionedit.core import rotations as rot
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from motionedit.core.arrays import FloatArray
     from motionedit.core.motion import Motion
 
@@ -22,7 +24,7 @@ _OVER_FOOT = 0.19
 _TRACK = 7.5
 _TOES_OUT = 7.0
 # Pitch of the foot, degrees, toes down: as the heel lands, and as the toes leave.
-_LANDING, _PUSH = -18.0, 84.0
+_LANDING, _PUSH = -18.0, 90.0
 _TOE_IN_FOOT = np.array([0.0, -6.0, 13.0])
 _HEEL_IN_FOOT = np.array([0.0, -figure.ANKLE_HEIGHT, -4.5])
 
@@ -59,7 +61,7 @@ def _foot(side: str, times: FloatArray, seed: int) -> tuple[FloatArray, FloatArr
     x, z, yaw = (here + step[:, None] * (following - here)).T
     pitch = (
         _LANDING * (1.0 - curves.smooth_step(u, 0.0, 0.11))
-        + _PUSH * curves.smooth_step(u, 0.36, 0.82)
+        + _PUSH * curves.smooth_step(u, 0.385, 0.82)
         + (_LANDING - _PUSH) * curves.smooth_step(u, 0.69, 0.995)
     )
     foot = rot.multiply(axis_turn("y", yaw), axis_turn("x", pitch))
@@ -70,7 +72,7 @@ def _foot(side: str, times: FloatArray, seed: int) -> tuple[FloatArray, FloatArr
     toe = np.stack((x, np.full_like(x, figure.TOE_HEIGHT), z), axis=-1)
     toe = toe + rolled - rot.rotate(flat, _TOE_IN_FOOT - _HEEL_IN_FOOT)
     s = np.clip((u - STANCE) / (1.0 - STANCE), 0.0, 1.0)
-    toe[:, 1] += 6.5 * s**3 * (1.0 - s) ** 4 * (7.0**7 / (3.0**3 * 4.0**4))
+    toe[:, 1] += 8.0 * s**3 * (1.0 - s) ** 4 * (7.0**7 / (3.0**3 * 4.0**4))
     bend = curves.smooth_step(u, 0.36, 0.60) * (1.0 - curves.smooth_step(u, 0.60, 0.80))
     toes = rot.multiply(foot, axis_turn("x", -np.maximum(pitch, 0.0) * bend))
     return toe - rot.rotate(foot, _TOE_IN_FOOT), foot, toes, yaw
@@ -84,7 +86,8 @@ def _prints(side: str, count: int, seed: int) -> FloatArray:
     start = STRIDE * (np.arange(count) - phase(side, np.zeros(1))[0] + _OVER_FOOT)
     yaw = np.full(count, sign * _TOES_OUT)
     x = sign * _TRACK + 13.0 * np.sin(np.radians(yaw))
-    return np.stack((x, start + 13.0, yaw), axis=-1) + wander
+    prints: FloatArray = np.stack((x, start + 13.0, yaw), axis=-1) + wander
+    return prints
 
 
 def _even_travel(u: FloatArray, begin: float, end: float, *, rise: float, fall: float) -> FloatArray:
@@ -99,7 +102,7 @@ def _even_travel(u: FloatArray, begin: float, end: float, *, rise: float, fall: 
     return travel / (end - begin - 0.5 * (rise + fall))
 
 
-def _torso(body: Figure, times: FloatArray, sway: FloatArray, feet: dict[str, tuple[FloatArray, ...]]) -> None:
+def _torso(body: Figure, times: FloatArray, sway: FloatArray, feet: Mapping[str, tuple[FloatArray, ...]]) -> None:
     left = 2.0 * np.pi * phase("Left", times)
     # The left foot stands in the first 62 % of its stride: its middle is where the body sways over it.
     over = left - 2.0 * np.pi * (0.5 * STANCE)
@@ -108,7 +111,7 @@ def _torso(body: Figure, times: FloatArray, sway: FloatArray, feet: dict[str, tu
     pelvis = rot.multiply(
         axis_turn("y", yaw), rot.multiply(axis_turn("z", drop), axis_turn("x", 5.0 + 0.5 * sway[:, 2]))
     )
-    x = 2.2 * np.cos(over) + 0.2 * sway[:, 3]
+    x = 2.7 * np.cos(over) + 0.2 * sway[:, 3]
     y = 98.3 - 1.4 * np.cos(2.0 * left - 0.5)
     z = STRIDE / STRIDE_TIME * times + 1.2 * np.sin(2.0 * left - 0.6)
     root = np.stack((x, y, z), axis=-1)
@@ -118,7 +121,7 @@ def _torso(body: Figure, times: FloatArray, sway: FloatArray, feet: dict[str, tu
         flat = np.sum((hip - ankle)[:, [0, 2]] ** 2, axis=-1)
         highest = ankle[:, 1] + np.sqrt(figure.reach_at(figure.THIGH, figure.SHIN, 5.0) ** 2 - flat)
         root[:, 1] -= curves.soft_excess(hip[:, 1] - highest, 0.5)
-    twist = 6.0 * np.cos(left - 0.1) + 0.5 * sway[:, 4]
+    twist = 4.8 * np.cos(left - 0.1) + 0.5 * sway[:, 4]
     lean = rot.multiply(
         axis_turn("z", -1.2 * np.cos(over)), axis_turn("x", 3.5 + 0.4 * sway[:, 5] + 0.8 * np.cos(2.0 * left))
     )
@@ -132,7 +135,7 @@ def _arm(body: Figure, side: str, times: FloatArray, sway: FloatArray) -> None:
     sign = 1.0 if side == "Left" else -1.0
     turn = 2.0 * np.pi * phase("Right" if side == "Left" else "Left", times)
     own = sway[:, 8 if side == "Left" else 9]
-    raised = -3.0 + 17.0 * np.cos(turn - 0.25) + 0.8 * own
+    raised = -3.0 + 14.5 * np.cos(turn - 0.25) + 0.8 * own
     bent = 27.0 + 10.0 * np.cos(turn - 0.6) + 1.0 * own
     body.turn_local(f"{side}Shoulder", axis_turn("y", -sign * 3.0 * np.cos(turn - 0.25)))
     chest = rot.multiply(body.rotations["Spine1"], axis_turn("z", sign * 9.0 + 0.0 * turn))
