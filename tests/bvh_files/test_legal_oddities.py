@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from small_clip import HIERARCHY, MOTION, ROWS, TEXT, with_text
 
-from motionedit.core.bvh import parse_clip, unedited_bytes
+from motionedit.core.bvh import parse_clip, read_clip, unedited_bytes
 
 VALUES = np.array([[float(word) for word in line.split()] for line in ROWS.splitlines()])
 
@@ -30,6 +30,14 @@ def test_a_plain_file_gives_its_hierarchy_and_values():
     assert clip.warnings == ()
     np.testing.assert_array_equal(clip.values, VALUES)
     assert clip.sha256 == hashlib.sha256(TEXT.encode()).hexdigest()
+
+
+def test_a_file_is_read_under_its_path_or_its_label(tmp_path):
+    path = tmp_path / "walk.bvh"
+    path.write_bytes(TEXT.encode())
+    assert read_clip(path).label == str(path)
+    assert read_clip(path, label="folder/walk.bvh").label == "folder/walk.bvh"
+    np.testing.assert_array_equal(read_clip(path).values, VALUES)
 
 
 SAME = {

@@ -85,3 +85,12 @@ def test_a_motion_that_is_not_finite_is_not_written():
     motion = read(TEXT.encode()).motion
     with pytest.raises(BvhError, match="not finite"):
         new_bytes(replace(motion, translations=frozen(np.full((3, 1, 3), np.inf))))
+
+
+@pytest.mark.parametrize("ending", ["\n", "\r\n"])
+def test_huge_values_are_written_out(ending):
+    clip = read(TEXT.replace("\n", ending).encode())
+    far = replace(clip.motion, translations=np.full((3, 1, 3), -2.5e17))
+    written = resampled_bytes(clip, far)
+    assert written.count(f"{ending}-250000000000000000.000000 ".encode()) == 3
+    assert same_motion(read(written).motion, far)

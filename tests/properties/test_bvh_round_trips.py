@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from motionedit.core import rotations as rot
 from motionedit.core.bvh import edited_bytes, new_bytes, parse_clip, resampled_bytes
 from motionedit.core.bvh.format import format_fixed
-from motionedit.core.bvh.parse import parse_block
+from motionedit.core.bvh.parse import _parse_any, parse_block
 from motionedit.core.bvh.scan import decimals, words_between
 
 PAD = b"HIERARCHY ROOT x"
@@ -47,6 +47,10 @@ def test_every_word_is_read_as_float_reads_it(tokens, gap):
     exact = np.array([float(token) for token in tokens])
     np.testing.assert_array_equal(out, exact)
     np.testing.assert_array_equal(np.signbit(out), np.signbit(exact))
+    # The slow rule, one word after the other, says the same.
+    slow = np.empty(len(tokens))
+    assert _parse_any(data, starts, stops, slow) == max(decimals(token.encode()) for token in tokens)
+    np.testing.assert_array_equal(slow, exact)
 
 
 @given(st.lists(st.text("0123456789.+-eExnaif_", min_size=1, max_size=6), min_size=1, max_size=8))

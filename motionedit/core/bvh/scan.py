@@ -71,8 +71,6 @@ def decimals(word: bytes) -> int:
 
 def words_between(data: bytes, start: int, stop: int) -> tuple[IntArray, IntArray]:
     """Return where each word begins and ends (exclusive) between two bytes that cut no word, shapes (N,)."""
-    if start >= stop:
-        return np.zeros(0, np.intp), np.zeros(0, np.intp)
     solid = np.frombuffer(data, np.uint8, count=stop - start, offset=start) > ord(" ")
     edges = np.flatnonzero(solid[1:] != solid[:-1])
     edges += start + 1
