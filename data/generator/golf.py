@@ -31,6 +31,8 @@ USUAL_BALL = np.array([4.0, 64.0])
 BALL_HEIGHT = 2.1
 # At the address the head rests this far behind the ball, cm.
 _ADDRESS_GAP = 3.5
+# A posture that gives way to the ball by more than this (degrees, cm) is no swing any more.
+_FARTHEST = 45.0
 
 
 class Timing(NamedTuple):
@@ -124,6 +126,9 @@ class SwingModel:
             weights = np.array([_ADAPT[row].get(name, 0.0) for name in PARAMETERS])
             free = np.flatnonzero(weights)
             for _ in range(30):
+                if np.abs(self._adapt).max() > _FARTHEST:
+                    message = f"no swing reaches a ball at {self.swing.ball}"
+                    raise ValueError(message)
                 steps = np.zeros((len(free) + 1, len(PARAMETERS)))
                 steps[np.arange(1, len(free) + 1), free] = 1e-4
                 heads = self._head(np.full(len(steps), time), row, steps)
@@ -134,9 +139,6 @@ class SwingModel:
                 y = np.linalg.lstsq(J, error, rcond=None)[0]
                 y *= min(1.0, 10.0 / np.linalg.norm(error))
                 self._adapt[row, free] += weights[free] * y
-            else:
-                message = f"no swing reaches a ball at {self.swing.ball}"
-                raise ValueError(message)
 
     def _head(self, times: FloatArray, row: int, steps: FloatArray) -> FloatArray:
         parameters = self.parameters(times)

@@ -58,5 +58,5 @@ def within_reach(
     for side in ("Right", "Left", "Right"):
         gap = wrist_of(side, grip, club, hands[side]) - shoulders[side]
         far = np.linalg.norm(gap, axis=-1)
-        grip = grip - (curves.soft_excess(far - longest, 0.4) / far)[:, None] * gap
+        grip = grip - (curves.soft_excess(far - longest, 0.6) / far)[:, None] * gap
     return grip
