@@ -1,10 +1,13 @@
 """The clips that ship: the generator writes their very bytes, and they move as golfers, walkers and kickers do."""
 
+import os
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from data.generator.compare import comparison
 from data.generator.files import shipped_files
 from data.generator.golf import BALL_HEIGHT, SwingModel, make_swing, with_ball
 from data.generator.grip import IN_HAND, UP_SHAFT
@@ -367,3 +370,25 @@ def test_knees_and_elbows_are_hinges(swings, walk, kick):
             v = rot.log(motion.rotations[:, motion.skeleton.names.index(name)])
             energy = np.linalg.eigvalsh(v.T @ v)
             assert energy[:2].sum() / energy.sum() < 1e-6
+
+
+# -- the README ----------------------------------------------------------------------------------------------------
+
+
+def test_the_readme_names_every_ball(folder, balls):
+    text = (folder / "README.md").read_text()
+    for name, ball in balls.items():
+        assert f"| {name} |" in text
+        assert ", ".join(f"{value:.1f}" for value in ball) in text
+
+
+def test_the_readmes_code_runs_and_its_table_is_what_the_command_prints(folder):
+    text = (folder / "README.md").read_text()
+    code = text.split("```python\n")[1].split("```")[0].replace("rng, 100,", "rng, 2,")
+    scope = {}
+    exec(code, scope)  # noqa: S102  the code is our own
+    assert len(scope["database"]) == 2
+    clips = os.environ.get("MOTIONEDIT_CLIPS")
+    if not clips:
+        pytest.skip("MOTIONEDIT_CLIPS names no folder of real clips")
+    assert comparison(Path(clips)) in text
