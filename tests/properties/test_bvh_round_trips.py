@@ -136,3 +136,13 @@ def test_fresh_and_resampled_files_read_back(data):
         assert again.skeleton.channels == clip.motion.skeleton.channels
         assert np.degrees(rot.angle_between(again.rotations, clip.motion.rotations)).max() < 2e-4
         np.testing.assert_allclose(again.translations, clip.motion.translations, atol=1e-6)
+
+
+@given(st.lists(st.integers(10**14, 10**17), min_size=1, max_size=40), st.integers(0, 16))
+def test_words_with_the_most_digits_are_correctly_rounded(mantissas, places):
+    tokens = [f"{m // 10**places}.{m % 10**places:0{places}d}" if places else str(m) for m in mantissas]
+    data = PAD + b" " + " ".join(tokens).encode() + b"\n"
+    starts, stops = words_between(data, len(PAD), len(data))
+    out = np.empty(len(tokens))
+    parse_block(data, starts, stops, out=out)
+    np.testing.assert_array_equal(out, [float(token) for token in tokens])

@@ -43,17 +43,17 @@ def format_fixed(values: FloatArray, *, decimals: int, ends: NDArray[np.uint8] |
     Parameters
     ----------
     values : shape (N,)
-        Finite.
+        Finite; at least one.
     decimals : int
         1 to 17.
     ends : shape (N,), optional
         A character to follow each value, part of its word.
     """
     size = np.abs(values)
-    if len(values) and size.max() >= _LARGEST:
+    if size.max() >= _LARGEST:
         return _format_large(values, decimals=decimals, ends=ends)
     whole, fraction = _split(size, decimals)
-    places = len(str(int(whole.max(initial=0))))
+    places = len(str(int(whole.max())))
     tail = int(ends is not None)
     # Digits are laid four at a time, from the right, each four over the zeros that the last left too many.
     point = 1 + -(-places // 4) * 4

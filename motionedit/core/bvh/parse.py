@@ -1,7 +1,7 @@
 """From decimal text to double precision, whole blocks of a file at once, correctly rounded.
 
-A number of at most 15 digits is an integer below 2^53 divided by a power of ten that a double holds exactly, so one
-division rounds it correctly. The integer is read eight digits at a time inside 64-bit words.
+A number of at most 15 digits and a point is an integer below 2^53 divided by a power of ten that a double holds
+exactly, so one division rounds it correctly. The integer is read eight digits at a time inside 64-bit words.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
 
-_WINDOW = 16  # bytes of a number that are read at once
-_MOST_DIGITS = 15  # 10^15 < 2^53
+# Bytes of a number that are read at once: 15 digits and a point, or 16 digits, which one conversion rounds correctly.
+_WINDOW = 16
 _ZERO, _NINE = ord("0"), ord("9")
 _NUMERIC = b"0123456789+-.eE \t\n\r\v\f"
 
@@ -88,11 +88,10 @@ def _parse_plain(data: bytes, starts: IntArray, stops: IntArray, out: FloatArray
     if k is None:
         return None
     if isinstance(k, int):
-        fewest, most, low, high = int(lengths.min()) - 1, longest - 1, k, k
+        fewest, low, high = int(lengths.min()) - 1, k, k
     else:
-        digits_of = lengths - (k > 0)
-        fewest, most, low, high = int(digits_of.min()), int(digits_of.max()), int(k.min()), int(k.max())
-    if fewest < 1 or most > _MOST_DIGITS:
+        fewest, low, high = int((lengths - (k > 0)).min()), int(k.min()), int(k.max())
+    if fewest < 1:
         return None
     mantissa = _mantissas(data, stops, lengths, longest)
     if low == high:
@@ -162,7 +161,7 @@ def _parse_long(data: bytes, starts: IntArray, stops: IntArray, out: FloatArray)
             values = np.fromstring(text, dtype=np.float64, sep=" ")
     except (DeprecationWarning, ValueError):
         return None
-    # The reader takes 1-2 for two numbers.
+    # Older readers take 1-2 for two numbers.
     if len(values) != len(starts) or not np.isfinite(values).all():
         return None
     out[:] = values

@@ -88,11 +88,16 @@ def test_at_gimbal_lock_the_last_angle_stays_and_the_rotation_is_kept(axes, sign
     track = walk(rng, 60, 0.02)
     track[:, 1] = sign * np.pi / 2 * 0.9
     track[20:40, 1] = sign * (np.pi / 2 - np.linspace(-0.99, 0.99, 20) * GIMBAL_BAND)
+    # The outer angles may run away together there, and hardly turn the joint.
+    parity = 1.0 if (axes[1] - axes[0]) % 3 == 1 else -1.0
+    run_away = np.linspace(0.0, 2.5, 20)
+    track[20:40] += np.column_stack((-sign * parity * run_away, np.zeros(20), run_away))
     q = rot.from_euler(track, axes)
+    assert rot.angle_between(q[20:39], q[21:40]).max() < 0.2
     angles = angles_near(q, axes, seed=track[0])
     assert off(angles, q, axes) < ENOUGH
     np.testing.assert_array_equal(angles[20:40, 2], np.full(20, angles[19, 2]))
-    assert np.abs(np.diff(angles, axis=0)).max() < 0.7
+    assert np.abs(np.diff(angles[:40], axis=0)).max() < 0.7
 
 
 def test_a_clip_that_is_at_gimbal_lock_throughout_keeps_the_seed(rng):
