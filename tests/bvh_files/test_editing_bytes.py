@@ -8,7 +8,7 @@ import pytest
 from small_clip import HIERARCHY, TEXT, with_text
 
 from motionedit.core import rotations as rot
-from motionedit.core.bvh import edited_bytes, parse_clip, write
+from motionedit.core.bvh import edited_bytes, parse_clip, splice
 from motionedit.errors import BvhError
 
 NUMBER = re.compile(rb"[-+.0-9eE]+")
@@ -141,6 +141,6 @@ def test_a_long_clip_is_edited_in_segments_to_the_same_bytes(monkeypatch):
     touched = np.ones((400, 2), dtype=bool)
     touched[:30, 0] = touched[390:, 1] = touched[200:210] = False
     whole = edited_bytes(clip, turned(clip), touched=touched, moved=touched[:, :1])
-    monkeypatch.setattr(write, "SEGMENT", 64)
+    monkeypatch.setattr(splice, "SEGMENT", 64)
     assert edited_bytes(clip, turned(clip), touched=touched, moved=touched[:, :1]) == whole
     assert whole != data

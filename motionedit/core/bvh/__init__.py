@@ -2,7 +2,8 @@
 
 from motionedit.core.bvh.adapter import VerifyResult, check_with_bvhio, from_bvhio, to_bvhio
 from motionedit.core.bvh.read import BvhText, Clip, parse_clip, read_clip
-from motionedit.core.bvh.write import edited_bytes, new_bytes, resampled_bytes, unedited_bytes
+from motionedit.core.bvh.splice import edited_bytes
+from motionedit.core.bvh.write import new_bytes, resampled_bytes, unedited_bytes
 from motionedit.core.euler import joint_angles
 
 __all__ = [

@@ -1,9 +1,7 @@
-"""Writing BVH clips: new numbers spliced into the file's own bytes, or whole new rows under its own header."""
+"""Writing BVH clips whole: the file's own bytes, new rows under its own header, or a fresh file."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cache
 from io import BytesIO
 from typing import TYPE_CHECKING
 
@@ -11,27 +9,18 @@ import numpy as np
 
 from motionedit.core.bvh.format import format_fixed, place
 from motionedit.core.bvh.rows import BLOCK_BYTES
-from motionedit.core.bvh.scan import words_between
-from motionedit.core.euler import joint_angles, joint_pieces, piece_angles, runs
-from motionedit.core.motion import position_columns
+from motionedit.core.euler import joint_angles
 from motionedit.errors import BvhError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from motionedit.core.arrays import BoolArray, FloatArray, IntArray
+    from motionedit.core.arrays import BoolArray, FloatArray
     from motionedit.core.bvh.read import Clip
-    from motionedit.core.euler import Piece
     from motionedit.core.motion import Motion
     from motionedit.core.skeleton import Skeleton
 
 FEWEST_DECIMALS = 6
 # A double below 10 carries no more.
 MOST_DECIMALS = 17
-# Rows of a long clip that are solved and held at a time.
-SEGMENT = 1 << 14
-# Blanks between two values that are copied column by column; wider gaps are rare and copied one by one.
-_WIDE_GAP = 16
 
 
 def unedited_bytes(clip: Clip) -> bytes:
@@ -39,53 +28,25 @@ def unedited_bytes(clip: Clip) -> bytes:
     return clip.text.data
 
 
-def edited_bytes(clip: Clip, motion: Motion, *, touched: BoolArray, moved: BoolArray | None = None) -> bytes:
-    """Return the clip's bytes with the values that an edit touched replaced, and all other bytes kept.
-
-    Parameters
-    ----------
-    motion : Motion
-        The edited motion, as many frames as the clip.
-    touched : shape (F, J)
-        Where a joint's rotation channels are rewritten.
-    moved : shape (F, P), optional
-        Where the position channels of the joints `skeleton.translated` are rewritten; nowhere if not given.
-
-    Raises
-    ------
-    BvhError
-        Where a value to be written is not finite.
-    """
-    plan = _plan(clip, motion, touched, moved)
-    if len(plan.columns) == 0:
-        return clip.text.data
-    # A stream grows in place, where joining pieces would hold the file twice.
-    stream = BytesIO()
-    stream.write(_head(clip, frames=len(motion)))
-    at = clip.text.header.rows_start
-    for start in range(0, len(motion), SEGMENT):
-        edit = _edit(plan, motion, touched, moved, slice(start, min(start + SEGMENT, len(motion))))
-        _check_finite(clip, edit.values, edit.cells, first=start)
-        at = _splice_rows(stream, clip, edit, start, at)
-    _write_tail(stream, clip, at)
-    return stream.getvalue()
-
-
 def resampled_bytes(clip: Clip, motion: Motion) -> bytes:
     """Return a file of the clip's own header with the rows of another motion of its skeleton.
 
-    `Frames:` and `Frame Time:` are put right; rows use the file's line ending and one blank between values.
+    `Frames:` and `Frame Time:` are put right; rows use the file's line ending and one blank between values. `BvhError`
+    where a value is not finite.
     """
     values = joint_angles(motion, start=clip.values_between(0, 1)[0])
-    _check_finite(clip, values)
+    check_finite(clip, values)
     data, header = clip.text.data, clip.text.header
-    head = _head(clip, frames=len(values), frame_time=motion.frame_time)
+    head = head_bytes(clip, frames=len(values), frame_time=motion.frame_time)
     ending = _line_ending(data, header.rows_start)
-    return head + ending + _rows_text(values, decimals=_decimals(clip), ending=ending)
+    return head + ending + _rows_text(values, decimals=decimals_of_edits(clip), ending=ending)
 
 
 def new_bytes(motion: Motion, *, decimals: int = FEWEST_DECIMALS) -> bytes:
-    """Return a motion as a fresh BVH file: tabs, LF, a fixed number of decimals."""
+    """Return a motion as a fresh BVH file: tabs, LF, a fixed number of decimals.
+
+    `BvhError` where a value is not finite.
+    """
     skeleton = motion.skeleton
     values = joint_angles(motion, start=np.zeros(skeleton.channel_count))
     if not np.isfinite(values).all():
@@ -102,66 +63,13 @@ def plain_number(value: float) -> str:
     return np.format_float_positional(value, trim="0")
 
 
-def _decimals(clip: Clip) -> int:
+def decimals_of_edits(clip: Clip) -> int:
+    """Return how many decimals new values get: the most among the clip's own, within limits."""
     return min(max(clip.text.rows.decimals, FEWEST_DECIMALS), MOST_DECIMALS)
 
 
-@dataclass(frozen=True, eq=False)
-class _Plan:
-    """Which `columns` (K,) an edit touches, and each touched joint's frames in pieces."""
-
-    columns: IntArray
-    pieces: dict[int, list[Piece]]
-
-
-@dataclass(frozen=True, eq=False)
-class _Edit:
-    """What is rewritten in a segment of n rows: the `columns` (K,), their `values` (n, K), and which `cells` (n, K)."""
-
-    columns: IntArray
-    values: FloatArray
-    cells: BoolArray
-
-
-def _plan(clip: Clip, motion: Motion, touched: BoolArray, moved: BoolArray | None) -> _Plan:
-    skeleton = clip.motion.skeleton
-    # Joints mostly ask for the same few rows.
-    given = cache(clip.values_between)
-    pieces: dict[int, list[Piece]] = {}
-    columns: list[int] = []
-    for joint in np.flatnonzero(touched.any(axis=0)).tolist():
-        if skeleton.rotation_axes[joint]:
-            pieces[joint] = joint_pieces(motion, joint, given=given, touched=touched[:, joint], size=SEGMENT)
-            columns += skeleton.columns(joint, "rotation")
-    for p, joint in enumerate(skeleton.translated.tolist()):
-        if moved is not None and moved[:, p].any():
-            columns += skeleton.columns(joint, "position")
-    return _Plan(np.array(sorted(columns), dtype=np.intp), pieces)
-
-
-def _edit(plan: _Plan, motion: Motion, touched: BoolArray, moved: BoolArray | None, rows: slice) -> _Edit:
-    """Return the new values of a segment of rows; the columns that nothing touches take no memory."""
-    skeleton = motion.skeleton
-    place = {column: k for k, column in enumerate(plan.columns.tolist())}
-    values = np.empty((rows.stop - rows.start, len(place)))
-    cells = np.zeros(values.shape, dtype=np.bool_)
-    for joint, pieces in plan.pieces.items():
-        columns = [place[column] for column in skeleton.columns(joint, "rotation")]
-        for piece in pieces:
-            if rows.start <= piece.start < rows.stop:
-                angles = piece_angles(motion, joint, piece=piece)
-                for column, angle in zip(columns, angles.T, strict=True):
-                    values[piece.start - rows.start : piece.stop - rows.start, column] = angle
-        cells[:, columns] = touched[rows, joint, None]
-    for p, joint in enumerate(skeleton.translated.tolist()):
-        for axis, column in position_columns(skeleton, joint):
-            if moved is not None and column in place:
-                values[:, place[column]] = motion.translations[rows, p, axis]
-                cells[:, place[column]] = moved[rows, p]
-    return _Edit(plan.columns, values, cells)
-
-
-def _check_finite(clip: Clip, values: FloatArray, cells: BoolArray | None = None, *, first: int = 0) -> None:
+def check_finite(clip: Clip, values: FloatArray, cells: BoolArray | None = None, *, first: int = 0) -> None:
+    """Raise `BvhError` where a value of the chosen cells, or of all, is not finite; row 0 is frame `first`."""
     bad = ~np.isfinite(values)
     if cells is not None:
         bad &= cells
@@ -171,7 +79,7 @@ def _check_finite(clip: Clip, values: FloatArray, cells: BoolArray | None = None
         raise BvhError(message, file=clip.label)
 
 
-def _head(clip: Clip, *, frames: int, frame_time: float | None = None) -> bytes:
+def head_bytes(clip: Clip, *, frames: int, frame_time: float | None = None) -> bytes:
     """Return the bytes above the rows, with the frame count, and the frame time if given, put right."""
     data, header = clip.text.data, clip.text.header
     start, stop = header.frames_span
@@ -181,93 +89,6 @@ def _head(clip: Clip, *, frames: int, frame_time: float | None = None) -> bytes:
     if frame_time is not None and frame_time != header.frame_time:
         time = plain_number(frame_time).encode()
     return data[:start] + count + data[stop:time_start] + time + data[time_stop : header.rows_start]
-
-
-def _splice_rows(stream: BytesIO, clip: Clip, edit: _Edit, first: int, at: int) -> int:
-    """Write a segment of rows from frame `first` on, with the new text of the touched values in place of the old.
-
-    What stands from byte `at` up to the last touched row is written; the byte after it is returned.
-    """
-    data, rows = memoryview(clip.text.data), clip.text.rows
-    decimals = _decimals(clip)
-    step = max(BLOCK_BYTES * len(rows.starts) // len(data), 1)
-    for start, stop in runs(np.asarray(edit.cells.any(axis=1))):
-        for block in range(start, stop, step):
-            chosen = slice(block, min(block + step, stop))
-            begin, end = int(rows.starts[first + block]), int(rows.stops[first + chosen.stop - 1])
-            stream.write(data[at:begin])
-            cells, values = edit.cells[chosen].reshape(-1), edit.values[chosen].reshape(-1)
-            stream.write(_spliced(clip, (begin, end), edit.columns, values, cells, decimals=decimals).data)
-            at = end
-    return at
-
-
-def _write_tail(stream: BytesIO, clip: Clip, at: int) -> None:
-    cut_off = clip.text.rows.cut_off
-    if cut_off is None:
-        stream.write(memoryview(clip.text.data)[at:])
-    else:
-        # What is left of a row that was cut short would make the file unreadable.
-        stream.write(clip.text.data[at:cut_off].rstrip(b" \t"))
-
-
-def _spliced(
-    clip: Clip,
-    span: tuple[int, int],
-    columns: IntArray,
-    values: FloatArray,
-    cells: BoolArray,
-    *,
-    decimals: int,
-) -> NDArray[np.uint8]:
-    """Return the text of the rows in a span of bytes, with the touched cells of some columns replaced."""
-    data, (begin, end) = clip.text.data, span
-    starts, stops = words_between(data, begin, end)
-    width = clip.motion.skeleton.channel_count
-    word = (np.arange(0, len(starts), width)[:, None] + columns).reshape(-1)
-    if not cells.all():
-        word, values = word[cells], values[cells]
-    new = format_fixed(values, decimals=decimals)
-    lengths = stops - starts
-    if len(word) == len(starts):
-        words, shifted = new.chars, np.cumsum(new.lengths - lengths)
-    else:
-        wide = max(-(-int(lengths.max()) // 8) * 8, new.chars.shape[1])
-        words = _windows(data, stops, wide)
-        words[word, wide - new.chars.shape[1] :] = new.chars
-        growth = np.zeros(len(starts), np.intp)
-        growth[word] = new.lengths - lengths[word]
-        shifted = np.cumsum(growth)
-    starts -= begin
-    stops -= begin
-    shifted += stops
-    margin = words.shape[1]
-    text = np.empty(margin + int(shifted[-1]), np.uint8)
-    place(words, shifted, out=text, margin=margin)
-    old = np.frombuffer(data, np.uint8, count=end - begin, offset=begin)
-    _copy_gaps(old, starts, stops, text[margin:], shifted)
-    return text[margin:]
-
-
-def _copy_gaps(
-    old: NDArray[np.uint8], starts: IntArray, stops: IntArray, new: NDArray[np.uint8], shifted: IntArray
-) -> None:
-    """Copy what stands between the words of `old`, from starts to stops, to between those of `new`."""
-    gaps = starts[1:] - stops[:-1]
-    new[shifted[:-1]] = old[stops[:-1]]
-    for blank in range(1, min(int(gaps.max(initial=0)), _WIDE_GAP)):
-        wide = np.flatnonzero(gaps > blank)
-        new[shifted[wide] + blank] = old[stops[wide] + blank]
-    for i in np.flatnonzero(gaps > _WIDE_GAP).tolist():
-        new[shifted[i] : shifted[i] + gaps[i]] = old[stops[i] : starts[i + 1]]
-
-
-def _windows(data: bytes, stops: IntArray, width: int) -> NDArray[np.uint8]:
-    """Return the `width` bytes before each stop, shape (N, width)."""
-    if stops[0] < width:
-        data, stops = bytes(width) + data[: int(stops[-1])], stops + width
-    windows = np.ndarray((len(data) - width + 1,), f"V{width}", buffer=data, strides=(1,))
-    return windows[stops - width].view(np.uint8).reshape(-1, width)
 
 
 def _rows_text(values: FloatArray, *, decimals: int, ending: bytes) -> bytes:
