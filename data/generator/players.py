@@ -15,9 +15,10 @@ if TYPE_CHECKING:
 # Where the ball lies on average, and its spread on the ground, cm.
 BALL = (4.0, 64.0)
 BALL_SPREAD = (5.8, 5.8)
-# The ten that ship: group of style by clip, and the seed of all the rest, chosen so that nothing correlates.
+# The ten that ship: group of style by clip, and the seed of all the rest, chosen so that the balls lie well apart and
+# neither they nor the durations go with the styles.
 GROUPS = (0, 1, 2, 0, 2, 1, 0, 1, 2, 0)
-SEED = 1702
+SEED = 1372
 SHIPPED_RATE = 25.0
 
 
@@ -75,7 +76,7 @@ def swings_of(groups: Sequence[int], *, seed: int, noise: float = 1.0) -> list[S
     swings = []
     for group in groups:
         swing = random_swing(rng, group=group, noise=noise)
-        ball = (round(swing.ball[0], 1), round(swing.ball[1], 1))
+        ball = (round(swing.ball[0], 1) + 0.0, round(swing.ball[1], 1))
         swings.append(Swing(ball, swing.timing, swing.style, swing.seed, noise, swing.person))
     return swings
 
