@@ -10,7 +10,12 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT), str(ROOT / "benchmarks")]
 
 GOLF = {
-    "events": {"hit": {"detect": {"effector": {"end_site": "Club"}, "minimum_of": "height", "between": ["60%", "85%"]}}}
+    "events": {
+        "hit": {
+            "frames": str(ROOT / "data" / "golf" / "events.csv"),
+            "detect": {"effector": {"end_site": "Club"}, "minimum_of": "height", "between": ["60%", "85%"]},
+        }
+    }
 }
 
 

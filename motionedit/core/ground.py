@@ -21,6 +21,7 @@ _REST_POSE_STEP = 0.6  # rad between two frames: a body does not turn a joint of
 _REST_POSE_FRAMES = 3
 _CLEAR_AXIS = 1.25  # head over feet: the largest part against the next, below it OFFSETs are asked too
 _TRAVEL_SHARE = 0.05  # of the widest way that any joint is moved: less is jitter of a static root
+_STANCE_SHARE = 0.15  # of the leg: feet nearer together give no line
 _LEVEL_SHARE = 0.1  # of the hips' width that must remain when it is laid on the ground
 
 
@@ -115,6 +116,26 @@ def heading_frame(poses: WorldPoses, anatomy: Anatomy, *, up: FloatArray, frame:
     axes = np.stack((left, up, np.cross(left, up)))
     origin = places[travel] - (places[travel] @ up) * up
     return Frame(frozen(np.array(up)), frozen(axes), frozen(origin))
+
+
+def stance_frame(poses: WorldPoses, anatomy: Anatomy, *, up: FloatArray, frame: int) -> Frame | None:
+    """Return the frame of the feet: left along the line of the ankles, the origin on the ground between them.
+
+    None without legs. Behaviours that begin on both feet are laid over each other by it better than by the hips: the
+    feet of all clips then stand in one place, and no edit needs to move them.
+    """
+    if anatomy.legs is None:
+        return None
+    left_ankle, right_ankle = (poses.positions[frame, leg.ankle] for leg in anatomy.legs)
+    across = left_ankle - right_ankle
+    level = across - (across @ up) * up
+    length = float(np.linalg.norm(level))
+    if length < _STANCE_SHARE * anatomy.leg_length:
+        return None
+    left = level / length
+    middle = 0.5 * (left_ankle + right_ankle)
+    axes = np.stack((left, up, np.cross(left, up)))
+    return Frame(frozen(np.array(up)), frozen(axes), frozen(middle - (middle @ up) * up))
 
 
 def travel_joint(motion: Motion) -> int:

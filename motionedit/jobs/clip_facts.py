@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from motionedit.core import ground, kinematics
 from motionedit.core.anatomy import Anatomy, find_anatomy
+from motionedit.core.contacts import find_plants
 from motionedit.core.timeline.alignment import Alignment, align_to
 from motionedit.core.timeline.resample import resample
 
@@ -16,6 +17,12 @@ if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
     from motionedit.core.bvh import Clip
     from motionedit.core.kinematics import WorldPoses
+
+
+Line = Literal["hips", "feet"]
+
+# Cosine of the angle between the feet's line and the hips' up to which feet stand side by side: 35 degrees.
+SIDE_BY_SIDE = 0.82
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,15 +47,32 @@ class ClipFacts:
 
     def heading_frame(self, at: float | None = None) -> ground.Frame:
         """Return the heading frame at a frame or a part of one; by default the first after the rest pose."""
-        motion, poses, frame = self.clip.motion, self.poses, self.first
-        if at is not None:
-            motion = resample(motion, np.array([at]), frame_time=motion.frame_time)
-            poses, frame = kinematics.forward(motion), 0
+        poses, frame = self._at(at)
         return ground.heading_frame(poses, self.anatomy, up=self.up, frame=frame, travel=self.travel)
 
-    def alignment(self, *, heading: bool, position: bool, at: float | None) -> Alignment:
-        """Return the alignment of a clip on the ground, by its heading frame at a frame (None: the first)."""
-        return align_to(self.heading_frame(at), heading=heading, position=position)
+    def stands(self, at: float | None = None) -> bool:
+        """Return whether both feet are planted at a frame, side by side rather than one before the other."""
+        poses, frame = self._at(at)
+        stance = ground.stance_frame(poses, self.anatomy, up=self.up, frame=frame)
+        if stance is None:
+            return False
+        plants = find_plants(self.clip.motion, self.poses, self.anatomy, up=self.up, first=self.first)
+        when = self.first if at is None else at
+        feet = {plant.foot for plant in plants if plant.start <= when <= plant.stop}
+        return feet == {"left", "right"} and float(stance.axes[0] @ self.heading_frame(at).axes[0]) > SIDE_BY_SIDE
+
+    def alignment(self, by: Line, *, heading: bool, position: bool, at: float | None) -> Alignment:
+        """Return the alignment of a clip on the ground at a frame (None: the first), by the line of hips or feet."""
+        poses, frame = self._at(at)
+        found = ground.stance_frame(poses, self.anatomy, up=self.up, frame=frame) if by == "feet" else None
+        return align_to(found or self.heading_frame(at), heading=heading, position=position)
+
+    def _at(self, at: float | None) -> tuple[WorldPoses, int]:
+        """Return poses and a frame of them: the clip's own, or those of one resampled frame."""
+        if at is None:
+            return self.poses, self.first
+        motion = self.clip.motion
+        return kinematics.forward(resample(motion, np.array([at]), frame_time=motion.frame_time)), 0
 
 
 def facts_of(clip: Clip, *, up: str = "auto", keep_rest_pose: bool = False) -> ClipFacts:

@@ -17,8 +17,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from motionedit.core.skeleton import Skeleton
+    from motionedit.core.timeline.alignment import Alignment
     from motionedit.jobs.batch import ClipTask
-    from motionedit.jobs.clip_facts import ClipFacts
+    from motionedit.jobs.clip_facts import ClipFacts, Line
     from motionedit.spec.load import LoadedSpec
     from motionedit.spec.normalize import NormalizeSpec
 
@@ -37,8 +38,8 @@ class ClipMeasure:
     skeleton: Skeleton
     up: str
     height: float
-    rotation: tuple[float, ...]
-    origin: tuple[float, ...]
+    stands: bool
+    alignments: dict[Line, Alignment]
 
     @property
     def last(self) -> int:
@@ -69,7 +70,10 @@ class MeasureClip:
         events = _events(self.loaded, task, facts, self.others)
         align = spec.align
         at = None if spec.align_event is None else events[spec.align_event]
-        alignment = facts.alignment(heading=align.heading, position=align.position, at=at)
+        alignments: dict[Line, Alignment] = {
+            "hips": facts.alignment("hips", heading=align.heading, position=align.position, at=at),
+            "feet": facts.alignment("feet", heading=align.heading, position=align.position, at=at),
+        }
         return ClipMeasure(
             label=task.label,
             clip=task.relative,
@@ -81,8 +85,8 @@ class MeasureClip:
             skeleton=clip.motion.skeleton,
             up=axis_name(facts.up),
             height=facts.anatomy.height,
-            rotation=tuple(map(float, alignment.rotation)),
-            origin=tuple(map(float, alignment.origin)),
+            stands=facts.stands(at),
+            alignments=alignments,
         )
 
 

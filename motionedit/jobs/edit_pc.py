@@ -112,6 +112,7 @@ class _Edit:
         warp = make_warp(model.timeline, first=facts.first, last=facts.last, events=events, label=task.label)
         align = model.rules["align"]
         alignment = facts.alignment(
+            align["by"],
             heading=align["heading"],
             position=align["position"],
             at=None if align["at"] is None else events[align["at"]],

@@ -21,7 +21,7 @@ from motionedit.errors import (
     MotionEditError,
     UsageError,
 )
-from motionedit.jobs.batch import BatchResult, Outcome, atomic_write, map_tasks, plan, run_batch
+from motionedit.jobs.batch import BatchResult, ClipTask, Outcome, atomic_write, map_tasks, plan, run_batch
 from motionedit.jobs.clip_facts import facts_of
 from motionedit.jobs.clip_measures import ClipMeasure, MeasureClip, sound_measures
 from motionedit.jobs.common_timeline import common_timeline, events_out_of_order
@@ -32,7 +32,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from motionedit.core.bvh import Clip
-    from motionedit.jobs.batch import ClipTask, RunOptions
+    from motionedit.jobs.batch import RunOptions
+    from motionedit.jobs.clip_facts import Line
     from motionedit.spec.load import LoadedSpec
     from motionedit.spec.normalize import NormalizeSpec
 
@@ -53,7 +54,7 @@ def run(loaded: LoadedSpec[NormalizeSpec], clips: Sequence[Path], output: Path, 
     if any(task.source is None for task in tasks):
         raise UsageError("'-' is not for normalize, which reads each clip twice; give files")
     if all(task.current for task in tasks) and (output / NAME).exists():
-        return run_batch(tasks, _Resample(loaded, Timeline(2, 1.0), {}), options)
+        return run_batch(tasks, _Resample(loaded, Timeline(2, 1.0), "hips"), options)
     # One clip that changed moves the means: all are made anew.
     tasks = [replace(task, current=False) for task in tasks]
     measured = map_tasks(MeasureClip(loaded, options.lenient, tuple(task.relative for task in tasks)), tasks, options)
@@ -68,13 +69,24 @@ def run(loaded: LoadedSpec[NormalizeSpec], clips: Sequence[Path], output: Path, 
     good = [task for task in tasks if task.label not in failures]
     if not good:
         return _failed(tasks, failures)
+    line: Line = "feet" if all(measure.stands for measure in measures) else "hips"
     by_label = {measure.label: measure for measure in measures}
-    work = _Resample(loaded, timeline, by_label)
-    result = run_batch(good, work, options)
+    result = run_batch(
+        [_MeasuredTask(**vars(task), measure=by_label[task.label]) for task in good],
+        _Resample(loaded, timeline, line),
+        options,
+    )
     if not options.dry_run and not result.failures:
         done = [by_label[task.label] for task in good]
-        _write_normalization(loaded, timeline, done, output)
+        _write_normalization(loaded, timeline, line, done, output)
     return _with_failures(result, tasks, failures, warnings)
+
+
+@dataclass(frozen=True)
+class _MeasuredTask(ClipTask):
+    """A clip that has been measured."""
+
+    measure: ClipMeasure | None = None
 
 
 @dataclass(frozen=True)
@@ -83,18 +95,18 @@ class _Resample:
 
     loaded: LoadedSpec[NormalizeSpec]
     timeline: Timeline
-    measures: dict[str, ClipMeasure]
+    line: Line
 
     def __call__(self, clip: Clip, task: ClipTask) -> Outcome:
-        from motionedit.core.timeline.alignment import Alignment
-
-        measure, timeline = self.measures[task.label], self.timeline
+        measure = task.measure if isinstance(task, _MeasuredTask) else None
+        if measure is None:
+            raise TypeError("a clip is resampled after it has been measured")
+        timeline = self.timeline
         facts = facts_of(clip, up=measure.up, keep_rest_pose=True)
         warp = make_warp(timeline, first=measure.first, last=measure.last, events=measure.events, label=task.label)
         at = warp.to_source(np.arange(timeline.frames, dtype=np.float64))
         resampled = resample(clip.motion, at, frame_time=1.0 / timeline.frame_rate)
-        alignment = Alignment(np.array(measure.rotation), np.array(measure.origin))
-        motion = aligned(resampled, alignment, travel=facts.travel)
+        motion = aligned(resampled, measure.alignments[self.line], travel=facts.travel)
         skeleton = clip.motion.skeleton
         defects = find_defects(clip.motion, first=measure.first)
         warnings = tuple(
@@ -115,7 +127,7 @@ class _Resample:
 
 
 def _write_normalization(
-    loaded: LoadedSpec[NormalizeSpec], timeline: Timeline, measures: Sequence[ClipMeasure], output: Path
+    loaded: LoadedSpec[NormalizeSpec], timeline: Timeline, line: Line, measures: Sequence[ClipMeasure], output: Path
 ) -> None:
     spec = loaded.model
     rules = {
@@ -123,6 +135,7 @@ def _write_normalization(
             "heading": spec.align.heading,
             "position": spec.align.position,
             "at": spec.align_event,
+            "by": line,
         },
         "rest_pose": spec.rest_pose,
         "events": {name: _rule(loaded, name) for name in spec.events},
@@ -136,8 +149,8 @@ def _write_normalization(
             duration=measure.duration,
             first=measure.first,
             events=measure.events,
-            rotation=measure.rotation,
-            origin=measure.origin,
+            rotation=tuple(map(float, measure.alignments[line].rotation)),
+            origin=tuple(map(float, measure.alignments[line].origin)),
         )
         for measure in measures
     )

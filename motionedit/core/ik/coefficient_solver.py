@@ -28,6 +28,8 @@ STEP_STOP = 1e-2
 FIRST_DAMPING = 1e-6
 LEAST_DAMPING = 1e-12
 MOST_TRIES = 12
+# After so many iterations the change is as small as it needs to be, and only the error is left to be taken away.
+HOMING_ITERATIONS = 8
 MOST_ITERATIONS = 100
 
 # Levenberg-Marquardt ends where the gradient or the step is this small beside its own scale.
@@ -129,12 +131,16 @@ def _free_solution(evaluate: Evaluate, size: int) -> tuple[CoefficientSolution, 
     y = np.zeros(size)
     error, jacobian = evaluate(y)
     progress = _Progress([float(np.linalg.norm(error))])
-    damping, step = FIRST_DAMPING, 0.0
+    damping, step = FIRST_DAMPING, np.inf
     while progress.iterations < MOST_ITERATIONS:
-        if progress.history[-1] < ERROR_STOP and step <= STEP_STOP * float(np.linalg.norm(y)):
+        settled = step <= STEP_STOP * float(np.linalg.norm(y)) or progress.iterations >= HOMING_ITERATIONS
+        if progress.history[-1] < ERROR_STOP and (settled or progress.iterations == 0):
             progress.reason = "converged"
             break
-        found = _gauss_newton_step(evaluate, y, error, jacobian, damping)
+        # Homing converges but linearly where the set of solutions is curved: the last of the error is taken from
+        # where it has come to.
+        home = y if settled else np.zeros(size)
+        found = _gauss_newton_step(evaluate, y, error, jacobian, damping, home=home)
         if found is None:
             y, error, jacobian = _levenberg_marquardt(evaluate, y, progress)
             if progress.history[-1] < ERROR_STOP:
@@ -148,17 +154,20 @@ def _free_solution(evaluate: Evaluate, size: int) -> tuple[CoefficientSolution, 
 
 
 def _gauss_newton_step(
-    evaluate: Evaluate, y: FloatArray, error: FloatArray, jacobian: FloatArray, damping: float
+    evaluate: Evaluate, y: FloatArray, error: FloatArray, jacobian: FloatArray, damping: float, *, home: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, float] | None:
-    """Return (y+, error, jacobian, damping) with y+ = J^T (J J^T + d tr(J J^T)/p I)^-1 (e + J y), or None."""
+    """Return (y+, error, jacobian, damping), or None where no damping makes progress.
+
+    y+ = h + J^T (J J^T + d tr(J J^T)/p I)^-1 (e + J (y - h)): the step to the goal that ends nearest to `home` h.
+    """
     gram = jacobian @ jacobian.T
     unit = float(np.trace(gram)) / len(gram)
     if unit == 0.0:
         return None
     now = float(np.linalg.norm(error))
-    wanted = error + jacobian @ y
+    wanted = error + jacobian @ (y - home)
     for _ in range(MOST_TRIES):
-        y_new = jacobian.T @ np.linalg.solve(gram + damping * unit * np.eye(len(gram)), wanted)
+        y_new = home + jacobian.T @ np.linalg.solve(gram + damping * unit * np.eye(len(gram)), wanted)
         error_new, jacobian_new = evaluate(y_new)
         size = float(np.linalg.norm(error_new))
         # Without real progress a Gauss-Newton step has nothing to say: the goal is out of reach from here.
