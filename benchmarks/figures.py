@@ -73,7 +73,7 @@ def golf_goal(shift: FloatArray, **more: Any) -> dict[str, Any]:  # noqa: ANN401
 
 
 def rebuilt(lab: Lab, clip: Path, model: Path, components: int) -> tuple[float, float]:
-    """Return the club-head error (cm) of a swing rebuilt from its coefficients alone: at the hit, and over all frames."""
+    """Return the club-head error (cm) of a swing rebuilt by its coefficients alone: at the hit, and over all frames."""
     common = {"timing": "normalized", "goals": [], "events": GOLF["events"]}
     plain = {**common, "residual": "drop", "components": components}
     ours, truth = (effector_path(lab.edit(clip, model, s).path, "Club", end_site=True) for s in (plain, common))
