@@ -1,6 +1,7 @@
 """The session of the README on the golf swings: normalize, fit-pca, edit-pc, as typed."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,14 +13,16 @@ from motionedit.core.motion import Motion
 
 @pytest.fixture(scope="module")
 def configs():
-    from pathlib import Path
-
     return Path(__file__).resolve().parents[2] / "configs"
 
 
 @pytest.fixture(scope="module")
 def data(configs):
     return configs.parent / "data" / "golf"
+
+
+EVENTS = Path(__file__).resolve().parents[2] / "data" / "golf" / "events.csv"
+HITS = {name: int(frame) for name, frame in (line.split(",") for line in EVENTS.read_text().split()[1:])}
 
 
 def edit_spec(path, **more):
@@ -32,14 +35,14 @@ def test_the_session_of_the_readme(run, configs, data, tmp_path):
     assert run("normalize", data, "-s", configs / "golf-normalize.yaml", "-o", "n").exit_code == 0
     assert len(list((tmp_path / "n").glob("*.bvh"))) == 10
     listing = json.loads((tmp_path / "n" / "normalization.json").read_text())
-    assert (listing["frames"], listing["frame_rate"]) == (132, 25.0)
+    assert (listing["frames"], listing["frame_rate"]) == (131, 25.0)
     fit = run("fit-pca", "n", "-o", "golf.npz", "-s", configs / "golf-fit.yaml")
     assert fit.exit_code == 0
     assert fit.stdout == "golf.npz\n"
     assert "100.00" in fit.stderr
     edit = run("edit-pc", data / "swing04.bvh", "-m", "golf.npz", "-s", configs / "golf-edit.yaml", "-o", "e.bvh")
     assert edit.exit_code == 0
-    frame = 92
+    frame = HITS["swing04"]
     before, after = (
         effector_path(path, "Club", end_site=True)[frame] for path in (data / "swing04.bvh", tmp_path / "e.bvh")
     )
@@ -113,7 +116,7 @@ def test_a_dry_run_says_what_it_would_do_and_writes_nothing(run, golf, data, tmp
     before = sorted(tmp_path.iterdir())
     result = run("edit-pc", data / "swing01.bvh", "-m", golf.model, "-s", spec, "-o", "e.bvh", "--dry-run")
     assert result.exit_code == 0
-    assert "ball: frame 93, 10 away" in result.stdout
+    assert f"ball: frame {HITS['swing01']}, 10 away" in result.stdout
     assert sorted(tmp_path.iterdir()) == before
 
 
@@ -123,7 +126,7 @@ def test_a_dry_run_says_what_it_would_do_and_writes_nothing(run, golf, data, tmp
         ("goals.ball.at=top", "no event 'top' in this spec or in the model; there are: 'hit'"),
         ("components=10", "the model has 9 components, not 10"),
         ("goals.ball.effector={end_site: Clubb}", "no joint 'Clubb' in"),
-        ("goals.ball.at=500", "500 is outside the clip, whose frames are 0 to 130"),
+        ("goals.ball.at=500", "500 is outside the clip, whose frames are 0 to 128"),
         ("coefficients=per_goal", "per_goal is not supported yet"),
         ("events={hit: 0}", "'hit' at frame 0 is not after its first frame"),
     ],
@@ -186,7 +189,7 @@ def test_normalize_fails_as_a_whole_unless_told_to_keep_going(run, configs, data
     assert [each["clip"] for each in listing["clips"]] == ["swing01.bvh", "swing02.bvh"]
 
 
-def test_update_leaves_a_finished_normalization_alone(run, configs, data, tmp_path):
+def test_update_leaves_a_finished_normalization_alone(run, configs, data):
     arguments = ("normalize", data, "-s", configs / "golf-normalize.yaml", "-o", "n", "--update")
     assert run(*arguments).stdout.count("\n") == 10
     again = run(*arguments)
@@ -194,7 +197,7 @@ def test_update_leaves_a_finished_normalization_alone(run, configs, data, tmp_pa
     assert "10 up to date" in again.stderr
 
 
-def test_one_clip_is_normalized_with_a_warning_but_is_no_database(run, configs, data, tmp_path):
+def test_one_clip_is_normalized_with_a_warning_but_is_no_database(run, configs, data):
     result = run("normalize", data / "swing01.bvh", "-s", configs / "golf-normalize.yaml", "-o", "n")
     assert result.exit_code == 0
     assert "is the only clip" in result.stderr
@@ -214,7 +217,7 @@ def test_equal_clips_are_no_database(run, configs, data, tmp_path):
     assert not (tmp_path / "m.npz").exists()
 
 
-def test_events_come_from_a_table_and_a_clip_that_has_none_is_named(run, configs, data, tmp_path):
+def test_events_come_from_a_table_and_a_clip_that_has_none_is_named(run, data, tmp_path):
     table = "clip,frame\n" + "".join(f"swing{n:02d},{90 + n}\n" for n in range(1, 10))
     (tmp_path / "hits.csv").write_text(table)
     spec = tmp_path / "n.yaml"
@@ -232,15 +235,17 @@ def test_a_clip_that_is_not_in_the_database_gets_its_event_by_the_models_rule(ru
     spec = edit_spec(tmp_path / "e.yaml")
     result = run("edit-pc", "late.bvh", "-m", golf.model, "-s", spec, "-o", "e.bvh", "--report", "r.json")
     assert result.exit_code == 0
-    assert json.loads((tmp_path / "r.json").read_text())["clips"][0]["goals"][0]["frame"] == 93 - 6
+    assert json.loads((tmp_path / "r.json").read_text())["clips"][0]["goals"][0]["frame"] == pytest.approx(
+        HITS["swing01"] - 6, abs=1
+    )
 
 
 def test_a_clip_from_standard_input_goes_to_standard_output(run, golf, data, tmp_path):
-    spec = edit_spec(tmp_path / "e.yaml", events={"hit": 93})
+    spec = edit_spec(tmp_path / "e.yaml", events={"hit": HITS["swing01"]})
     piped = run("edit-pc", "-", "-m", golf.model, "-s", spec, "-o", "-", stdin=(data / "swing01.bvh").read_bytes())
     assert piped.exit_code == 0
     clip = parse_clip(piped.stdout_bytes, label="piped")
-    assert len(clip.motion) == 131
+    assert len(clip.motion) == 129
 
 
 def test_shifts_in_the_heading_frame_are_the_characters_own(run, golf, data, tmp_path):
@@ -249,7 +254,9 @@ def test_shifts_in_the_heading_frame_are_the_characters_own(run, golf, data, tmp
         *("edit-pc", data / "swing01.bvh", "-m", golf.model, "-s", spec, "-o", "h.bvh"),
         *("--set", "goals.ball.frame=heading", "--set", "goals.ball.shift=[0, 0, 5]"),
     )
-    before, after = (effector_path(p, "Club", end_site=True)[93] for p in (data / "swing01.bvh", tmp_path / "h.bvh"))
+    before, after = (
+        effector_path(p, "Club", end_site=True)[HITS["swing01"]] for p in (data / "swing01.bvh", tmp_path / "h.bvh")
+    )
     assert np.linalg.norm(after - before) == pytest.approx(5.0, abs=1e-3)
     info = run("info", data / "swing01.bvh", "--report", "i.json")
     assert info.exit_code == 0
