@@ -11,7 +11,7 @@ from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
 
 if TYPE_CHECKING:
-    from motionedit.core.arrays import FloatArray
+    from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.skeleton import Skeleton
 
 
@@ -73,15 +73,22 @@ def write_poses(skeleton: Skeleton, values: FloatArray, *, rotations: FloatArray
     for group in groups:
         # Blocks of frames stay in the processor's cache and keep the memory of a long clip down.
         step = max(_BLOCK_VALUES // group.columns.size, 1)
+        columns, joints = _slice_or_all(group.columns.reshape(-1)), _slice_or_all(group.joints)
         for start in range(0, len(values), step):
+            angles = values[start : start + step, columns].reshape(-1, *group.columns.shape)
             # Angle by angle, so that each is contiguous.
-            angles = values[start : start + step, group.columns.T].swapaxes(0, 1)
-            turned = rot.from_euler(np.moveaxis(np.radians(angles, order="C"), 0, -1), group.axes)
-            rotations[start : start + step, group.joints] = turned
+            angles = np.radians(np.moveaxis(angles, -1, 0), order="C")
+            rotations[start : start + step, joints] = rot.from_euler(np.moveaxis(angles, 0, -1), group.axes)
     translations[:] = skeleton.offsets[skeleton.translated]
     for p, joint in enumerate(skeleton.translated.tolist()):
         for axis, column in position_columns(skeleton, joint):
             translations[:, p, axis] = values[:, column]
+
+
+def _slice_or_all(indices: IntArray) -> slice | IntArray:
+    """Return indices as a slice where they follow each other, as in most files: numpy copies it much faster."""
+    first, count = int(indices[0]), len(indices)
+    return slice(first, first + count) if np.array_equal(indices, np.arange(first, first + count)) else indices
 
 
 def position_columns(skeleton: Skeleton, joint: int) -> list[tuple[int, int]]:
