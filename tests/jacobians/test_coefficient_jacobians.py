@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-
 from motionedit.core import rotations as rot
 from motionedit.core.ik.chain import CoefficientChain, _exp_and_left_jacobian, evaluate
 from motionedit.core.ik.goals import Goal, goal_error, stacked_errors

@@ -97,13 +97,21 @@ def test_a_goal_along_other_axes_and_in_another_joints_frame_is_met(model):
     turned = rot.to_matrix(rot.exp(np.array([0.3, 0.5, -0.2])))
     hand = kinematics.effector_positions(poses, Effector(HAND, np.zeros(3)))[36]
     along = request_of(
-        motion, 36, 0.0, offset=(0, 0, 0), measure=turned, position=turned @ hand + [0.03, 0, 0], axes=(0,)
+        motion,
+        36,
+        0.0,
+        offset=(0, 0, 0),
+        measure=turned,
+        position=turned @ hand + np.array([0.03, 0.0, 0.0]),
+        axes=(0,),
     )
     result = place_of(edited(model, projection, [along]).motion, along)
     assert (turned @ result)[0] == pytest.approx(along.position[0], abs=1e-5)
     spine = 12
     inside = rot.rotate(rot.conjugate(poses.rotations[36, spine]), hand - poses.positions[36, spine])
-    relative = request_of(motion, 36, 0.0, offset=(0, 0, 0), position=inside + [0.02, 0.01, 0], relative_to=spine)
+    relative = request_of(
+        motion, 36, 0.0, offset=(0, 0, 0), position=inside + np.array([0.02, 0.01, 0.0]), relative_to=spine
+    )
     after = kinematics.forward(edited(model, projection, [relative]).motion)
     seen = rot.rotate(rot.conjugate(after.rotations[36, spine]), after.positions[36, HAND] - after.positions[36, spine])
     np.testing.assert_allclose(seen, relative.position, atol=1e-5)
