@@ -118,7 +118,7 @@ def find_anatomy(skeleton: Skeleton, *, poses: WorldPoses | None = None) -> Anat
     )
 
 
-def _legs_and_arms(tree: Tree, pairs: list[LimbPair]) -> tuple[LimbPair | None, LimbPair | None]:
+def _legs_and_arms(tree: Tree, pairs: tuple[LimbPair, ...]) -> tuple[LimbPair | None, LimbPair | None]:
     """Tell legs from arms: the head hangs where the arms do, the root is nearer to the legs.
 
     Where these two contradict each other (a tail, a root in the chest) or there is one pair alone, names decide.

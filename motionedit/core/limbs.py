@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import combinations
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -68,7 +69,8 @@ class LimbPair:
         return LimbPair(self.base, self.chains[::-1], self.triples[::-1], self.length)
 
 
-def find_limb_pairs(skeleton: Skeleton) -> list[LimbPair]:
+@lru_cache(maxsize=4)
+def find_limb_pairs(skeleton: Skeleton) -> tuple[LimbPair, ...]:
     """Return the pairs of limbs, the longest first, none inside another; empty where there are none."""
     tree = Tree(skeleton)
     found = [
@@ -84,7 +86,7 @@ def find_limb_pairs(skeleton: Skeleton) -> list[LimbPair]:
         if not joints & taken:
             kept.append(pair)
             taken |= joints
-    return kept
+    return tuple(kept)
 
 
 def zero_pose(skeleton: Skeleton) -> FloatArray:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import TYPE_CHECKING, NoReturn
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 from motionedit.core.arrays import frozen
 from motionedit.core.bvh.scan import WORD_LENGTH, number, quoted, refusal, text_of
 from motionedit.core.skeleton import EndSite, Skeleton
+from motionedit.errors import BvhError
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
@@ -26,9 +28,12 @@ _REST_OF_LINE = re.compile(rb"[^\r\n{}]*+")
 _LINE_BREAK = re.compile(rb"[\r\n]")
 _FRAMES = re.compile(rb"\s*(Frames[ \t]*:)[ \t]*([^\r\n]*)", re.IGNORECASE)
 _FRAME_TIME = re.compile(rb"\s*(Frame[ \t]*Time[ \t]*:)[ \t]*([^\r\n]*)", re.IGNORECASE)
+_MOTION = re.compile(rb"[\r\n]MOTION\s", re.IGNORECASE)
 _COUNT = re.compile(rb"[0-9]{1,15}")
 _BOMS = {b"\xff\xfe": "UTF-16", b"\xfe\xff": "UTF-16"}
 _UTF8_BOM = b"\xef\xbb\xbf"
+# The clips of a batch mostly share their hierarchy to the byte; one of at most so many bytes is parsed once.
+_SHARED_BYTES = 1 << 18
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,8 +68,15 @@ class _Joint:
 def read_header(data: bytes, *, label: str) -> Header:
     """Return the header of a BVH file; `BvhError` with the line where it is not legal."""
     parser = _Parser(data, label)
-    skeleton = parser.hierarchy()
+    skeleton = parser.shared_hierarchy() or parser.hierarchy()
     return parser.motion_lines(skeleton)
+
+
+@lru_cache(maxsize=4)
+def _shared_hierarchy(text: bytes) -> tuple[Skeleton, int]:
+    """Return the skeleton of a text that ends with MOTION, and the byte after that word."""
+    parser = _Parser(text, "")
+    return parser.hierarchy(), parser.at
 
 
 class _Parser:
@@ -100,6 +112,17 @@ class _Parser:
         self._refuse_endless(rest, self.at)
         self.at = match.end()
         return rest
+
+    def shared_hierarchy(self) -> Skeleton | None:
+        """Return the skeleton by way of the last files', None where this file has to be parsed by itself."""
+        motion = _MOTION.search(self.data, 0, _SHARED_BYTES)
+        if motion is None:
+            return None
+        try:
+            skeleton, self.at = _shared_hierarchy(self.data[: motion.end()])
+        except BvhError:  # to be said with this file's name
+            return None
+        return skeleton
 
     def hierarchy(self) -> Skeleton:
         self._first_word()
