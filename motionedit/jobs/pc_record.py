@@ -59,7 +59,7 @@ def edit_record(
             "after": _nearest(model, edit.coefficients),
         },
     }
-    missed = [_missed(each) for each in records if each["status"] != "ok"]
+    missed = [_missed(each, edit.solution.reason) for each in records if each["status"] != "ok"]
     message = "; ".join(missed) or None
     if status == "far":
         message = "met, but further from the database than its clips are from each other"
@@ -73,7 +73,7 @@ def largest_norm(model: MotionModel) -> float:
 
 def _mark(records: Sequence[dict[str, Any]], reason: str, *, is_far: bool) -> str:
     """Set each goal's status, and return the clip's."""
-    missed = "out_of_tolerance" if reason == "iterations" else "unreachable"
+    missed = "unreachable" if reason in {"bound", "stalled"} else "out_of_tolerance"
     for record in records:
         if not is_met(record):
             record["status"] = missed
@@ -103,7 +103,15 @@ def _crowding(model: MotionModel, goals: Sequence[ClipGoal]) -> list[str]:
     return []
 
 
-def _missed(record: dict[str, Any]) -> str:
+_WHY = {
+    "bound": "out of reach of the database's motions",
+    "stalled": "out of reach of the database's motions",
+    "iterations": "the iterations ran out",
+    "converged": "the solver's own tolerance is wider",
+}
+
+
+def _missed(record: dict[str, Any], reason: str) -> str:
     parts = []
     if record["error_max"] is not None:
         parts.append(f"{record['error_max']:.4g} from its goal at frame {record['frame']}")
@@ -113,8 +121,7 @@ def _missed(record: dict[str, Any]) -> str:
         f"{record['tolerance']:.3g}" if record["tolerance"] is not None else "",
         f"{record['tolerance_angle']:.3g} degrees" if record["tolerance_angle"] is not None else "",
     ]
-    why = "out of reach of the database's motions" if record["status"] == "unreachable" else "the iterations ran out"
-    return f"{record['name']}: {' and '.join(parts)} (tolerance {', '.join(filter(None, limits))}): {why}"
+    return f"{record['name']}: {' and '.join(parts)} (tolerance {', '.join(filter(None, limits))}): {_WHY[reason]}"
 
 
 def goal_line(goal: ClipGoal, poses: WorldPoses) -> str:

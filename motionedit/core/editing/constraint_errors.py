@@ -1,0 +1,76 @@
+"""What is left of a constraint after an edit, frame by frame, measured by forward kinematics."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core import rotations as rot
+from motionedit.core.center_of_mass import Masses, center_of_mass
+from motionedit.core.kinematics import WorldPoses, effector_positions
+
+if TYPE_CHECKING:
+    from motionedit.core.arrays import FloatArray
+    from motionedit.core.editing.constraints import Constraint, Targets
+    from motionedit.core.motion import Motion
+
+
+@dataclass(frozen=True, eq=False)
+class ConstraintErrors:
+    """What is left of a constraint: frames `first` on; lengths (n,) and radians (n,), None where it has none."""
+
+    first: int
+    positions: FloatArray | None
+    angles: FloatArray | None
+
+
+def errors_of(
+    constraint: Constraint, targets: Targets, poses: WorldPoses, motion: Motion, *, masses: Masses, reference: Motion
+) -> ConstraintErrors:
+    """Return the errors of a constraint over its active interval, not weighted.
+
+    Parameters
+    ----------
+    poses, motion
+        The edited motion.
+    reference : Motion
+        The input.
+    """
+    span = slice(targets.first, targets.last + 1)
+    if constraint.kind == "posture":
+        joints = list(constraint.joints)
+        off = rot.angle_between(motion.rotations[span, joints], reference.rotations[span, joints])
+        return ConstraintErrors(targets.first, None, off.max(axis=1, initial=0.0))
+    if constraint.kind == "com":
+        path = center_of_mass(poses, masses)[span] @ constraint.measure.T
+        return ConstraintErrors(targets.first, _distance(constraint, targets, path), None)
+    joint = constraint.effector.joint
+    place, turn = effector_positions(poses, constraint.effector)[span], poses.rotations[span, joint]
+    if constraint.kind == "aim":
+        return ConstraintErrors(targets.first, None, _off_aim(constraint, targets, place, turn))
+    if constraint.base is not None:
+        inverse = rot.conjugate(poses.rotations[span, constraint.base])
+        place = rot.rotate(inverse, place - poses.positions[span, constraint.base])
+        turn = rot.multiply(inverse, turn)
+    else:
+        place = place @ constraint.measure.T
+    positions = None if targets.positions is None else _distance(constraint, targets, place)
+    angles = None if targets.rotations is None else rot.angle_between(turn, targets.rotations)
+    return ConstraintErrors(targets.first, positions, angles)
+
+
+def _distance(constraint: Constraint, targets: Targets, path: FloatArray) -> FloatArray:
+    axes = list(constraint.axes)
+    wanted = path if targets.positions is None else targets.positions
+    distance: FloatArray = np.linalg.norm((path - wanted)[:, axes], axis=1)
+    return distance
+
+
+def _off_aim(constraint: Constraint, targets: Targets, place: FloatArray, turn: FloatArray) -> FloatArray:
+    look = rot.rotate(turn, constraint.axis)
+    way = (place if targets.positions is None else targets.positions) - place
+    across = np.linalg.norm(rot.cross(look, way), axis=1)
+    angle: FloatArray = np.arctan2(across, np.sum(look * way, axis=1))
+    return angle

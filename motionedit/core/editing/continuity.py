@@ -1,0 +1,76 @@
+"""Keeping an edit continuous in time: low-passed displacement maps, and the paper's own filters ([PRIO] section 5)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core import rotations as rot
+from motionedit.core.motion import Motion
+from motionedit.core.timeline.interpolation import low_pass
+
+if TYPE_CHECKING:
+    from motionedit.core.arrays import FloatArray
+
+# A displacement below this (rad or m) is rounding: it is no displacement.
+NO_DISPLACEMENT = 1e-9
+# Half the length of the FIR filter in periods of its cutoff.
+_FIR_PERIODS = 1.0
+
+
+def smoothed_displacement(before: Motion, after: Motion, *, sigma: float, first: int) -> Motion:
+    """Return the input plus the low-passed displacement of the edit: the next pass's start and reference.
+
+    d = log(q_in^-1 q_out) per joint and the difference of translations, through a zero-phase Gaussian.
+
+    Parameters
+    ----------
+    sigma : float
+        Frames.
+    first : int
+        Frames before it, a rest pose, keep their displacement and lend none.
+    """
+    turns = rot.log(rot.multiply(rot.conjugate(before.rotations), after.rotations))
+    shifts = after.translations - before.translations
+    turns[np.abs(turns) < NO_DISPLACEMENT] = 0.0
+    moving = turns.any(axis=(0, 2))
+    rotations = before.rotations.copy()
+    smooth = turns[:, moving]
+    smooth[first:] = low_pass(smooth[first:], sigma=sigma)
+    rotations[:, moving] = rot.multiply(before.rotations[:, moving], rot.exp(smooth))
+    shifts[first:] = low_pass(shifts[first:], sigma=sigma)
+    return Motion(before.skeleton, rotations, before.translations + shifts, before.frame_time)
+
+
+def filtered_root(before: Motion, after: Motion, place: int, *, cutoff: float, first: int) -> Motion:
+    """Return the edit with the root's displacement through the paper's FIR low-pass.
+
+    Parameters
+    ----------
+    place : int
+        The root among the skeleton's translated joints.
+    cutoff : float
+        Hz.
+    """
+    translations = after.translations.copy()
+    shifts = (after.translations - before.translations)[first:, place]
+    translations[first:, place] = before.translations[first:, place] + fir_low_pass(
+        shifts, cutoff=cutoff * before.frame_time
+    )
+    return Motion(after.skeleton, after.rotations, translations, after.frame_time)
+
+
+def fir_low_pass(rows: FloatArray, *, cutoff: float) -> FloatArray:
+    """Return rows (F, D) through a windowed-sinc (Hamming) low-pass of linear phase, delay taken out, ends held.
+
+    `cutoff` is in cycles per frame; 0.5 and more changes nothing.
+    """
+    if cutoff >= 0.5:
+        return rows.copy()
+    radius = int(np.ceil(_FIR_PERIODS / cutoff))
+    n = np.arange(-radius, radius + 1)
+    taps = np.sinc(2.0 * cutoff * n) * np.hamming(2 * radius + 1)
+    taps /= taps.sum()
+    padded = np.concatenate((np.repeat(rows[:1], radius, axis=0), rows, np.repeat(rows[-1:], radius, axis=0)))
+    return np.stack([np.convolve(column, taps, mode="valid") for column in padded.T], axis=1)

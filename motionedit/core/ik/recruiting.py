@@ -1,0 +1,118 @@
+"""Recruiting: which joints a constraint may move, and what keeps lower layers out of higher ones ([PRIO] 4.1)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Sequence
+
+    from motionedit.core.skeleton import Skeleton
+
+
+@dataclass(frozen=True)
+class RecruitRule:
+    """What the user asks for: ``all``, ``up_to`` a joint, so many ``levels``, or these ``joints`` (and the `root`)."""
+
+    kind: Literal["all", "up_to", "levels", "joints"] = "all"
+    joint: int | None = None
+    levels: int | None = None
+    joints: tuple[int, ...] = ()
+    root: bool = False
+
+
+@dataclass(frozen=True)
+class Recruits:
+    """The joints that a constraint may turn, and whether it may move the root's translation."""
+
+    joints: frozenset[int]
+    root: bool
+
+
+@dataclass(frozen=True)
+class Reach:
+    """What moves a constraint's task: `joints`, and whether the root's translation does; active `first` to `last`."""
+
+    joints: frozenset[int]
+    root: bool
+    first: int
+    last: int
+
+
+def recruit_chain(skeleton: Skeleton, rule: RecruitRule, *, start: int, travel: int) -> Recruits:
+    """Return what a constraint on an effector recruits.
+
+    Parameters
+    ----------
+    start : int
+        Where recruiting starts: the effector's parent, or its joint itself where that moves it.
+    travel : int
+        The joint that carries the travel. A static root above it is never recruited.
+
+    Raises
+    ------
+    ValueError
+        If `up_to` is not on the way from the start to the root.
+    """
+    chain = [int(j) for j in skeleton.chain(start)][::-1]
+    if travel in chain:
+        chain = chain[: chain.index(travel) + 1]
+    if rule.kind == "joints":
+        return Recruits(frozenset(rule.joints), rule.root)
+    if rule.kind == "levels":
+        return Recruits(frozenset(chain[: rule.levels]), root=False)
+    if rule.kind == "up_to":
+        if rule.joint not in chain:
+            raise ValueError("is not between the effector and the root")
+        return Recruits(frozenset(chain[: chain.index(rule.joint) + 1]), root=False)
+    return Recruits(frozenset(chain), root=True)
+
+
+def recruit_body(rule: RecruitRule, body: Collection[int]) -> Recruits:
+    """Return what a constraint on the CoM recruits: every joint that carries mass, or the listed ones."""
+    if rule.kind == "joints":
+        return Recruits(frozenset(rule.joints), rule.root)
+    return Recruits(frozenset(body), root=True)
+
+
+@dataclass(frozen=True)
+class Breach:
+    """A lower constraint's joints that move a higher one, which does not recruit them; indices of the two."""
+
+    higher: int
+    lower: int
+    joints: frozenset[int]
+    root: bool
+
+
+def breaches(priorities: Sequence[int], recruits: Sequence[Recruits], reaches: Sequence[Reach]) -> list[Breach]:
+    """Return every breach of the recruiting rule.
+
+    Eq. (2) as printed compares the recruited sets alone and is neither sufficient nor necessary. What makes layers
+    strict is this: joints of the lower set that physically move the higher task must be in the higher set, too, where
+    both are active at some frame.
+    """
+    found = []
+    for a, (priority, mine, reach) in enumerate(zip(priorities, recruits, reaches, strict=True)):
+        for b, (other, theirs, span) in enumerate(zip(priorities, recruits, reaches, strict=True)):
+            if a == b or other > priority or span.last < reach.first or reach.last < span.first:
+                continue
+            joints = (theirs.joints & reach.joints) - mine.joints
+            root = theirs.root and reach.root and not mine.root
+            if joints or root:
+                found.append(Breach(a, b, joints, root))
+    return found
+
+
+def expanded(
+    priorities: Sequence[int], recruits: Sequence[Recruits], reaches: Sequence[Reach]
+) -> tuple[list[Recruits], list[Breach]]:
+    """Return the sets widened until no breach is left, and the breaches that were mended."""
+    sets, mended = list(recruits), []
+    while found := breaches(priorities, sets, reaches):
+        for breach in found:
+            mine = sets[breach.higher]
+            sets[breach.higher] = Recruits(mine.joints | breach.joints, mine.root or breach.root)
+        mended += found
+    return sets, mended
