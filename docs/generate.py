@@ -32,7 +32,8 @@ What the options have in common, exit codes and messages: [exit-codes-and-messag
 
 def cli_page() -> str:
     """Return cli.md: the help of the program and of each command, in the order of work."""
-    top = click.Context(program, info_name="motionedit", terminal_width=WIDTH, max_content_width=WIDTH)
+    settings = {**program.context_settings, "terminal_width": WIDTH, "max_content_width": WIDTH}
+    top = click.Context(program, info_name="motionedit", **settings)
     parts = [CLI_HEAD, _section("motionedit", program.get_help(top))]
     for name in program.list_commands(top):
         command = program.get_command(top, name)

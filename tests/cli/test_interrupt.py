@@ -22,6 +22,8 @@ def test_ctrl_c_ends_the_run_at_once_and_leaves_nothing_half_written(clip, copy_
         stderr=subprocess.PIPE,
         text=True,
         start_new_session=True,
+        # A shell's background job ignores Ctrl-C, and so would what it starts.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # noqa: PLW1509  no threads here
     )
     with (tmp_path / "in/b.bvh").open("wb"):
         # As a terminal does: to every process of the run.
