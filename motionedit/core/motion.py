@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -49,6 +49,14 @@ class Motion:
     def duration(self) -> float:
         """Seconds from the first frame to the last."""
         return (len(self) - 1) * self.frame_time
+
+
+def scaled(motion: Motion, factor: float) -> Motion:
+    """Return the motion with every length times `factor`: offsets, end sites, translations; rotations are shared."""
+    skeleton = motion.skeleton
+    sites = tuple(replace(site, offset=frozen(site.offset * factor)) for site in skeleton.end_sites)
+    sized = replace(skeleton, offsets=frozen(skeleton.offsets * factor), end_sites=sites)
+    return Motion(sized, motion.rotations, frozen(motion.translations * factor), motion.frame_time)
 
 
 def motion_from_channels(skeleton: Skeleton, values: FloatArray, *, frame_time: float) -> Motion:

@@ -1,13 +1,16 @@
 """A motion is made of channel values: any order, positions on any joint, axes left to OFFSET."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from motionedit.core import motion as module
 from motionedit.core import rotations as rot
-from motionedit.core.motion import motion_from_channels, position_columns
-from motionedit.core.skeleton import Skeleton
+from motionedit.core.kinematics import forward
+from motionedit.core.motion import motion_from_channels, position_columns, scaled
+from motionedit.core.skeleton import EndSite, Skeleton
 
 SKELETON = Skeleton(
     names=("Root", "Arm", "Fixed", "Hinge", "Rail"),
@@ -69,3 +72,14 @@ def test_a_motion_is_read_only(motion):
         motion.rotations[0, 0, 0] = 1.0
     with pytest.raises(ValueError, match="read-only"):
         motion.translations[0, 0, 0] = 1.0
+
+
+def test_a_scaled_motion_is_the_same_in_another_unit(motion):
+    site = EndSite(4, np.array([1.0, 2.0, 3.0]))
+    whole = replace(motion, skeleton=replace(motion.skeleton, end_sites=(site,)))
+    small = scaled(whole, 0.01)
+    np.testing.assert_allclose(forward(small).positions, 0.01 * forward(whole).positions, rtol=0, atol=1e-12)
+    np.testing.assert_array_equal(forward(small).rotations, forward(whole).rotations)
+    np.testing.assert_array_equal(small.skeleton.end_sites[0].offset, 0.01 * site.offset)
+    assert (small.frame_time, small.skeleton.names) == (whole.frame_time, whole.skeleton.names)
+    np.testing.assert_array_equal(site.offset, [1.0, 2.0, 3.0])
