@@ -20,6 +20,7 @@ os.environ["OPENBLAS_NUM_THREADS"] = os.environ["OMP_NUM_THREADS"] = "1"
 import batches  # noqa: E402
 import bvh_files  # noqa: E402
 import pc_edit  # noqa: E402
+import prioritized  # noqa: E402
 from clock import HEADINGS, Row  # noqa: E402
 from lab import print_table  # noqa: E402
 
@@ -39,6 +40,7 @@ def main() -> None:
         parts = [
             ("BVH files", bvh_files.rows(Path(scratch))),
             ("The edit by coefficients, data/golf/swing04.bvh", pc_edit.rows(Path(scratch))),
+            ("The edit by prioritized constraints, data/walk.bvh, numpy alone", prioritized.rows()),
             ("Many clips, in one process", batches.rows(Path(scratch))),
         ]
     print(machine())

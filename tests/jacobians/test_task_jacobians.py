@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from human import skeleton_of
-from motionedit.core.center_of_mass import find_masses
 
 from motionedit.core import rotations as rot
 from motionedit.core.anatomy import find_anatomy
+from motionedit.core.center_of_mass import find_masses
 from motionedit.core.ik.tasks import (
     AimTask,
     CenterOfMassTask,
