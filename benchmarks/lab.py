@@ -13,7 +13,7 @@ from motionedit.core import kinematics
 from motionedit.core.bvh import Clip, read_clip, resampled_bytes
 from motionedit.core.kinematics import Effector
 from motionedit.core.motion import Motion
-from motionedit.jobs import edit_pc, fit_pca, normalize
+from motionedit.jobs import edit_pc, edit_prioritized, fit_pca, normalize
 from motionedit.jobs.batch import RunOptions
 from motionedit.spec.load import load_spec
 
@@ -68,6 +68,15 @@ class Lab:
         loaded = load_spec(self._spec(spec, "edit-pc"), "edit-pc")
         folder = self.place()
         result = edit_pc.run(loaded, [clip], str(folder), model, RunOptions())
+        if result.failures:
+            raise result.failures[0]
+        return Edited(folder / clip.name, result.records[0])
+
+    def edit_prioritized(self, clip: Path, spec: dict[str, Any]) -> Edited:
+        """Return a clip edited by constraints."""
+        loaded = load_spec(self._spec(spec, "edit-prioritized"), "edit-prioritized")
+        folder = self.place()
+        result = edit_prioritized.run(loaded, [clip], str(folder), RunOptions())
         if result.failures:
             raise result.failures[0]
         return Edited(folder / clip.name, result.records[0])

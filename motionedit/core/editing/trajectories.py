@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.editing.splines import Knots, kochanek_bartels
+from motionedit.core.editing.splines import kochanek_bartels
 from motionedit.core.timeline.warp import round_half_up
 
 if TYPE_CHECKING:
@@ -176,9 +176,17 @@ class _Run:
             index = np.arange(len(times), dtype=np.float64)
             start, tangent = start * (times[1] - times[0]), tangent * (times[-1] - times[-2])
             at, times = np.interp(at, times, index), index
-        knots = Knots(times, values, tension, continuity, bias)
         span = slice(self.times[0], self.times[-1] + 1)
-        targets[span] = base[span] + kochanek_bartels(knots, at, start_tangent=start, end_tangent=tangent)
+        targets[span] = base[span] + kochanek_bartels(
+            times,
+            values,
+            tension=tension,
+            continuity=continuity,
+            bias=bias,
+            start_tangent=start,
+            end_tangent=tangent,
+            at=at,
+        )
 
 
 def rotation_targets(

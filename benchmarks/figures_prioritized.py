@@ -1,0 +1,232 @@
+"""The accuracy figures of edit-prioritized: the demonstrations of [PRIO] on data/ and on real clips."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import yaml
+from lab import jerk
+
+from motionedit.core import rotations as rot
+from motionedit.core.anatomy import find_anatomy
+from motionedit.core.bvh import read_clip
+from motionedit.core.contacts import find_plants
+from motionedit.core.ground import find_up, rest_pose_frames
+from motionedit.core.kinematics import forward
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from lab import Edited, Lab
+
+    from motionedit.core.contacts import Plant
+
+ROOT = Path(__file__).resolve().parents[1]
+HEADINGS = (
+    "edit",
+    "met layers (mm)",
+    "met angles (deg)",
+    "first not met (mm)",
+    "plants slide (mm/s)",
+    "iterations, median",
+    "95 %",
+    "jerk",
+)
+
+
+def demonstrations(lab: Lab) -> list[tuple[str, ...]]:
+    """Return a row for each demonstration on the clips of data/."""
+    rows: list[tuple[str, ...]] = [HEADINGS]
+    for name, clip in (("reach", "walk"), ("step", "walk"), ("karate", "kick"), ("stairs", "walk"), ("wind", "walk")):
+        spec = yaml.safe_load((ROOT / "configs" / f"{name}.yaml").read_text())
+        del spec["schema"]
+        path = ROOT / "data" / f"{clip}.bvh"
+        rows.append(measured(f"{name}, data/{clip}", path, lab.edit_prioritized(path, spec)))
+    return rows
+
+
+def real(lab: Lab, clips: Path) -> list[tuple[str, ...]]:
+    """Return the same edits, with other numbers, on real captures."""
+    walk, kick = clips / "motions" / "cmu_12_01_walk.bvh", clips / "motions" / "karate_mawashi_geri_left_1.bvh"
+    climb = clips / "motions" / "cmu07" / "cmu_07_04_walk.bvh"
+    rows: list[tuple[str, ...]] = [HEADINGS]
+    for what, clip, constraints in (
+        ("reach, CMU 12_01", walk, [*foot_plants(walk), *reach(walk)]),
+        ("step, CMU 12_01", walk, step(walk)),
+        ("karate, mawashi-geri", kick, karate(kick)),
+        ("stairs, CMU 07_04", climb, stairs(climb)),
+    ):
+        rows.append(measured(what, clip, lab.edit_prioritized(clip, {"constraints": constraints})))
+    return rows
+
+
+def measured(what: str, clip: Path, edit: Edited) -> tuple[str, ...]:
+    """Return an edit's row, lengths scaled to a leg of 0.85 m; sliding is that of feet held by the constraints."""
+    before, after = read_clip(clip).motion, read_clip(edit.path).motion
+    anatomy = find_anatomy(before.skeleton)
+    millimetres = 850.0 / anatomy.leg_length
+    first = rest_pose_frames(before, anatomy)
+    constraints = edit.record["constraints"]
+    missed = [c["priority"] for c in constraints if not small(c, millimetres)]
+    top = max(missed, default=-np.inf)
+    met = [c for c in constraints if c["priority"] > top]
+    unmet = [c for c in constraints if c["priority"] == top]
+    jerks = [jerk(forward(motion).positions[first:]) for motion in (before, after)]
+    return (
+        what,
+        f"{max((c['error_max'] or 0.0 for c in met), default=0.0) * millimetres:.4f}",
+        f"{max((c['error_angle_max'] or 0.0 for c in met), default=0.0):.4f}",
+        f"{max((c['error_max'] or 0.0 for c in unmet), default=0.0) * millimetres:.1f}" if unmet else "",
+        f"{edit.record['metrics']['after']['foot_slide_max'] * millimetres:.1f}",
+        f"{edit.record['iterations']['median']:g}",
+        f"{edit.record['iterations']['p95']:g}",
+        f"{jerks[1] / jerks[0]:.2f}",
+    )
+
+
+def small(constraint: dict[str, Any], millimetres: float) -> bool:
+    """Return whether a constraint is met to 0.1 mm and 0.01 degrees."""
+    length, angle = constraint["error_max"], constraint["error_angle_max"]
+    return (length or 0.0) * millimetres <= 0.1 and (angle or 0.0) <= 0.01
+
+
+def plants_of(clip: Path) -> list[Plant]:
+    """Return the plants of a clip's feet."""
+    motion = read_clip(clip).motion
+    poses = forward(motion)
+    anatomy = find_anatomy(motion.skeleton, poses=poses)
+    up = find_up(motion, poses, anatomy)
+    return find_plants(motion, poses, anatomy, up=up, first=rest_pose_frames(motion, anatomy))
+
+
+def foot_plants(clip: Path, *, rise: float = 0.0, priority: int = 10) -> list[dict[str, Any]]:
+    """Return constraints that hold every planted point of the feet; each plant `rise` clip units above the last."""
+    names = read_clip(clip).motion.skeleton.names
+    plants = plants_of(clip)
+    starts = sorted({plant.start for plant in plants})
+    constraints: list[dict[str, Any]] = []
+    for joint in sorted({plant.joint for plant in plants}):
+        own = [plant for plant in plants if plant.joint == joint]
+        points = [
+            {"hold": [plant.start, plant.stop], "shift": [0, rise * level(plant.start, starts), 0]} for plant in own
+        ]
+        constraints.append({"type": "position", "effector": names[joint], "priority": priority, "points": points})
+    return constraints
+
+
+def level(start: int, starts: Sequence[int]) -> int:
+    """Return how many steps have been taken: ankle and toe of one step are planted within a few frames."""
+    return sum(b - a > 12 for a, b in pairwise(starts) if b <= start)
+
+
+def middle(clip: Path) -> int:
+    """Return the clip's middle frame."""
+    return len(read_clip(clip).motion) // 2
+
+
+def leg(clip: Path) -> float:
+    """Return the clip's leg length."""
+    return find_anatomy(read_clip(clip).motion.skeleton).leg_length
+
+
+def reach(clip: Path) -> list[dict[str, Any]]:
+    """Return a hand that reaches up and out in mid-clip, above the CoM."""
+    skeleton = read_clip(clip).motion.skeleton
+    arms = find_anatomy(skeleton).arms
+    hand = skeleton.names[arms[0].wrist] if arms else ""
+    at, size = middle(clip), leg(clip)
+    shift = [0.2 * size, 0.5 * size, 0.2 * size]
+    return [
+        {"type": "position", "effector": hand, "priority": 4, "points": [{"at": at, "shift": shift}]},
+        {"type": "com", "priority": 2, "relative_to": "world"},
+    ]
+
+
+def step(clip: Path) -> list[dict[str, Any]]:
+    """Return a high-priority ankle over low-priority feet."""
+    skeleton = read_clip(clip).motion.skeleton
+    anatomy = find_anatomy(skeleton)
+    feet = [skeleton.names[j] for _, j in anatomy.foot_points]
+    lift = [0, 0.3 * leg(clip), 0]
+    ankle = skeleton.names[anatomy.legs[1].ankle] if anatomy.legs else feet[0]
+    return [
+        {"type": "position", "effector": ankle, "priority": 10, "points": [{"at": middle(clip), "shift": lift}]},
+        {"type": "position", "effector": feet, "priority": 2, "tolerance": "off"},
+    ]
+
+
+def karate(clip: Path) -> list[dict[str, Any]]:
+    """Return a kick that goes higher while the support foot rides its own path."""
+    motion = read_clip(clip).motion
+    poses = forward(motion)
+    anatomy = find_anatomy(motion.skeleton, poses=poses)
+    up = find_up(motion, poses, anatomy)
+    left, right = (foot.ankle for foot in anatomy.legs or ())
+    heights = {j: poses.positions[:, j] @ up for j in (left, right)}
+    kick, support = (left, right) if heights[left].max() > heights[right].max() else (right, left)
+    names, rise = motion.skeleton.names, [float(x) for x in 0.12 * anatomy.leg_length * up]
+    at = int(np.argmax(heights[kick]))
+    eases = {"ease_in": "0.35s", "ease_out": "0.35s"}
+    return [
+        {"type": "pose", "effector": names[support], "priority": 10},
+        {"type": "com", "priority": 5, "axes": ["x", "z"]},
+        {"type": "position", "effector": names[kick], "priority": 2, "points": [{"at": at, "shift": rise}], **eases},
+    ]
+
+
+def stairs(clip: Path) -> list[dict[str, Any]]:
+    """Return a climb: every plant a step above the last, the CoM with the feet."""
+    return [*foot_plants(clip, rise=0.14 * leg(clip)), {"type": "com", "priority": 5, "axes": ["x", "z"]}]
+
+
+def laws(lab: Lab) -> list[tuple[str, ...]]:
+    """Return what holds of any edit: order of priorities, conflicts, units, heading."""
+    walk = ROOT / "data" / "walk.bvh"
+    spec = yaml.safe_load((ROOT / "configs" / "reach.yaml").read_text())
+    del spec["schema"]
+    renumbered = {**spec, "constraints": [dict(c) for c in spec["constraints"]]}
+    for constraint in renumbered["constraints"]:
+        constraint["priority"] = {10: 3, 4: 2, 2: 1}[constraint["priority"]]
+    one, other = (lab.edit_prioritized(walk, s).path for s in (spec, renumbered))
+    rows = [("what", "measured")]
+    rows.append(("priorities {10, 4, 2} and {3, 2, 1}", "the same bytes" if same(one, other) else "other bytes"))
+    for weight in (1, 10):
+        record = lab.edit_prioritized(walk, {"constraints": conflict(weight)}).record["constraints"]
+        errors = " and ".join(f"{c['error_max'] * 850.0 / 86.5:.2f}" for c in record)
+        rows.append((f"a conflict of 300 mm, weights {weight} and 1: left (mm)", errors))
+    met = read_clip(lab.edit_prioritized(walk, {**spec, "constraints": spec["constraints"][:2]}).path).motion
+    below = read_clip(one).motion
+    feet = [j for _, j in find_anatomy(below.skeleton).foot_points]
+    moved = np.abs(forward(met).positions[:, feet] - forward(below).positions[:, feet]).max()
+    rows.append(("the CoM taken away moves the feet by at most (mm)", f"{moved * 850.0 / 86.5:.4f}"))
+    rows.append(("nothing asked for", "the input's bytes" if same(walk, nothing(lab, walk)) else "other bytes"))
+    return rows
+
+
+def same(one: Path, other: Path) -> bool:
+    """Return whether two files are alike to the byte."""
+    return one.read_bytes() == other.read_bytes()
+
+
+def nothing(lab: Lab, clip: Path) -> Path:
+    """Return a clip edited by no constraint."""
+    return lab.edit_prioritized(clip, {"constraints": []}).path
+
+
+def conflict(weight: float) -> list[dict[str, Any]]:
+    """Return two goals of one priority, 300 mm (leg 0.85 m) apart, for one hand."""
+    far = 300.0 * 86.5 / 850.0
+    common = {"type": "position", "effector": "RightHand", "tolerance": "off"}
+    return [
+        {**common, "name": "here", "weight": weight, "points": [{"hold": [0, 144], "position": [-30, 120, 300]}]},
+        {**common, "name": "there", "points": [{"hold": [0, 144], "position": [-30, 120 + far, 300]}]},
+    ]
+
+
+def turned_alike(one: Path, other: Path) -> float:
+    """Return the largest angle (degrees) between the joints of two files."""
+    a, b = read_clip(one).motion.rotations, read_clip(other).motion.rotations
+    return float(np.degrees(rot.angle_between(a, b)).max())
