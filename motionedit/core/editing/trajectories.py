@@ -14,12 +14,13 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.editing.splines import kochanek_bartels
+from motionedit.core.pca.coordinates import unwrapped
 from motionedit.core.timeline.warp import round_half_up
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from motionedit.core.arrays import FloatArray
+    from motionedit.core.arrays import FloatArray, IntArray
 
 Curve = Literal["time", "index"]
 
@@ -33,11 +34,12 @@ class ControlPoint:
     mode
         ``hold`` stands still, ``during`` rides the input's trajectory, ``at`` is one instant.
     position, shift : shape (3,) or None
-        Where it is, or how far from the input's place (a hold: from the place at its start).
+        Where it is, or how far from the input's place (a hold: from the place at its start). ``during`` has no
+        position.
     orientation : shape (4,) or None
         Quaternion; None is the input's own (a hold: as at its start).
     tension, continuity, bias : float
-        Of the spline, for ``at``.
+        Of the spline, for ``at``. A hold has tension 1 whatever it says.
     """
 
     mode: Literal["hold", "during", "at"]
@@ -55,9 +57,16 @@ class ControlPoint:
         """How a message names it."""
         return f"at {self.start}" if self.mode == "at" else f"{self.mode} [{self.start}, {self.stop}]"
 
+    @property
+    def span(self) -> slice:
+        """Its frames."""
+        return slice(self.start, self.stop + 1)
+
 
 def active_interval(points: Sequence[ControlPoint], *, ease_in: float, ease_out: float, frames: int) -> tuple[int, int]:
     """Return the first and last frame at which points act: eased in and out, cut at the clip's ends.
+
+    Both are rounded to the nearest frame, halves up, as every time is. No points act over the whole clip.
 
     Raises
     ------
@@ -65,8 +74,10 @@ def active_interval(points: Sequence[ControlPoint], *, ease_in: float, ease_out:
         If points overlap or are not in order.
     """
     for one, other in pairwise(points):
+        if other.stop < one.start:
+            raise ValueError(f"'{other.text}' comes after '{one.text}'; points stand in the order of their times")
         if other.start <= one.stop:
-            raise ValueError(f"{other.text} begins before {one.text} has ended; points follow each other in time")
+            raise ValueError(f"'{one.text}' and '{other.text}' share a frame; both ends of an interval are in it")
     if not points:
         return 0, frames - 1
     first = round_half_up(points[0].start - ease_in)
@@ -79,114 +90,112 @@ def position_targets(
 ) -> tuple[int, FloatArray]:
     """Return the first active frame and the targets from there on, shape (n, 3).
 
+    What is splined is the displacement from the input, or the path itself where some point gives a position. The
+    curve leaves and meets the input's trajectory at the input's velocity, and a hold at rest. Points are met exactly;
+    a displacement of zero leaves the input's own numbers.
+
     Parameters
     ----------
     path : shape (F, 3)
         The input's trajectory.
+    ease_in, ease_out : float
+        Frames. A point at the clip's end has no ramp there: the curve starts, or ends, in place.
     curve
         ``time``: S's parameter is time; ``index``: it is the knots' index, and T(t) is piecewise linear, as in the
         paper, whose speed jumps at uneven knots.
+
+    Raises
+    ------
+    ValueError
+        If points overlap or are not in order.
     """
     first, last = active_interval(points, ease_in=ease_in, ease_out=ease_out, frames=len(path))
+    targets = path.copy()
     if not points:
-        return first, path.copy()
+        return first, targets
     velocity = np.gradient(path, axis=0) if len(path) > 1 else np.zeros_like(path)
     absolute = any(point.position is not None for point in points)
     # What is splined is the path where a point gives a position, else the displacement from it.
-    base, slope = (np.zeros_like(path), np.zeros_like(velocity)) if absolute else (path, velocity)
-    targets = path.copy()
-    run = _Run(curve)
-    if first < points[0].start:
-        run.begin(first, path[first] - base[first], velocity[first] - slope[first])
+    base, slope = (np.zeros_like(path), np.zeros_like(path)) if absolute else (path, velocity)
+    for run in _runs(points, path, velocity, (first, last)):
+        between = np.arange(run[0].frame + 1, run[-1].frame)
+        targets[between] = base[between] + _splined(run, base, slope, at=between, curve=curve)
+    # Last, and not through the spline: path + (place - path) may differ from place by a rounding.
     for point in points:
-        places, tangents = _block(point, path, velocity)
-        if point.mode == "at":
-            run.add(point, places[0] - base[point.start])
-            continue
-        span = slice(point.start, point.stop + 1)
-        run.end(point.start, places[0] - base[point.start], tangents[0] - slope[point.start], targets, base)
-        targets[span] = places
-        run.begin(point.stop, places[-1] - base[point.stop], tangents[-1] - slope[point.stop])
-    if last > points[-1].stop:
-        run.end(last, path[last] - base[last], velocity[last] - slope[last], targets, base)
-    else:
-        run.finish(targets, base)
+        targets[point.span] = _places(point, path)
     return first, targets[first : last + 1]
 
 
-def _block(point: ControlPoint, path: FloatArray, velocity: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return a point's places and speeds over its frames, shape (n, 3) each."""
-    span = slice(point.start, point.stop + 1)
-    shift = np.zeros(path.shape[1]) if point.shift is None else point.shift
+@dataclass(frozen=True, eq=False)
+class _Knot:
+    """A knot of a spline: where it is, and how fast (per frame), which counts where it is the first or last of a run.
+
+    `shape` holds tension, continuity and bias.
+    """
+
+    frame: int
+    place: FloatArray
+    velocity: FloatArray
+    shape: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+def _places(point: ControlPoint, path: FloatArray) -> FloatArray:
+    """Return where a point wants its frames, shape (n, 3), or (3,) where that is one place for all."""
+    shift = np.zeros(3) if point.shift is None else point.shift
     if point.mode == "during":
-        return path[span] + shift, velocity[span]
-    place = path[point.start] + shift if point.position is None else point.position
-    count = point.stop - point.start + 1
-    return np.tile(place, (count, 1)), np.zeros((count, path.shape[1]))
+        return path[point.span] + shift
+    return path[point.start] + shift if point.position is None else point.position
 
 
-class _Run:
-    """The knots of one stretch of spline, from the end of one block to the start of the next."""
+def _runs(
+    points: Sequence[ControlPoint], path: FloatArray, velocity: FloatArray, active: tuple[int, int]
+) -> list[list[_Knot]]:
+    """Return the knots of each run of spline: from the input, or a block's last frame, to the next block, or the input.
 
-    def __init__(self, curve: Curve) -> None:
-        self.curve = curve
-        self.clear()
+    A hold or a ride is a block. A hold's two equal points of tension 1 cut the paper's one spline just there: no
+    tangent passes them.
+    """
+    first, last = active
+    runs: list[list[_Knot]] = [[]]
+    if first < points[0].start:
+        runs[-1].append(_Knot(first, path[first], velocity[first]))
+    for point in points:
+        places = np.broadcast_to(_places(point, path), path[point.span].shape)
+        if point.mode == "at":
+            shape = (point.tension, point.continuity, point.bias)
+            runs[-1].append(_Knot(point.start, places[0], velocity[point.start], shape))
+            continue
+        moves = 1.0 if point.mode == "during" else 0.0
+        runs[-1].append(_Knot(point.start, places[0], moves * velocity[point.start]))
+        runs.append([_Knot(point.stop, places[-1], moves * velocity[point.stop])])
+    if last > points[-1].stop:
+        runs[-1].append(_Knot(last, path[last], velocity[last]))
+    return [run for run in runs if len(run) > 1]
 
-    def clear(self) -> None:
-        self.times: list[int] = []
-        self.values: list[FloatArray] = []
-        self.shape: list[tuple[float, float, float]] = []
-        self.start_tangent: FloatArray | None = None
 
-    def begin(self, time: int, value: FloatArray, tangent: FloatArray) -> None:
-        self.clear()
-        self._knot(time, value, (0.0, 0.0, 0.0))
-        self.start_tangent = tangent
-
-    def add(self, point: ControlPoint, value: FloatArray) -> None:
-        self._knot(point.start, value, (point.tension, point.continuity, point.bias))
-
-    def end(self, time: int, value: FloatArray, tangent: FloatArray, targets: FloatArray, base: FloatArray) -> None:
-        """Add the last knot, and write the stretch's frames, base plus spline, into the targets."""
-        if self.times and time > self.times[0]:
-            self._knot(time, value, (0.0, 0.0, 0.0))
-            self._write(tangent, targets, base)
-        self.clear()
-
-    def finish(self, targets: FloatArray, base: FloatArray) -> None:
-        """Write a stretch that ends in its last knot at the clip's end."""
-        if len(self.times) > 1:
-            self._write(np.zeros_like(self.values[-1]), targets, base)
-        elif self.times:
-            targets[self.times[0]] = base[self.times[0]] + self.values[0]
-        self.clear()
-
-    def _knot(self, time: int, value: FloatArray, shape: tuple[float, float, float]) -> None:
-        self.times.append(time)
-        self.values.append(value)
-        self.shape.append(shape)
-
-    def _write(self, tangent: FloatArray, targets: FloatArray, base: FloatArray) -> None:
-        times, values = np.array(self.times, dtype=np.float64), np.array(self.values)
-        start = np.zeros_like(tangent) if self.start_tangent is None else self.start_tangent
-        at = np.arange(self.times[0], self.times[-1] + 1, dtype=np.float64)
-        tension, continuity, bias = np.array(self.shape).T
-        if self.curve == "index":
-            # T(t): time to knot index, straight between the knots; tangents are per index there.
-            index = np.arange(len(times), dtype=np.float64)
-            start, tangent = start * (times[1] - times[0]), tangent * (times[-1] - times[-2])
-            at, times = np.interp(at, times, index), index
-        span = slice(self.times[0], self.times[-1] + 1)
-        targets[span] = base[span] + kochanek_bartels(
-            times,
-            values,
-            tension=tension,
-            continuity=continuity,
-            bias=bias,
-            start_tangent=start,
-            end_tangent=tangent,
-            at=at,
-        )
+def _splined(run: list[_Knot], base: FloatArray, slope: FloatArray, *, at: IntArray, curve: Curve) -> FloatArray:
+    """Return the spline of a run's knots over the base, S(T(t)), at frames, shape (N, 3)."""
+    frames = [knot.frame for knot in run]
+    values = np.array([knot.place for knot in run]) - base[frames]
+    tension, continuity, bias = np.array([knot.shape for knot in run]).T
+    # A point that ends a run, having no ramp, goes at the input's velocity as far as its tension lets it.
+    start, end = ((1.0 - tension[k]) * (run[k].velocity - slope[run[k].frame]) for k in (0, -1))
+    knots, u = np.array(frames, dtype=np.float64), at.astype(np.float64)
+    if curve == "index":
+        # T(t): time to knot index, straight between the knots; tangents are per index there.
+        start, end = start * (knots[1] - knots[0]), end * (knots[-1] - knots[-2])
+        index = np.arange(len(knots), dtype=np.float64)
+        knots, u = index, np.interp(u, knots, index)
+    return kochanek_bartels(
+        knots,
+        values,
+        tension=tension,
+        continuity=continuity,
+        bias=bias,
+        start_tangent=start,
+        end_tangent=end,
+        at=u,
+    )
 
 
 def rotation_targets(
@@ -201,20 +210,25 @@ def rotation_targets(
     ----------
     rotations : shape (F, 4)
         The input's.
+
+    Raises
+    ------
+    ValueError
+        If points overlap or are not in order.
     """
     first, last = active_interval(points, ease_in=ease_in, ease_out=ease_out, frames=len(rotations))
-    if not points:
-        return first, rotations.copy()
     targets = rotations.copy()
+    if not points:
+        return first, targets
     before: FloatArray | None = rotations if first < points[0].start else None
     since = first
     for point in points:
         source = _source(point, rotations)
         if before is not None:
             _blend(targets, before, source, since, point.start)
-        targets[point.start : point.stop + 1] = source[point.start : point.stop + 1]
+        targets[point.span] = source[point.span]
         before, since = source, point.stop
-    if before is not None and last > since:
+    if before is not None:
         _blend(targets, before, rotations, since, last)
     return first, targets[first : last + 1]
 
@@ -227,14 +241,30 @@ def _source(point: ControlPoint, rotations: FloatArray) -> FloatArray:
         return np.broadcast_to(wanted, rotations.shape)
     if point.orientation is None:
         return rotations
-    return rot.multiply(rot.multiply(wanted, rot.conjugate(own)), rotations)
+    source = rot.multiply(rot.multiply(wanted, rot.conjugate(own)), rotations)
+    source[point.start] = wanted
+    return source
 
 
 def _blend(targets: FloatArray, before: FloatArray, after: FloatArray, start: int, stop: int) -> None:
-    """Write the slerp from one source to another over the frames between start and stop."""
-    if stop <= start:
+    """Write the slerp from one source to another over the frames between start and stop, both left as they are."""
+    if before is after or stop - start < 2:
         return
-    frames = np.arange(start, stop + 1)
-    t = (frames - start) / (stop - start)
     span = slice(start, stop + 1)
-    targets[span] = rot.slerp(before[span], after[span], t * t * (3.0 - 2.0 * t))
+    arc = _arcs(before[span], after[span])
+    t = np.linspace(0.0, 1.0, stop - start + 1)[:, None]
+    blend = rot.multiply(before[span], rot.exp(t * t * (3.0 - 2.0 * t) * arc))
+    targets[start + 1 : stop] = blend[1:-1]
+
+
+def _arcs(before: FloatArray, after: FloatArray) -> FloatArray:
+    """Return rotation vectors from one source to another that follow each other in time, shape (n, 3).
+
+    The shorter arc is taken half way, where it weighs most. A shorter arc at every frame would change to the other
+    side, and the target jump, where the input turns past half a turn from its goal.
+    """
+    shortest = rot.log(rot.multiply(rot.conjugate(before), after))[:, None]
+    middle = len(shortest) // 2
+    down, up = unwrapped(shortest[middle::-1])[::-1], unwrapped(shortest[middle:])
+    arcs: FloatArray = np.concatenate((down[:-1], up))[:, 0]
+    return arcs
