@@ -1,16 +1,34 @@
-"""The job behind `motionedit edit-prioritized`: the spec checked against each clip, each clip edited and written."""
+"""The job behind `motionedit edit-prioritized`: constraints in strict layers, every frame deformed ([PRIO])."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from motionedit.core.bvh import unedited_bytes
-from motionedit.errors import MotionEditErrors, SpecError
+import numpy as np
+
+from motionedit.core import kinematics
+from motionedit.core.bvh import edited_bytes, unedited_bytes
+from motionedit.core.center_of_mass import center_of_mass
+from motionedit.core.editing.prioritized_edit import (
+    LayeredSettings,
+    PaperFilter,
+    Passes,
+    PrioritizedEdit,
+    RecruitingError,
+    edit_by_priorities,
+)
+from motionedit.core.motion import Motion
 from motionedit.jobs import resolve
 from motionedit.jobs.batch import Outcome, plan, run_batch
 from motionedit.jobs.clip_facts import facts_of
+from motionedit.jobs.collected import Faults
 from motionedit.jobs.edit_metrics import edit_metrics
+from motionedit.jobs.events import event_frames
+from motionedit.jobs.prioritized_body import sized_clip
+from motionedit.jobs.prioritized_constraints import clip_constraints
+from motionedit.jobs.prioritized_record import edit_record
+from motionedit.jobs.prioritized_recruits import breach_error, breach_warnings, layer_lines
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -18,6 +36,8 @@ if TYPE_CHECKING:
 
     from motionedit.core.bvh import Clip
     from motionedit.jobs.batch import BatchResult, ClipTask, RunOptions
+    from motionedit.jobs.prioritized_body import SizedClip
+    from motionedit.jobs.prioritized_constraints import ClipConstraint
     from motionedit.spec.edit_prioritized import EditPrioritizedSpec
     from motionedit.spec.load import LoadedSpec
 
@@ -25,50 +45,113 @@ if TYPE_CHECKING:
 def run(
     loaded: LoadedSpec[EditPrioritizedSpec], clips: Sequence[Path], output: str, options: RunOptions
 ) -> BatchResult:
-    """Edit clips by a spec and write them.
+    """Edit clips by constraints in priority layers, and write them.
 
     Raises
     ------
-    SpecError
-        The spec has constraints, which are not supported yet.
     UsageError
         As `plan`.
     """
     tasks = plan(clips, output, options=options, depends=loaded.files)
-    if loaded.model.constraints:
-        raise loaded.error(("constraints", 0), "not supported yet; an empty list copies the clips")
-    return run_batch(tasks, _Edit(loaded), options)
+    others = tuple(task.relative for task in tasks)
+    return run_batch(tasks, _Edit(loaded, others), options)
 
 
 @dataclass(frozen=True)
 class _Edit:
-    """The work on one clip: with no constraints, the same bytes."""
+    """The work on one clip."""
 
     loaded: LoadedSpec[EditPrioritizedSpec]
+    others: tuple[str, ...]
 
     def __call__(self, clip: Clip, task: ClipTask) -> Outcome:
-        """Return the clip's own bytes."""
-        del task
-        _check_joints(self.loaded, clip)
-        facts = facts_of(clip)
-        record: dict[str, Any] = {
-            "unit": self.loaded.data.get("unit"),
-            "metrics": edit_metrics(facts, facts.poses.positions),
-            "constraints": [],
-        }
-        return Outcome(unedited_bytes(clip), record, details=("no constraints: the same bytes",))
-
-
-def _check_joints(loaded: LoadedSpec[EditPrioritizedSpec], clip: Clip) -> None:
-    """Raise all errors of joints that the spec names and the clip lacks."""
-    hinges = loaded.model.hinges
-    named: list[tuple[tuple[str | int, ...], str]] = [(("masses", name), name) for name in loaded.model.masses]
-    named += [(("hinges", i), name) for i, name in enumerate(hinges) if not isinstance(hinges, str)]
-    errors = []
-    for keys, name in named:
+        """Return the edited clip, and how near each constraint came."""
+        facts = facts_of(clip, up=self.loaded.model.up)
+        faults = Faults()
+        sized = sized_clip(self.loaded, facts, faults)
+        constraints = self._constraints(sized, task, faults)
+        faults.raise_all(f"what the spec names and {task.label} lacks")
+        if not constraints:
+            record = {**self._about(sized, facts.poses), "constraints": []}
+            return Outcome(
+                unedited_bytes(clip), record, warnings=sized.warnings, details=("no constraints: the same bytes",)
+            )
         try:
-            resolve.joint(name, clip.motion.skeleton, resolve.Place(loaded, keys, clip.label))
-        except SpecError as error:
-            errors.append(error)
-    if errors:
-        raise MotionEditErrors(f"joints that {clip.label} lacks", errors)
+            edit = edit_by_priorities(
+                sized.motion, [c.constraint for c in constraints], sized.body, self._settings(clip)
+            )
+        except RecruitingError as error:
+            raise breach_error(self.loaded, error.breach, [c.constraint for c in constraints], facts) from None
+        return self._outcome(sized, constraints, edit)
+
+    def _constraints(self, sized: SizedClip, task: ClipTask, faults: Faults) -> list[ClipConstraint]:
+        spec = self.loaded.model
+        place = resolve.Place(self.loaded, ("events",), task.label)
+        none: dict[str, float] = {}
+
+        def frames() -> dict[str, float]:
+            explicit = resolve.explicit_events(self.loaded, task.relative, others=self.others)
+            known = {name: float(frame) for name, frame in explicit.items()}
+            return event_frames(spec.events, sized.facts, place, known=known)
+
+        events = faults.get(frames, otherwise=none)
+        return clip_constraints(self.loaded, sized.facts, events, scale=sized.scale, faults=faults)
+
+    def _settings(self, clip: Clip) -> LayeredSettings:
+        spec = self.loaded.model
+        smoothing = spec.smoothing
+        return LayeredSettings(
+            smoothing=PaperFilter(smoothing.pass_count, smoothing.cutoff)
+            if smoothing.method == "paper"
+            else Passes(smoothing.pass_count, smoothing.sigma.in_frames(clip.motion.frame_time)),
+            curve=spec.curve,
+            attraction=spec.attraction,
+            max_iterations=spec.solver.max_iterations,
+            recruiting_rule=spec.recruiting_rule,
+        )
+
+    def _outcome(self, sized: SizedClip, constraints: Sequence[ClipConstraint], edit: PrioritizedEdit) -> Outcome:
+        facts, spec = sized.facts, self.loaded.model
+        clip = facts.clip
+        changed = bool(edit.touched.any() or edit.moved.any())
+        motion = _in_clip_units(clip.motion, edit, sized) if changed else clip.motion
+        after = kinematics.forward(motion) if changed else facts.poses
+        result = edit_record(
+            edit,
+            constraints,
+            facts,
+            scale=sized.scale,
+            filtered=spec.smoothing.method == "paper" and spec.smoothing.pass_count > 0,
+        )
+        about = {**self._about(sized, after), **result.record, "passes": spec.smoothing.pass_count}
+        asked = [each.constraint for each in constraints]
+        breaches = breach_warnings(edit.breaches, asked, facts, rule=spec.recruiting_rule)
+        return Outcome(
+            _content(clip, motion, edit, facts.travel) if changed else unedited_bytes(clip),
+            {"message": result.message, **about},
+            result.status,
+            (*sized.warnings, *breaches, *result.warnings),
+            motion=motion if changed else None,
+            details=(*layer_lines(asked, edit.recruits, sized.body.hinges, facts), *breaches),
+        )
+
+    def _about(self, sized: SizedClip, after: kinematics.WorldPoses) -> dict[str, Any]:
+        unit = self.loaded.model.unit
+        metrics = edit_metrics(sized.facts, after.positions)
+        shift = center_of_mass(after, sized.masses) - center_of_mass(sized.facts.poses, sized.masses)
+        metrics["com_shift_max"] = float(np.linalg.norm(shift, axis=1).max())
+        return {"unit": None if unit is None else unit.name, "metrics": metrics}
+
+
+def _in_clip_units(before: Motion, edit: PrioritizedEdit, sized: SizedClip) -> Motion:
+    """Return the edited motion in clip units: what was not touched is the input's own, bit for bit."""
+    rotations = np.where(edit.touched[..., None], edit.motion.rotations, before.rotations)
+    travels = before.skeleton.translated == sized.facts.travel
+    moved = (edit.moved[:, None] & travels)[..., None]
+    translations = np.where(moved, edit.motion.translations / sized.scale, before.translations)
+    return Motion(before.skeleton, rotations, translations, before.frame_time)
+
+
+def _content(clip: Clip, motion: Motion, edit: PrioritizedEdit, travel: int) -> bytes:
+    moved = edit.moved[:, None] & (clip.motion.skeleton.translated == travel)
+    return edited_bytes(clip, motion, touched=edit.touched, moved=moved)

@@ -60,14 +60,14 @@ def results_table(records: Sequence[dict[str, Any]], seconds: Sequence[float], *
 
 def _row(record: dict[str, Any], seconds: float) -> tuple[object, ...]:
     measured = [goal for goal in _goals(record) if goal.get("error_max") is not None]
-    worst = max(measured, key=lambda goal: float(goal["error_max"]), default={})
+    worst = max(measured, key=_weight, default={})
     return (
         record["clip"],
         record["status"],
         worst.get("error_max"),
         worst.get("name"),
         worst.get("frame"),
-        record.get("iterations"),
+        _iterations(record),
         _change(record, "foot_slide_max"),
         _ratio(record, "jerk_rms"),
         None if record["status"] == "failed" else f"{seconds:.2f}",
@@ -93,6 +93,19 @@ def _measures(record: dict[str, Any], key: str) -> tuple[float, float] | None:
     metrics = record.get("metrics") or {}
     before, after = ((metrics.get(side) or {}).get(key) for side in ("before", "after"))
     return None if before is None or after is None else (before, after)
+
+
+def _weight(goal: dict[str, Any]) -> tuple[bool, bool, float]:
+    """Return what tells the worst goal: what is missed, then what --strict counts, then how far it is off."""
+    return goal.get("status") != "ok", bool(goal.get("strict", True)), float(goal["error_max"])
+
+
+def _iterations(record: dict[str, Any]) -> str | None:
+    """Return the iterations of a solve; of many, one for each frame, the median and the largest number."""
+    found = record.get("iterations")
+    if isinstance(found, dict):
+        return f"{found['median']:g}, max {found['max']}"
+    return None if found is None else str(found)
 
 
 def _change(record: dict[str, Any], key: str) -> str | None:

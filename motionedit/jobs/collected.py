@@ -1,0 +1,39 @@
+"""The errors of one clip, collected so that all of them are said at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, TypeVar
+
+from motionedit.errors import MotionEditError, MotionEditErrors
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+Found = TypeVar("Found")
+
+
+@dataclass(frozen=True)
+class Faults:
+    """Errors found so far; equal ones count once."""
+
+    errors: list[MotionEditError] = field(default_factory=list)
+
+    def get(self, look: Callable[[], Found], *, otherwise: Found) -> Found:
+        """Return what `look` finds; where it raises, keep the error and return the stand-in."""
+        try:
+            return look()
+        except MotionEditError as error:
+            if str(error) not in map(str, self.errors):
+                self.errors.append(error)
+            return otherwise
+
+    def raise_all(self, what: str) -> None:
+        """Raise the errors, if there are any.
+
+        Raises
+        ------
+        MotionEditErrors
+        """
+        if self.errors:
+            raise MotionEditErrors(what, self.errors)

@@ -1,0 +1,207 @@
+"""What the report says of an edit by priorities: how near each constraint came, and what it gave way to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from motionedit.core.editing.constraints import order_of_layers
+from motionedit.jobs.prioritized_recruits import recruited_names
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from motionedit.core.arrays import FloatArray
+    from motionedit.core.editing.constraint_errors import ConstraintErrors
+    from motionedit.core.editing.prioritized_edit import PrioritizedEdit
+    from motionedit.jobs.clip_facts import ClipFacts
+    from motionedit.jobs.prioritized_constraints import ClipConstraint
+
+# A constraint that --strict does not count is worth a warning from so many tolerances on: 1 cm, 1 degree.
+FAR_OFF = 10.0
+# Errors over tolerance are told apart to this: below it is rounding, and the worst frame would be any.
+_DIGITS = 6
+
+
+@dataclass(frozen=True)
+class EditRecord:
+    """A clip's `status`, its `message` or None, its `warnings`, and its `record` in the report."""
+
+    status: str
+    message: str | None
+    warnings: tuple[str, ...]
+    record: dict[str, Any]
+
+
+@dataclass(frozen=True, eq=False)
+class _Measured:
+    """A constraint and its errors: lengths (n,) in clip units, angles (n,) in degrees, from frame `first` on.
+
+    `excess` (n,) is the larger of both over their tolerances: above 1 the constraint is missed there.
+    """
+
+    each: ClipConstraint
+    first: int
+    lengths: FloatArray | None
+    angles: FloatArray | None
+    excess: FloatArray
+
+    @property
+    def last(self) -> int:
+        return self.first + len(self.excess) - 1
+
+    @property
+    def worst(self) -> int:
+        return self.first + int(np.argmax(self.excess))
+
+    @property
+    def missed(self) -> bool:
+        return bool(self.excess.max() > 1.0)
+
+    def is_active(self, frame: int) -> bool:
+        return self.first <= frame <= self.last
+
+    def is_missed(self, frame: int) -> bool:
+        return bool(self.excess[frame - self.first] > 1.0)
+
+
+def edit_record(
+    edit: PrioritizedEdit, constraints: Sequence[ClipConstraint], facts: ClipFacts, *, scale: float, filtered: bool
+) -> EditRecord:
+    """Return what is to be said of an edit.
+
+    Parameters
+    ----------
+    scale : float
+        Normalised metres per clip unit.
+    filtered : bool
+        The edit's last word was a filter and not a solve ([PRIO]'s own smoothing).
+    """
+    measured = [_measured(each, errors, scale) for each, errors in zip(constraints, edit.errors, strict=True)]
+    records, warnings, missed, statuses = [], [], [], set()
+    for i, one in enumerate(measured):
+        status, gave_way_to, reason = _verdict(i, measured, edit, filtered=filtered)
+        records.append(_record(one, status, gave_way_to, recruited_names(edit.recruits[i], facts)))
+        if status == "ok":
+            continue
+        line = f"{_missed_by(one)}: {reason}"
+        if one.each.counts:
+            statuses.add(status)
+            missed.append(line)
+        if one.each.counts or one.excess.max() > FAR_OFF:
+            warnings.append(line)
+    status = next((worst for worst in ("unreachable", "out_of_tolerance") if worst in statuses), "ok")
+    solved = edit.iterations[edit.iterations > 0]
+    record = {
+        "constraints": records,
+        "layers": _layers(edit, measured),
+        "iterations": {
+            "median": float(np.median(solved)) if len(solved) else 0.0,
+            "max": int(solved.max(initial=0)),
+        },
+        "frames_solved": len(solved),
+        "frames_not_converged": int(np.count_nonzero(~edit.converged)),
+    }
+    return EditRecord(status, "; ".join(missed) or None, tuple(warnings), record)
+
+
+def _measured(each: ClipConstraint, errors: ConstraintErrors, scale: float) -> _Measured:
+    lengths = None if errors.positions is None else errors.positions / scale
+    angles = None if errors.angles is None else np.degrees(errors.angles)
+    over = [
+        values / limit
+        for values, limit in ((lengths, each.tolerance), (angles, each.angle_tolerance))
+        if values is not None
+    ]
+    excess = np.round(np.max(over, axis=0), _DIGITS)
+    return _Measured(each, errors.first, lengths, angles, excess)
+
+
+def _verdict(
+    i: int, measured: Sequence[_Measured], edit: PrioritizedEdit, *, filtered: bool
+) -> tuple[str, list[str], str]:
+    """Return a constraint's status, the names of those it gave way to, and why it is missed."""
+    one = measured[i]
+    if not one.missed:
+        return "ok", [], ""
+    frame, mine = one.worst, edit.recruits[i]
+    rivals = [
+        other
+        for other, theirs in zip(measured, edit.recruits, strict=True)
+        if other is not one
+        and other.is_active(frame)
+        and ((theirs.joints & mine.joints) or (theirs.root and mine.root))
+    ]
+    priority = one.each.constraint.priority
+    above = [other for other in rivals if other.each.constraint.priority > priority]
+    beside = [other for other in rivals if other.each.constraint.priority == priority and other.is_missed(frame)]
+    names = [other.each.constraint.name for other in above if not other.is_missed(frame)]
+    missed = "ok" if one.each.may_give_way else "out_of_tolerance"
+    if above:
+        levels = order_of_layers([other.each.constraint.priority for other in above])
+        which = f"priority {levels[0]}" if len(levels) == 1 else f"priorities {', '.join(map(str, levels))}"
+        return missed, names, f"{which} above left no freedom"
+    if beside:
+        return missed, [], f"shared by weight with {beside[0].each.constraint.name}, of the same priority"
+    if filtered:
+        return missed, [], "the low-pass on the root moved it (smoothing: paper)"
+    if not edit.converged[one.first : one.last + 1][one.excess > 1.0].any():
+        return missed, [], "the iterations ran out"
+    return "ok" if one.each.may_give_way else "unreachable", [], "out of reach of the joints it recruits"
+
+
+def _record(one: _Measured, status: str, gave_way_to: list[str], recruited: list[str]) -> dict[str, Any]:
+    each, lengths, angles = one.each, one.lengths, one.angles
+    limits = not each.may_give_way
+    return {
+        "name": each.constraint.name,
+        "type": each.constraint.kind,
+        "priority": each.constraint.priority,
+        "error_max": None if lengths is None else float(lengths.max()),
+        "error_rms": None if lengths is None else float(np.sqrt(np.mean(lengths**2))),
+        "error_angle_max": None if angles is None else float(angles.max()),
+        "frame": one.worst,
+        "tolerance": each.tolerance if limits and lengths is not None else None,
+        "tolerance_angle": each.angle_tolerance if limits and angles is not None else None,
+        "status": status,
+        "gave_way_to": gave_way_to,
+        "strict": each.counts,
+        "first_frame": one.first,
+        "last_frame": one.last,
+        "recruited": recruited,
+    }
+
+
+def _layers(edit: PrioritizedEdit, measured: Sequence[_Measured]) -> list[dict[str, Any]]:
+    """Return each layer's members and the range of its independent rows over the frames at which it is active."""
+    layers = []
+    for level, priority in enumerate(order_of_layers([one.each.constraint.priority for one in measured])):
+        members = [one for one in measured if one.each.constraint.priority == priority]
+        active = np.zeros(len(edit.ranks), dtype=np.bool_)
+        for one in members:
+            active[one.first : one.last + 1] = True
+        ranks = edit.ranks[active, level]
+        layers.append(
+            {
+                "priority": priority,
+                "constraints": [one.each.constraint.name for one in members],
+                "rank": {"min": int(ranks.min()), "max": int(ranks.max())},
+            }
+        )
+    return layers
+
+
+def _missed_by(one: _Measured) -> str:
+    """Return ``right-toe: 1.8 from its goal at frame 58 (tolerance 0.5)``, with the parts that are missed."""
+    parts, limits = [], []
+    each = one.each
+    for values, limit, words, unit in (
+        (one.lengths, each.tolerance, "{:.4g} from its goal", ""),
+        (one.angles, each.angle_tolerance, "turned {:.4g} degrees from its goal", " degrees"),
+    ):
+        if values is not None and values.max() > limit:
+            parts.append(f"{words.format(values.max())} at frame {one.first + int(np.argmax(values))}")
+            limits.append(f"{limit:.3g}{unit}")
+    return f"{each.constraint.name}: {' and '.join(parts)} (tolerance {', '.join(limits)})"
