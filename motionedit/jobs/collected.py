@@ -15,17 +15,21 @@ Found = TypeVar("Found")
 
 @dataclass(frozen=True)
 class Faults:
-    """Errors found so far; equal ones count once."""
+    """Errors found so far, one at each place: what stands once in a spec may be looked at for several constraints."""
 
     errors: list[MotionEditError] = field(default_factory=list)
+
+    def add(self, error: MotionEditError) -> None:
+        """Keep an error, unless its place has one."""
+        if (error.file, error.line, error.key) not in [(one.file, one.line, one.key) for one in self.errors]:
+            self.errors.append(error)
 
     def get(self, look: Callable[[], Found], *, otherwise: Found) -> Found:
         """Return what `look` finds; where it raises, keep the error and return the stand-in."""
         try:
             return look()
         except MotionEditError as error:
-            if str(error) not in map(str, self.errors):
-                self.errors.append(error)
+            self.add(error)
             return otherwise
 
     def raise_all(self, what: str) -> None:

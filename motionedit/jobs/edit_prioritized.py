@@ -76,13 +76,12 @@ class _Edit:
             return Outcome(
                 unedited_bytes(clip), record, warnings=sized.warnings, details=("no constraints: the same bytes",)
             )
+        settings = self._settings(clip)
         try:
-            edit = edit_by_priorities(
-                sized.motion, [c.constraint for c in constraints], sized.body, self._settings(clip)
-            )
+            edit = edit_by_priorities(sized.motion, [c.constraint for c in constraints], sized.body, settings)
         except RecruitingError as error:
             raise breach_error(self.loaded, error.breach, [c.constraint for c in constraints], facts) from None
-        return self._outcome(sized, constraints, edit)
+        return self._outcome(sized, constraints, edit, settings)
 
     def _constraints(self, sized: SizedClip, task: ClipTask, faults: Faults) -> list[ClipConstraint]:
         spec = self.loaded.model
@@ -110,19 +109,15 @@ class _Edit:
             recruiting_rule=spec.recruiting_rule,
         )
 
-    def _outcome(self, sized: SizedClip, constraints: Sequence[ClipConstraint], edit: PrioritizedEdit) -> Outcome:
+    def _outcome(
+        self, sized: SizedClip, constraints: Sequence[ClipConstraint], edit: PrioritizedEdit, settings: LayeredSettings
+    ) -> Outcome:
         facts, spec = sized.facts, self.loaded.model
         clip = facts.clip
         changed = bool(edit.touched.any() or edit.moved.any())
         motion = _in_clip_units(clip.motion, edit, sized) if changed else clip.motion
         after = kinematics.forward(motion) if changed else facts.poses
-        result = edit_record(
-            edit,
-            constraints,
-            facts,
-            scale=sized.scale,
-            filtered=spec.smoothing.method == "paper" and spec.smoothing.pass_count > 0,
-        )
+        result = edit_record(edit, constraints, facts, scale=sized.scale, settings=settings)
         about = {**self._about(sized, after), **result.record, "passes": spec.smoothing.pass_count}
         asked = [each.constraint for each in constraints]
         breaches = breach_warnings(edit.breaches, asked, facts, rule=spec.recruiting_rule)

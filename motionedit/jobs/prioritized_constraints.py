@@ -80,7 +80,8 @@ def clip_constraints(
     for spec in loaded.model.constraints:
         own = Faults()
         constraint = _Resolver(loaded, facts, events, own).constraint(spec)
-        faults.errors.extend(own.errors)
+        for error in own.errors:
+            faults.add(error)
         met = spec.met_within
         found.append(
             ClipConstraint(
@@ -201,7 +202,7 @@ class _Resolver:
             message = (
                 f"'{joint}' is not on the way of '{constraint.name}' to the root in {place.clip}, which is {names}"
             )
-            self.faults.errors.append(resolve.recruit_place(place).at("up_to").error(message))
+            self.faults.add(resolve.recruit_place(place).at("up_to").error(message))
 
     def _points(self, points: Sequence[Point], axes: _Axes, place: Place) -> tuple[ControlPoint, ...]:
         found: list[ControlPoint] = []
@@ -213,7 +214,7 @@ class _Resolver:
             try:
                 active_interval([*found[-1:], each], ease_in=0.0, ease_out=0.0, frames=len(self.facts.clip.motion))
             except ValueError as error:
-                self.faults.errors.append(at.error(f"in {place.clip}: {error}"))
+                self.faults.add(at.error(f"in {place.clip}: {error}"))
             found.append(each)
         return tuple(found)
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from motionedit.core.editing.constraints import order_of_layers
+from motionedit.core.editing.prioritized_edit import LayeredSettings, PaperFilter
 from motionedit.jobs.prioritized_recruits import recruited_names
 
 if TYPE_CHECKING:
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 FAR_OFF = 10.0
 # Errors over tolerance are told apart to this: below it is rounding, and the worst frame would be any.
 _DIGITS = 6
+_OUT_OF_REACH = "out of reach of the joints it recruits"
 
 
 @dataclass(frozen=True)
@@ -68,7 +70,12 @@ class _Measured:
 
 
 def edit_record(
-    edit: PrioritizedEdit, constraints: Sequence[ClipConstraint], facts: ClipFacts, *, scale: float, filtered: bool
+    edit: PrioritizedEdit,
+    constraints: Sequence[ClipConstraint],
+    facts: ClipFacts,
+    *,
+    scale: float,
+    settings: LayeredSettings,
 ) -> EditRecord:
     """Return what is to be said of an edit.
 
@@ -76,13 +83,13 @@ def edit_record(
     ----------
     scale : float
         Normalised metres per clip unit.
-    filtered : bool
-        The edit's last word was a filter and not a solve ([PRIO]'s own smoothing).
+    settings : LayeredSettings
+        Those of the edit.
     """
     measured = [_measured(each, errors, scale) for each, errors in zip(constraints, edit.errors, strict=True)]
     records, warnings, missed, statuses = [], [], [], set()
     for i, one in enumerate(measured):
-        status, gave_way_to, reason = _verdict(i, measured, edit, filtered=filtered)
+        status, gave_way_to, reason = _verdict(i, measured, edit, settings)
         records.append(_record(one, status, gave_way_to, recruited_names(edit.recruits[i], facts)))
         if status == "ok":
             continue
@@ -120,36 +127,57 @@ def _measured(each: ClipConstraint, errors: ConstraintErrors, scale: float) -> _
 
 
 def _verdict(
-    i: int, measured: Sequence[_Measured], edit: PrioritizedEdit, *, filtered: bool
+    i: int, measured: Sequence[_Measured], edit: PrioritizedEdit, settings: LayeredSettings
 ) -> tuple[str, list[str], str]:
     """Return a constraint's status, the names of those it gave way to, and why it is missed."""
     one = measured[i]
     if not one.missed:
         return "ok", [], ""
-    frame, mine = one.worst, edit.recruits[i]
-    rivals = [
-        other
-        for other, theirs in zip(measured, edit.recruits, strict=True)
-        if other is not one
-        and other.is_active(frame)
-        and ((theirs.joints & mine.joints) or (theirs.root and mine.root))
-    ]
-    priority = one.each.constraint.priority
-    above = [other for other in rivals if other.each.constraint.priority > priority]
-    beside = [other for other in rivals if other.each.constraint.priority == priority and other.is_missed(frame)]
-    names = [other.each.constraint.name for other in above if not other.is_missed(frame)]
-    missed = "ok" if one.each.may_give_way else "out_of_tolerance"
+    rivals = _rivals(i, measured, edit)
+    above = [other for other in rivals if other.each.constraint.priority > one.each.constraint.priority]
+    names = [other.each.constraint.name for other in above if not other.is_missed(one.worst)]
     if above:
         levels = order_of_layers([other.each.constraint.priority for other in above])
         which = f"priority {levels[0]}" if len(levels) == 1 else f"priorities {', '.join(map(str, levels))}"
-        return missed, names, f"{which} above left no freedom"
+        reason = f"{which} above left no freedom"
+    else:
+        reason = _reason(i, measured, [other for other in rivals if other.is_missed(one.worst)], edit, settings)
+    status = "unreachable" if reason == _OUT_OF_REACH else "out_of_tolerance"
+    return "ok" if one.each.may_give_way else status, names, reason
+
+
+def _rivals(i: int, measured: Sequence[_Measured], edit: PrioritizedEdit) -> list[_Measured]:
+    """Return the constraints of the same or a higher priority that, at the worst frame, move the same joints."""
+    one, mine = measured[i], edit.recruits[i]
+    return [
+        other
+        for other, theirs in zip(measured, edit.recruits, strict=True)
+        if other is not one
+        and other.each.constraint.priority >= one.each.constraint.priority
+        and other.is_active(one.worst)
+        and ((theirs.joints & mine.joints) or (theirs.root and mine.root))
+    ]
+
+
+def _reason(
+    i: int,
+    measured: Sequence[_Measured],
+    beside: Sequence[_Measured],
+    edit: PrioritizedEdit,
+    settings: LayeredSettings,
+) -> str:
+    """Return why a constraint is missed that has none above it; `beside` it are missed ones of its own priority."""
+    one = measured[i]
+    movers = [measured[breach.lower].each.constraint for breach in edit.breaches if breach.higher == i]
+    if settings.recruiting_rule == "ignore" and movers:
+        return f"{min(movers, key=lambda mover: mover.priority).name} moves it by joints it does not recruit"
     if beside:
-        return missed, [], f"shared by weight with {beside[0].each.constraint.name}, of the same priority"
-    if filtered:
-        return missed, [], "the low-pass on the root moved it (smoothing: paper)"
+        return f"shared by weight with {beside[0].each.constraint.name}, of the same priority"
+    if isinstance(settings.smoothing, PaperFilter) and settings.smoothing.count:
+        return "the low-pass on the root moved it (smoothing: paper)"
     if not edit.converged[one.first : one.last + 1][one.excess > 1.0].any():
-        return missed, [], "the iterations ran out"
-    return "ok" if one.each.may_give_way else "unreachable", [], "out of reach of the joints it recruits"
+        return "the iterations ran out"
+    return _OUT_OF_REACH
 
 
 def _record(one: _Measured, status: str, gave_way_to: list[str], recruited: list[str]) -> dict[str, Any]:

@@ -38,21 +38,21 @@ def breach_error(
 def breach_warnings(
     breaches: Sequence[Breach], constraints: Sequence[Constraint], facts: ClipFacts, *, rule: str
 ) -> list[str]:
-    """Return a line for each pair of constraints between which the recruiting rule was broken."""
-    pairs: dict[tuple[int, int], tuple[frozenset[int], bool]] = {}
+    """Return a line for each constraint that moved others against the recruiting rule, and what it moved them by."""
+    pairs: dict[tuple[int, int], Recruits] = {}
     for breach in breaches:
-        joints, root = pairs.get((breach.higher, breach.lower), (frozenset[int](), False))
-        pairs[breach.higher, breach.lower] = (joints | breach.joints, root or breach.root)
+        known = pairs.get((breach.higher, breach.lower), Recruits(frozenset(), root=False))
+        pairs[breach.higher, breach.lower] = Recruits(known.joints | breach.joints, known.root or breach.root)
+    moved: dict[tuple[int, Recruits], list[str]] = {}
+    for (higher, lower), by in pairs.items():
+        moved.setdefault((lower, by), []).append(constraints[higher].name)
     lines = []
-    for (a, b), (joints, root) in pairs.items():
-        higher, lower = constraints[a].name, constraints[b].name
-        names = ", ".join(recruited_names(Recruits(joints, root), facts))
+    for (lower, by), highers in moved.items():
+        mover, joints, names = constraints[lower].name, ", ".join(recruited_names(by, facts)), ", ".join(highers)
         if rule == "expand":
-            lines.append(f"recruiting_rule expand adds {names} to {higher} because {lower} moves them")
+            lines.append(f"recruiting_rule expand adds {joints} to {names} because {mover} moves them")
         else:
-            lines.append(
-                f"{lower} moves {higher} by {names}, which {higher} does not recruit: its priority may not hold"
-            )
+            lines.append(f"{mover} moves {names} by {joints}, not recruited there: its priority may not hold")
     return lines
 
 
