@@ -16,6 +16,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT), str(Path(__file__).parent)]
 
+import figures_prioritized  # noqa: E402
 from lab import DIRECTIONS, Lab, effector_path, jerk, joint_positions, largest_jerk, print_table  # noqa: E402
 
 from data.generator.files import write_shipped  # noqa: E402
@@ -42,6 +43,10 @@ def main() -> None:
         print_table("Golf: reconstruction of the club head (cm)", reconstruction(lab))
         print_table("Golf: edits at the hit", golf_edits(lab))
         print_table("Golf: smoothness, noise-free 120 Hz clips on a 25 Hz timeline", smoothness(lab))
+        print_table(
+            "Prioritized constraints: the demonstrations of [PRIO] on data/", figures_prioritized.demonstrations(lab)
+        )
+        print_table("Prioritized constraints: what holds of any edit", figures_prioritized.laws(lab))
         clips = os.environ.get("MOTIONEDIT_CLIPS")
         if clips is None or not Path(clips).is_dir():
             print("\nReal strokes: left out, MOTIONEDIT_CLIPS names no folder")
@@ -50,6 +55,7 @@ def main() -> None:
         print_table("Real smashes (18 joints, 100 Hz), the clip left out of the database", smashes(lab, strokes))
         print_table("Real smashes cut at differing lengths from one take, left out", cut_smashes(lab, strokes))
         print_table("Real serves, the clip left out of the database", serves(lab, strokes))
+        print_table("Prioritized constraints: the same on real clips", figures_prioritized.real(lab, Path(clips)))
 
 
 def row(what: str, value: float, aim: float, *, form: str = ".3g", least: bool = False) -> tuple[str, str, str, str]:
