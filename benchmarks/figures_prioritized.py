@@ -99,7 +99,7 @@ def slide(edited: Path, constraints: Sequence[dict[str, Any]]) -> float | None:
     positions, names = forward(motion).positions, motion.skeleton.names
     speeds = []
     for constraint in constraints:
-        if constraint["type"] != "position" or "relative_to" in constraint:
+        if constraint["type"] not in {"position", "pose"} or "relative_to" in constraint:
             continue
         joints = constraint["effector"] if isinstance(constraint["effector"], list) else [constraint["effector"]]
         for start, stop in (point["hold"] for point in constraint.get("points", []) if "hold" in point):
@@ -123,24 +123,30 @@ def plants_of(clip: Path) -> list[Plant]:
     return find_plants(motion, poses, anatomy, up=up, first=rest_pose_frames(motion, anatomy))
 
 
-def foot_plants(clip: Path, *, rise: float = 0.0, priority: int = 10) -> list[dict[str, Any]]:
-    """Return constraints that hold every planted point of the feet; each plant `rise` clip units above the last."""
-    names = read_clip(clip).motion.skeleton.names
-    plants = plants_of(clip)
+def foot_plants(clip: Path, *, rise: float = 0.0) -> list[dict[str, Any]]:
+    """Return a pose for each foot that holds it in every plant of its ankle; each plant `rise` clip units higher.
+
+    One rigid goal for a foot cannot contradict itself, as an ankle's and a toe's may.
+    """
+    motion = read_clip(clip).motion
+    ankles = [leg.ankle for leg in find_anatomy(motion.skeleton).legs or ()]
+    plants = [plant for plant in plants_of(clip) if plant.joint in ankles]
     starts = sorted({plant.start for plant in plants})
     constraints: list[dict[str, Any]] = []
-    for joint in sorted({plant.joint for plant in plants}):
-        own = [plant for plant in plants if plant.joint == joint]
+    for ankle in ankles:
         points = [
-            {"hold": [plant.start, plant.stop], "shift": [0, rise * level(plant.start, starts), 0]} for plant in own
+            {"hold": [plant.start, plant.stop], "shift": [0, rise * level(plant.start, starts), 0]}
+            for plant in plants
+            if plant.joint == ankle
         ]
-        constraints.append({"type": "position", "effector": names[joint], "priority": priority, "points": points})
+        name = motion.skeleton.names[ankle]
+        constraints.append({"type": "pose", "effector": name, "priority": 10, "points": points})
     return constraints
 
 
 def level(start: int, starts: Sequence[int]) -> int:
-    """Return how many steps have been taken: ankle and toe of one step are planted within a few frames."""
-    return sum(b - a > 12 for a, b in pairwise(starts) if b <= start)
+    """Return how many steps have been taken before a plant."""
+    return sum(b > a for a, b in pairwise(starts) if b <= start)
 
 
 def middle(clip: Path) -> int:

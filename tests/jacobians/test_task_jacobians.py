@@ -124,6 +124,14 @@ def test_aim_where_it_is_met(motion, at_a_joint):
         check(AimTask(point(HEAD), axis, poses.positions[:, HEAD] + 1.7 * look, None), motion, atol=1e-5)
 
 
+def test_aim_at_a_point_that_goes_with_another_joint(motion):
+    poses = forward(motion)
+    axis = np.array([0.0, 0.6, 0.8])
+    way = poses.positions[:, HEAD] + 1.7 * rot.rotate(poses.rotations[:, HEAD], axis) - poses.positions[:, HAND]
+    seen = rot.rotate(rot.conjugate(poses.rotations[:, HAND]), way)
+    check(AimTask(point(HEAD), axis, seen, point(HAND)), motion, atol=1e-5)
+
+
 def test_posture_where_it_is_met(motion):
     places = np.array([HEAD, SPINE])
     check(PostureTask(COLUMNS, places, motion.rotations[:, places]), motion)

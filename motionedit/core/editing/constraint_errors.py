@@ -49,7 +49,11 @@ def errors_of(
     joint = constraint.effector.joint
     place, turn = effector_positions(poses, constraint.effector)[span], poses.rotations[span, joint]
     if constraint.kind == "aim":
-        return ConstraintErrors(targets.first, None, _off_aim(constraint, targets, place, turn))
+        at = targets.positions
+        if constraint.aim_base is not None and at is not None:
+            base = constraint.aim_base
+            at = poses.positions[span, base] + rot.rotate(poses.rotations[span, base], at)
+        return ConstraintErrors(targets.first, None, _off_aim(constraint, place if at is None else at, place, turn))
     if constraint.base is not None:
         inverse = rot.conjugate(poses.rotations[span, constraint.base])
         place = rot.rotate(inverse, place - poses.positions[span, constraint.base])
@@ -68,9 +72,9 @@ def _distance(constraint: Constraint, targets: Targets, path: FloatArray) -> Flo
     return distance
 
 
-def _off_aim(constraint: Constraint, targets: Targets, place: FloatArray, turn: FloatArray) -> FloatArray:
+def _off_aim(constraint: Constraint, at: FloatArray, place: FloatArray, turn: FloatArray) -> FloatArray:
     look = rot.rotate(turn, constraint.axis)
-    way = (place if targets.positions is None else targets.positions) - place
+    way = at - place
     across = np.linalg.norm(rot.cross(look, way), axis=1)
     angle: FloatArray = np.arctan2(across, np.sum(look * way, axis=1))
     return angle

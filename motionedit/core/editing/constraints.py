@@ -95,6 +95,11 @@ class Constraint:
         """Whether turning the effector's own joint moves the task."""
         return self.kind in {"orientation", "pose", "aim"} or bool(np.any(self.effector.offset))
 
+    @property
+    def aim_base(self) -> int | None:
+        """The joint in whose frame an aim's targets are: the one that is looked at, or that of `base`."""
+        return self.base if self.target is None else self.target
+
     def active(self, frames: int) -> tuple[int, int]:
         """Return the first and last frame at which the constraint is active."""
         return active_interval(self.points, ease_in=self.ease_in, ease_out=self.ease_out, frames=frames)
@@ -124,17 +129,13 @@ def reach_of(constraint: Constraint, skeleton: Skeleton, *, frames: int, body: f
         return Reach(frozenset(constraint.joints), root=False, first=first, last=last)
     if constraint.kind == "com":
         return Reach(body, root=True, first=first, last=last)
-    moved = moved_by(skeleton, constraint.effector.joint, itself=constraint.turns_itself)
-    if constraint.base is not None:
-        moved = moved | moved_by(skeleton, constraint.base, itself=True)
+    joint, base = constraint.effector.joint, constraint.aim_base
+    moved = moved_by(skeleton, joint, itself=constraint.turns_itself)
+    if base is not None:
         # What moves both alike moves neither against the other.
-        both = moved_by(skeleton, constraint.effector.joint, itself=False) & moved_by(
-            skeleton, constraint.base, itself=False
-        )
-        moved = moved & ~both
-    if constraint.target is not None:
-        moved = moved | moved_by(skeleton, constraint.target, itself=False)
-    root = constraint.base is None and constraint.kind != "orientation"
+        both = moved_by(skeleton, joint, itself=False) & moved_by(skeleton, base, itself=False)
+        moved = (moved | moved_by(skeleton, base, itself=constraint.target is None)) & ~both
+    root = base is None and constraint.kind != "orientation"
     return Reach(frozenset(map(int, np.flatnonzero(moved))), root, first, last)
 
 
@@ -171,38 +172,42 @@ def _seen(constraint: Constraint, poses: WorldPoses) -> tuple[FloatArray, FloatA
     return rot.rotate(inverse, path - poses.positions[:, constraint.base]), rot.multiply(inverse, turns)
 
 
-def aim_targets(
-    constraint: Constraint, poses: WorldPoses, places: FloatArray | None, *, curve: Literal["time", "index"]
-) -> Targets:
-    """Return the points in the world that an aim looks at, eased from where it looks in the input.
+def aim_targets(constraint: Constraint, poses: WorldPoses, *, curve: Literal["time", "index"]) -> Targets:
+    """Return the points that an aim looks at, eased from where it looks in the input.
+
+    They are in the frame of the constraint's `aim_base` where it has one, and so follow it, else in the world. What
+    looks at a joint looks at that frame's origin.
 
     Parameters
     ----------
     poses : WorldPoses
         The input's.
-    places : shape (F, 3) or None
-        Where the joint that is looked at is; None: the points give positions.
     """
     first, last = constraint.active(len(poses.positions))
     origin = effector_positions(poses, constraint.effector)
     look = rot.rotate(poses.rotations[:, constraint.effector.joint], constraint.axis)
-    eases = {"ease_in": constraint.ease_in, "ease_out": constraint.ease_out}
-    if places is not None:
-        if not constraint.points:
-            return Targets(first, last, places)
-        reach = np.linalg.norm(places - origin, axis=1, keepdims=True)
-        gaze = origin + reach * look
-        share = _share(constraint, len(origin), first, last)
-        return Targets(first, last, (gaze + share[:, None] * (places - gaze))[first : last + 1])
+    base, measure = constraint.aim_base, constraint.measure
+    if base is not None:
+        inverse = rot.conjugate(poses.rotations[:, base])
+        origin, look = rot.rotate(inverse, origin - poses.positions[:, base]), rot.rotate(inverse, look)
+    else:
+        origin, look = origin @ measure.T, look @ measure.T
+    if constraint.target is not None:
+        gaze = origin + np.linalg.norm(origin, axis=1, keepdims=True) * look
+        positions = (gaze * (1.0 - _share(constraint, len(origin), first, last))[:, None])[first : last + 1]
+        return Targets(first, last, positions)
     given = next(point.position for point in constraint.points if point.position is not None)
-    reach = np.linalg.norm(given - origin @ constraint.measure.T, axis=1, keepdims=True)
-    path = (origin + reach * look) @ constraint.measure.T
-    _, positions = position_targets(path, constraint.points, curve=curve, **eases)
-    return Targets(first, last, positions @ constraint.measure)
+    gaze = origin + np.linalg.norm(given - origin, axis=1, keepdims=True) * look
+    _, positions = position_targets(
+        gaze, constraint.points, ease_in=constraint.ease_in, ease_out=constraint.ease_out, curve=curve
+    )
+    return Targets(first, last, positions if base is not None else positions @ measure)
 
 
 def _share(constraint: Constraint, frames: int, first: int, last: int) -> FloatArray:
-    """Return how far an aim is eased in at each frame, 0 to 1, with a continuous slope."""
+    """Return how far an aim is eased in at each frame, 0 to 1, with a continuous slope; no points: all the way."""
+    if not constraint.points:
+        return np.ones(frames)
     start, stop = constraint.points[0].start, constraint.points[-1].stop
     f = np.arange(frames, dtype=np.float64)
     rise = np.ones(frames) if start <= first else np.clip((f - first) / (start - first), 0.0, 1.0)
@@ -237,7 +242,10 @@ def task_of(
         return CenterOfMassTask(columns, recruited, masses, positions, constraint.measure, constraint.axes)
     point = Point(columns, constraint.effector, recruited)
     if constraint.kind == "aim":
-        return AimTask(point, constraint.axis, positions, None)
+        looked_at = None
+        if constraint.aim_base is not None:
+            looked_at = Point(columns, Effector(constraint.aim_base, np.zeros(3)), recruited)
+        return AimTask(point, constraint.axis, positions, looked_at)
     base = None
     if constraint.base is not None:
         base = Point(columns, Effector(constraint.base, np.zeros(3)), recruited)

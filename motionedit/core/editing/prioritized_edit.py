@@ -221,7 +221,7 @@ class _Run:
     poses: WorldPoses
 
     def targets(self, current: WorldPoses | None) -> list[Targets]:
-        """Return all targets; `current` is the edited motion so far, for supports and what is looked at."""
+        """Return all targets; `current` is the edited motion so far, for supports."""
         curve = self.settings.curve
         fixed: dict[int, Targets] = {
             i: targets_of(c, self.poses, curve=curve)
@@ -236,9 +236,7 @@ class _Run:
                 support = self._support(constraint, fixed, current)
                 result.append(com_targets(constraint, self.poses, self.body.masses, support=support, curve=curve))
             elif constraint.kind == "aim":
-                seen = self.poses if current is None else current
-                places = None if constraint.target is None else seen.positions[:, constraint.target]
-                result.append(aim_targets(constraint, self.poses, places, curve=curve))
+                result.append(aim_targets(constraint, self.poses, curve=curve))
             else:
                 result.append(Targets(*constraint.active(len(self.motion))))
         return result

@@ -220,16 +220,13 @@ def rotation_targets(
     targets = rotations.copy()
     if not points:
         return first, targets
-    before: FloatArray | None = rotations if first < points[0].start else None
-    since = first
+    before, since = rotations, first
     for point in points:
         source = _source(point, rotations)
-        if before is not None:
-            _blend(targets, before, source, since, point.start)
+        _blend(targets, before, source, since, point.start)
         targets[point.span] = source[point.span]
         before, since = source, point.stop
-    if before is not None:
-        _blend(targets, before, rotations, since, last)
+    _blend(targets, before, rotations, since, last)
     return first, targets[first : last + 1]
 
 

@@ -205,18 +205,21 @@ class CenterOfMassTask:
 
 @dataclass(frozen=True, eq=False)
 class AimTask:
-    """A direction fixed in a joint, unit (3,), looks at targets (F, 3) in the world, or at another joint."""
+    """A direction fixed in a joint, unit (3,), looks at targets (F, 3) in the world, or in the frame of a base joint.
+
+    A base without targets is looked at itself.
+    """
 
     point: Point
     axis: FloatArray
     targets: FloatArray | None
-    target: Point | None
+    base: Point | None
 
     def evaluate(self, poses: WorldPoses, local: FloatArray, frames: IntArray) -> tuple[FloatArray, FloatArray]:
         """Return the turn from d to the target's direction, and (I - d d^T) w + d x (dp_e - dp_t) / r, as `Task`."""
         del local
         d = rot.rotate(poses.rotations[:, self.point.effector.joint], self.axis)
-        at = self.targets[frames] if self.target is None and self.targets is not None else self._place(poses)
+        at, moved = self._place(poses, frames)
         way = at - self.point.position(poses)
         distance = np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 1e-9)
         t = way / distance
@@ -229,15 +232,22 @@ class AimTask:
         J = self.point.rotation_rows(poses)
         J = J - d[:, :, None] * (d[:, None, :] @ J)
         swing = self.point.position_rows(poses)
-        if self.target is not None:
-            swing = swing - self.target.position_rows(poses)
+        if moved is not None:
+            swing = swing - moved
         J = J + rot.skew(d) @ swing / distance[..., None]
         return METRES_PER_RADIAN * angle * side, METRES_PER_RADIAN * J
 
-    def _place(self, poses: WorldPoses) -> FloatArray:
-        if self.target is None:
-            raise ValueError("an aim needs targets or a target")
-        return self.target.position(poses)
+    def _place(self, poses: WorldPoses, frames: IntArray) -> tuple[FloatArray, FloatArray | None]:
+        """Return what is looked at, p_b + R_b t, and its rows, dp_b - [R_b t]x w_b; None where it stands still."""
+        if self.base is None:
+            if self.targets is None:
+                raise ValueError("an aim needs targets or a base")
+            return self.targets[frames], None
+        at, rows = self.base.position(poses), self.base.position_rows(poses)
+        if self.targets is None:
+            return at, rows
+        arm = rot.rotate(poses.rotations[:, self.base.effector.joint], self.targets[frames])
+        return at + arm, rows - rot.skew(arm) @ self.base.rotation_rows(poses)
 
 
 def _square_to(d: FloatArray) -> FloatArray:
