@@ -183,7 +183,7 @@ def edit_by_priorities(
         motion=state.motion,
         touched=touched,
         moved=moved,
-        errors=run.errors(state.motion),
+        errors=run.errors(state),
         iterations=iterations,
         converged=state.converged,
         ranks=state.ranks,
@@ -207,6 +207,7 @@ class _Solved:
     iterations: IntArray
     converged: BoolArray
     ranks: IntArray
+    targets: list[Targets]
 
 
 @dataclass(frozen=True, eq=False)
@@ -285,7 +286,7 @@ class _Run:
             there = [levels.index(p) for p in order_of_layers([self.constraints[i].priority for i in members])]
             ranks[frames[:, None], there] = solution.ranks
         motion = Motion(start.skeleton, rotations, translations, start.frame_time)
-        return _Solved(motion, iterations, converged, ranks)
+        return _Solved(motion, iterations, converged, ranks, targets)
 
     def _problem(
         self,
@@ -370,17 +371,15 @@ class _Run:
             there = [levels.index(p) for p in order_of_layers([self.constraints[i].priority for i in members])]
             ranks[frame, there] = solution.ranks[0]
             before = frame
-        return _Solved(
-            Motion(motion.skeleton, rotations, translations, motion.frame_time), iterations, converged, ranks
-        )
+        edited = Motion(motion.skeleton, rotations, translations, motion.frame_time)
+        return _Solved(edited, iterations, converged, ranks, list(targets))
 
-    def errors(self, motion: Motion) -> tuple[ConstraintErrors, ...]:
-        """Return what is left of every constraint, measured by forward kinematics on the result."""
-        poses = forward(motion)
-        targets = self.targets(poses)
+    def errors(self, solved: _Solved) -> tuple[ConstraintErrors, ...]:
+        """Return what is left of every constraint, against the targets of the last pass, by forward kinematics."""
+        poses = forward(solved.motion)
         return tuple(
-            errors_of(c, t, poses, motion, masses=self.body.masses, reference=self.motion)
-            for c, t in zip(self.constraints, targets, strict=True)
+            errors_of(c, t, poses, solved.motion, masses=self.body.masses, reference=self.motion)
+            for c, t in zip(self.constraints, solved.targets, strict=True)
         )
 
 
