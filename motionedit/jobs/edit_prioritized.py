@@ -35,11 +35,16 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from motionedit.core.bvh import Clip
+    from motionedit.core.editing.constraints import Constraint
     from motionedit.jobs.batch import BatchResult, ClipTask, RunOptions
     from motionedit.jobs.prioritized_body import SizedClip
     from motionedit.jobs.prioritized_constraints import ClipConstraint
     from motionedit.spec.edit_prioritized import EditPrioritizedSpec
     from motionedit.spec.load import LoadedSpec
+
+# Kinds of constraints that keep an effector in place, and how far (metres at leg length 0.85 m) is a visible way.
+_HOLDS = frozenset({"position", "pose"})
+_LOOSE = 0.01
 
 
 def run(
@@ -125,7 +130,7 @@ class _Edit:
             _content(clip, motion, edit, facts.travel) if changed else unedited_bytes(clip),
             {"message": result.message, **about},
             result.status,
-            (*sized.warnings, *breaches, *result.warnings),
+            (*sized.warnings, *breaches, *_loose_feet(sized, asked, about["metrics"]), *result.warnings),
             motion=motion if changed else None,
             details=(*layer_lines(asked, edit.recruits, sized.body.hinges, facts), *breaches),
         )
@@ -136,6 +141,20 @@ class _Edit:
         shift = center_of_mass(after, sized.masses) - center_of_mass(sized.facts.poses, sized.masses)
         metrics["com_shift_max"] = float(np.linalg.norm(shift, axis=1).max())
         return {"unit": None if unit is None else unit.name, "metrics": metrics}
+
+
+def _loose_feet(sized: SizedClip, constraints: Sequence[Constraint], metrics: dict[str, Any]) -> list[str]:
+    """Return a warning where planted feet were dragged along and no constraint is about them: it is easily forgotten.
+
+    With the root recruited and nothing to hold it, the cheapest way to raise a hand is to raise the whole body.
+    """
+    facts, drift = sized.facts, metrics["foot_drift_max"]
+    ankles = {leg.ankle for leg in facts.anatomy.legs or ()}
+    skeleton = facts.clip.motion.skeleton
+    held = any(ankles & set(map(int, skeleton.chain(c.effector.joint))) for c in constraints if c.kind in _HOLDS)
+    if held or drift is None or drift * sized.scale < _LOOSE:
+        return []
+    return [f"planted feet move by up to {drift:.3g}, and no constraint holds them"]
 
 
 def _in_clip_units(before: Motion, edit: PrioritizedEdit, sized: SizedClip) -> Motion:

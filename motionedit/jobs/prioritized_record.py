@@ -56,7 +56,7 @@ class _Measured:
 
     @property
     def worst(self) -> int:
-        return self.first + int(np.argmax(self.excess))
+        return self.first + _first_worst(self.excess)
 
     @property
     def missed(self) -> bool:
@@ -122,8 +122,11 @@ def _measured(each: ClipConstraint, errors: ConstraintErrors, scale: float) -> _
         for values, limit in ((lengths, each.tolerance), (angles, each.angle_tolerance))
         if values is not None
     ]
-    excess = np.round(np.max(over, axis=0), _DIGITS)
-    return _Measured(each, errors.first, lengths, angles, excess)
+    return _Measured(each, errors.first, lengths, angles, np.max(over, axis=0))
+
+
+def _first_worst(excess: FloatArray) -> int:
+    return int(np.argmax(np.round(excess, _DIGITS)))
 
 
 def _verdict(
@@ -230,6 +233,6 @@ def _missed_by(one: _Measured) -> str:
         (one.angles, each.angle_tolerance, "turned {:.4g} degrees from its goal", " degrees"),
     ):
         if values is not None and values.max() > limit:
-            parts.append(f"{words.format(values.max())} at frame {one.first + int(np.argmax(values))}")
+            parts.append(f"{words.format(values.max())} at frame {one.first + _first_worst(values / limit)}")
             limits.append(f"{limit:.3g}{unit}")
     return f"{each.constraint.name}: {' and '.join(parts)} (tolerance {', '.join(limits)})"

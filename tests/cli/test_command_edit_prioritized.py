@@ -3,7 +3,9 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
+from lab import effector_path
 
 EDIT = "edit-prioritized"
 
@@ -126,13 +128,14 @@ def test_a_joint_that_every_clip_lacks_is_the_specs_fault_said_once(run, clip, t
     )
 
 
-def test_constraints_are_refused_by_place_until_they_work(run, clip, tmp_path):
+def test_a_constraint_edits_a_chain_that_is_no_human(run, clip, tmp_path):
     clip("a.bvh")
     (tmp_path / "s.yaml").write_text(SPEC + CONSTRAINT)
     result = run(EDIT, "a.bvh", "-s", "s.yaml", "-o", "out")
-    assert result.exit_code == 2
-    assert result.stderr.startswith("motionedit: error: s.yaml:3: constraints.0: not supported yet")
-    assert not Path("out").exists()
+    assert result.exit_code == 0
+    assert "no legs found" in result.stderr
+    before, after = (effector_path(Path(path), "LeftArm")[3] for path in ("a.bvh", "out/a.bvh"))
+    np.testing.assert_allclose(after - before, [1, 0, 0], atol=1e-4)
 
 
 def test_a_dry_run_prints_and_writes_nothing(edit, clip, tmp_path):
