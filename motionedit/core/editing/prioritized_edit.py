@@ -130,7 +130,9 @@ def recruit(
     turnable = {j for j, axes in enumerate(skeleton.rotation_axes) if len(axes) in {1, 3}}
     massive = _body_joints(body, motion) & turnable
     asked = [recruits_of(c, skeleton, travel=body.travel, body=frozenset(massive)) for c in constraints]
-    asked = [Recruits(frozenset(each.joints & turnable), each.root) for each in asked]
+    # A root without position channels has no translation that could be moved.
+    travels = body.travel in skeleton.translated
+    asked = [Recruits(frozenset(each.joints & turnable), each.root and travels) for each in asked]
     reaches = [reach_of(c, skeleton, frames=frames, body=frozenset(massive)) for c in constraints]
     priorities = [c.priority for c in constraints]
     if rule == "expand":
