@@ -25,6 +25,7 @@ FAR_OFF = 10.0
 # Errors over tolerance are told apart to this: below it is rounding, and the worst frame would be any.
 _DIGITS = 6
 _OUT_OF_REACH = "out of reach of the joints it recruits"
+_FILTERED = "the low-pass on the root moved it (smoothing: paper)"
 
 
 @dataclass(frozen=True)
@@ -139,7 +140,10 @@ def _verdict(
     rivals = _rivals(i, measured, edit)
     above = [other for other in rivals if other.each.constraint.priority > one.each.constraint.priority]
     names = [other.each.constraint.name for other in above if not other.is_missed(one.worst)]
-    if above:
+    if isinstance(settings.smoothing, PaperFilter) and settings.smoothing.count == 1:
+        # No solve came after the filter, so nobody's priority is to blame.
+        reason, names = _FILTERED, []
+    elif above:
         levels = order_of_layers([other.each.constraint.priority for other in above])
         which = f"priority {levels[0]}" if len(levels) == 1 else f"priorities {', '.join(map(str, levels))}"
         reason = f"{which} above left no freedom"
@@ -177,7 +181,7 @@ def _reason(
     if beside:
         return f"shared by weight with {beside[0].each.constraint.name}, of the same priority"
     if isinstance(settings.smoothing, PaperFilter) and settings.smoothing.count:
-        return "the low-pass on the root moved it (smoothing: paper)"
+        return _FILTERED
     if not edit.converged[one.first : one.last + 1][one.excess > 1.0].any():
         return "the iterations ran out"
     return _OUT_OF_REACH

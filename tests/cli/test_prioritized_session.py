@@ -10,7 +10,8 @@ from lab import effector_path, joint_positions
 from motionedit.core import rotations as rot
 from motionedit.core.bvh import new_bytes, read_clip
 from motionedit.core.kinematics import forward
-from motionedit.core.motion import Motion, scaled
+from motionedit.core.motion import Motion, motion_from_channels, scaled
+from motionedit.core.skeleton import EndSite, Skeleton
 from motionedit.jobs.clip_facts import facts_of
 
 DATA = Path(__file__).resolve().parents[2] / "data"
@@ -526,3 +527,61 @@ def test_edited_angles_stay_continuous(edit):
     steps = np.abs(np.diff(np.array(rows(done.path), dtype=float)[:, 3:], axis=0)).max()
     assert steps < 60.0
     assert np.isfinite(joint_positions(done.path)).all()
+
+
+def test_the_papers_filter_is_named_where_it_leaves_an_error(edit):
+    # One pass is the filter alone, without the solve that makes good what it moved.
+    done = edit([FEET_AS_CAPTURED, {**RAISED, "tolerance": 0.1}], smoothing={"method": "paper", "passes": 1})
+    missed = [line for line in done.warnings if "the low-pass on the root moved it (smoothing: paper)" in line]
+    assert missed
+
+
+def crane(path, *, root=(), arm=("Zrotation",), offset=10.0):
+    """Write a chain with a joint of one channel: Base, Boom, Hook, 12 frames."""
+    names, last = ("Base", "Boom", "Hook"), ("Zrotation", "Xrotation", "Yrotation")
+    offsets = np.array([[0.0, 0.0, 0.0], [0.0, offset, 0.0], [offset, 0.0, 0.0]])
+    site = EndSite(2, np.array([0.5 * offset, 0.0, 0.0]))
+    skeleton = Skeleton(names, np.array([-1, 0, 1]), offsets, (root, arm, last), (site,))
+    values = np.linspace(5.0, 30.0, 12)[:, None] * np.ones(skeleton.channel_count)
+    path.write_bytes(new_bytes(motion_from_channels(skeleton, values, frame_time=0.1)))
+    return path
+
+
+def test_a_joint_with_one_channel_turns_about_it_and_a_root_without_channels_stays(edit, tmp_path):
+    path = crane(tmp_path / "crane.bvh")
+    place = list(effector_path(path, "Hook")[6] + np.array([-0.5, 0.2, 3.0]))
+    lift = {
+        "name": "hook",
+        "type": "position",
+        "effector": {"end_site": "Hook"},
+        "points": [{"at": 6, "shift": [0, 1, 0]}],
+    }
+    done = edit([{**lift, "axes": ["x", "y"]}], clip=path, hinges="off")
+    assert done.record["status"] == "ok"
+    before, after = (effector_path(each, "Hook", end_site=True)[6] for each in (path, done.path))
+    np.testing.assert_allclose((after - before)[:2], [0, 1], atol=1e-4)
+    # The hook's own place lies on a circle about the boom: out of its plane nothing can be done.
+    out = edit([{**lift, "effector": "Hook", "points": [{"at": 6, "position": place}]}], clip=path)
+    assert out.record["status"] == "unreachable"
+    after = effector_path(out.path, "Hook")[6]
+    assert after[2] == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_listed_hinge_that_does_not_bend_stays_free_with_a_warning(edit):
+    done = edit([{**RAISED, "recruit": ARM_ONLY}], hinges=["LThumb", "LHipJoint"])
+    assert "warning: hinges: LHipJoint does not bend in the input" in done.result.stderr
+
+
+def test_a_body_without_length_is_refused(edit, tmp_path):
+    path = crane(tmp_path / "point.bvh", offset=0.0)
+    done = edit([{"type": "posture", "joints": ["Boom"]}], clip=path)
+    assert done.result.exit_code == 1
+    assert "every OFFSET is 0; a body without length cannot be edited" in done.errors[0]
+
+
+def test_balance_without_feet_keeps_to_the_path_of_the_center_of_mass(edit, tmp_path):
+    path = crane(tmp_path / "crane.bvh", arm=("Zrotation", "Xrotation", "Yrotation"))
+    done = edit([{"type": "com"}], clip=path)
+    assert "no feet found for the support of 'com'" in done.result.stderr
+    assert "the skeleton is not a human's" in done.result.stderr
+    assert done.path.read_bytes() == path.read_bytes()
