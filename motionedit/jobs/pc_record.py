@@ -60,10 +60,9 @@ def edit_record(
         },
     }
     missed = [_missed(each, edit.solution.reason) for each in records if each["status"] != "ok"]
-    message = "; ".join(missed) or None
-    if status == "far":
-        message = "met, but further from the database than its clips are from each other"
-    return EditRecord(status, message, (*missed, *_crowding(model, goals)), record)
+    far = [] if status != "far" else ["met, but far from what the database does: look at it before you use it"]
+    message = "; ".join((*missed, *far)) or None
+    return EditRecord(status, message, (*missed, *far, *_crowding(model, goals)), record)
 
 
 def largest_norm(model: MotionModel) -> float:

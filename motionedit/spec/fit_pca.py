@@ -9,7 +9,7 @@ from motionedit.spec.document import Document
 
 
 class FitPcaSpec(Document):
-    """Everything fit-pca is told; ``FitPcaSpec()`` holds the defaults of a run without a spec."""
+    """Everything fit-pca is told."""
 
     at_most_one = (("components", "explained_variance"),)
 

@@ -44,7 +44,7 @@ def schema_of_model(model: type[Document], name: str) -> dict[str, Any]:
 
 
 def _tidied(schema: Any) -> None:  # noqa: ANN401 (any part of a JSON document)
-    """Remove what pydantic adds and no editor needs: generated titles, and null defaults of absent keys."""
+    """Remove what pydantic adds and no editor needs, and show axes as one writes them."""
     if isinstance(schema, list):
         for item in schema:
             _tidied(item)
@@ -54,11 +54,13 @@ def _tidied(schema: Any) -> None:  # noqa: ANN401 (any part of a JSON document)
     schema.pop("discriminator", None)
     for key, value in schema.items():
         if key == "properties":
-            for item in value.values():
+            for key_name, item in value.items():
                 item.pop("title", None)
                 # Such a default stands for an absent key, which the description explains.
                 if item.get("default", ...) in (None, ""):
                     del item["default"]
+                if key_name == "axes" and "default" in item:
+                    item["default"] = ["xyz"[axis] for axis in item["default"]]
                 if {"type": "null"} in item.get("anyOf", []):
                     item["anyOf"].remove({"type": "null"})
             first = [name for name in _FIRST if name in value]
