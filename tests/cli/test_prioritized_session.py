@@ -379,6 +379,18 @@ def test_masses_given_in_kilograms_move_the_balance(edit):
     assert done.constraint("com")["status"] == "ok"
 
 
+def test_the_settings_of_the_spec_reach_the_solver(edit):
+    points = [{"at": 60, "shift": [0, 5, 0]}, {"at": 64, "shift": [0, 12, 0]}, {"at": 84}]
+    arm = hand(*points, recruit={"up_to": "LeftShoulder"})
+    settings = ({}, {"curve": "index"}, {"attraction": 0}, {"smoothing": {"passes": 0}}, {"smoothing": {"sigma": 5}})
+    files = {edit([arm], **keys).path.read_bytes() for keys in settings}
+    assert len(files) == len(settings)
+    lifted = hand({"at": 60, "shift": [0, 5, 0]}, frame="heading", recruit=ARM_ONLY)
+    for up, axis in (("y", 1), ("z", 2)):
+        moved = effector_path(edit([lifted], up=up).path, "LeftHand") - effector_path(WALK, "LeftHand")
+        np.testing.assert_allclose(moved[60], 5.0 * np.eye(3)[axis], atol=1e-3)
+
+
 def test_the_papers_smoothing_and_curve_are_there(edit):
     constraints = [{**RAISED, "recruit": ARM_ONLY}]
     done = edit(constraints, smoothing={"method": "paper"}, curve="index", attraction=0.5)
@@ -508,11 +520,12 @@ def test_a_rest_pose_in_front_keeps_its_text(edit, tmp_path):
     )
     path = tmp_path / "rest.bvh"
     path.write_bytes(new_bytes(longer))
-    early = hand({"hold": [6, 12], "shift": [0, 8, 0]}, recruit=ARM_ONLY)
-    done = edit([FEET_AS_CAPTURED, early], clip=path, defaults={"ease_in": 4, "ease_out": 4})
+    early = hand({"during": [1, 12], "shift": [0, 8, 0]}, recruit=ARM_ONLY)
+    done = edit([FEET_AS_CAPTURED, early], clip=path, defaults={"ease_in": 0, "ease_out": 4})
     assert done.record["status"] == "ok"
+    # The edit begins at once after the rest pose; smoothing it over time must not reach back into that.
     assert rows(done.path)[0] == rows(path)[0]
-    assert rows(done.path)[6] != rows(path)[6]
+    assert rows(done.path)[1] != rows(path)[1]
 
 
 @pytest.mark.filterwarnings("ignore:Importing PyGLM:PendingDeprecationWarning")  # bvhio's own affair
@@ -547,8 +560,9 @@ def crane(path, *, root=(), arm=("Zrotation",), offset=10.0):
     return path
 
 
-def test_a_joint_with_one_channel_turns_about_it_and_a_root_without_channels_stays(edit, tmp_path):
-    path = crane(tmp_path / "crane.bvh")
+@pytest.mark.parametrize("root", [(), ("Yposition",)])
+def test_a_joint_with_one_channel_turns_about_it_and_a_root_without_all_channels_stays(edit, tmp_path, root):
+    path = crane(tmp_path / "crane.bvh", root=root)
     place = list(effector_path(path, "Hook")[6] + np.array([-0.5, 0.2, 3.0]))
     lift = {
         "name": "hook",

@@ -130,8 +130,8 @@ def recruit(
     turnable = {j for j, axes in enumerate(skeleton.rotation_axes) if len(axes) in {1, 3}}
     massive = _body_joints(body, motion) & turnable
     asked = [recruits_of(c, skeleton, travel=body.travel, body=frozenset(massive)) for c in constraints]
-    # A root without position channels has no translation that could be moved.
-    travels = body.travel in skeleton.translated
+    # A root without all its position channels has no translation that could be moved freely.
+    travels = len(skeleton.position_axes[body.travel]) == 3
     asked = [Recruits(frozenset(each.joints & turnable), each.root and travels) for each in asked]
     reaches = [reach_of(c, skeleton, frames=frames, body=frozenset(massive)) for c in constraints]
     priorities = [c.priority for c in constraints]
