@@ -511,21 +511,21 @@ def test_a_leg_of_an_odd_length_questions_the_unit(edit):
 
 def test_a_rest_pose_in_front_keeps_its_text(edit, tmp_path):
     motion = read_clip(WALK).motion
-    rest = np.tile(rot.IDENTITY, (1, len(motion.skeleton), 1))
+    rest = np.tile(rot.IDENTITY, (2, len(motion.skeleton), 1))
     longer = Motion(
         motion.skeleton,
         np.concatenate((rest, motion.rotations)),
-        np.concatenate((motion.translations[:1], motion.translations)),
+        np.concatenate((motion.translations[[0, 0]], motion.translations)),
         motion.frame_time,
     )
     path = tmp_path / "rest.bvh"
     path.write_bytes(new_bytes(longer))
-    early = hand({"during": [1, 12], "shift": [0, 8, 0]}, recruit=ARM_ONLY)
+    early = hand({"during": [2, 12], "shift": [0, 8, 0]}, recruit=ARM_ONLY)
     done = edit([FEET_AS_CAPTURED, early], clip=path, defaults={"ease_in": 0, "ease_out": 4})
     assert done.record["status"] == "ok"
     # The edit begins at once after the rest pose; smoothing it over time must not reach back into that.
-    assert rows(done.path)[0] == rows(path)[0]
-    assert rows(done.path)[1] != rows(path)[1]
+    assert rows(done.path)[:2] == rows(path)[:2]
+    assert rows(done.path)[2] != rows(path)[2]
 
 
 @pytest.mark.filterwarnings("ignore:Importing PyGLM:PendingDeprecationWarning")  # bvhio's own affair
