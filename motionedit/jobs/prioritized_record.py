@@ -180,7 +180,7 @@ def _reason(
         return f"{min(movers, key=lambda mover: mover.priority).name} moves it by joints it does not recruit"
     if beside:
         return f"shared by weight with {beside[0].each.constraint.name}, of the same priority"
-    if isinstance(settings.smoothing, PaperFilter) and settings.smoothing.count:
+    if isinstance(settings.smoothing, PaperFilter) and settings.smoothing.count and edit.recruits[i].root:
         return _FILTERED
     if not edit.converged[one.first : one.last + 1][one.excess > 1.0].any():
         return "the iterations ran out"

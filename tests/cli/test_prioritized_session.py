@@ -547,6 +547,12 @@ def test_the_papers_filter_is_named_where_it_leaves_an_error(edit):
     done = edit([FEET_AS_CAPTURED, {**RAISED, "tolerance": 0.1}], smoothing={"method": "paper", "passes": 1})
     missed = [line for line in done.warnings if "the low-pass on the root moved it (smoothing: paper)" in line]
     assert missed
+    held = edit(
+        [hand({"at": 70, "shift": [40, 20, 90]}, recruit={"joints": ["Hips.position"]})], smoothing={"method": "paper"}
+    )
+    assert "the low-pass on the root moved it" in held.record["message"]
+    far = hand({"hold": [66, 72], "shift": [0, 300, 0]}, recruit=ARM_ONLY)
+    assert edit([far], smoothing={"method": "paper"}).record["status"] == "unreachable"
 
 
 def crane(path, *, root=(), arm=("Zrotation",), offset=10.0):
