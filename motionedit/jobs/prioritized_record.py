@@ -111,8 +111,16 @@ def edit_record(
         },
         "frames_solved": len(solved),
         "frames_not_converged": int(np.count_nonzero(~edit.converged)),
+        "frames": {"iterations": edit.iterations, "stopped": _why_each_stopped(edit)},
     }
     return EditRecord(status, "; ".join(missed) or None, tuple(warnings), record)
+
+
+def _why_each_stopped(edit: PrioritizedEdit) -> list[str]:
+    """Return for every frame ``untouched``, ``converged``, or ``iterations`` where these ran out."""
+    solved = np.where(edit.converged, "converged", "iterations")
+    why: list[str] = np.where(edit.iterations > 0, solved, "untouched").tolist()
+    return why
 
 
 def _measured(each: ClipConstraint, errors: ConstraintErrors, scale: float) -> _Measured:
@@ -206,6 +214,7 @@ def _record(one: _Measured, status: str, gave_way_to: list[str], recruited: list
         "first_frame": one.first,
         "last_frame": one.last,
         "recruited": recruited,
+        "frames": {"error": lengths, "error_angle": angles},
     }
 
 
@@ -223,6 +232,7 @@ def _layers(edit: PrioritizedEdit, measured: Sequence[_Measured]) -> list[dict[s
                 "priority": priority,
                 "constraints": [one.each.constraint.name for one in members],
                 "rank": {"min": int(ranks.min()), "max": int(ranks.max())},
+                "frames": {"rank": edit.ranks[:, level]},
             }
         )
     return layers

@@ -290,6 +290,18 @@ def test_what_only_rides_warns_where_it_is_far_off_and_does_not_fail_strict(edit
     assert edit([RAISED, {**riding, "tolerance": 0.5}], "--strict").result.exit_code == 3
 
 
+def test_the_report_tells_every_frame(edit):
+    record = edit([FEET_AS_CAPTURED, RAISED]).record
+    hand = record["constraints"][-1]
+    assert len(hand["frames"]["error"]) == hand["last_frame"] - hand["first_frame"] + 1
+    assert max(hand["frames"]["error"]) == pytest.approx(hand["error_max"])
+    assert len(record["frames"]["iterations"]) == len(record["frames"]["stopped"]) == 145
+    assert set(record["frames"]["stopped"]) <= {"converged", "iterations", "untouched"}
+    for layer in record["layers"]:
+        assert len(layer["frames"]["rank"]) == 145
+        assert max(layer["frames"]["rank"]) == layer["rank"]["max"]
+
+
 def test_the_report_has_the_fixed_keys(edit):
     done = edit([FEET_AS_CAPTURED, RAISED, {"type": "com", "priority": 2}], unit="cm")
     clip = done.record
