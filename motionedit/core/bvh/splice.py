@@ -12,7 +12,7 @@ import numpy as np
 from motionedit.core.bvh.format import format_fixed, place
 from motionedit.core.bvh.rows import BLOCK_BYTES
 from motionedit.core.bvh.scan import words_between
-from motionedit.core.bvh.write import check_finite, decimals_of_edits, head_bytes
+from motionedit.core.bvh.write import check_finite, decimals_of_edits, head_bytes, rows_text
 from motionedit.core.euler import joint_pieces, piece_angles, runs
 from motionedit.core.motion import position_columns
 
@@ -130,10 +130,27 @@ def _splice_rows(stream: BytesIO, clip: Clip, edit: _Edit, first: int, at: int) 
             chosen = slice(block, min(block + step, stop))
             begin, end = int(rows.starts[first + block]), int(rows.stops[first + chosen.stop - 1])
             stream.write(data[at:begin])
+            if edit.cells[chosen].all() and _is_plain(clip, (begin, end), edit.columns, chosen.stop - block):
+                stream.write(memoryview(rows_text(edit.values[chosen], decimals=decimals, ending=b"\n"))[:-1])
+                at = end
+                continue
             cells, values = edit.cells[chosen].reshape(-1), edit.values[chosen].reshape(-1)
             stream.write(_spliced(clip, (begin, end), edit.columns, values, cells, decimals=decimals).data)
             at = end
     return at
+
+
+def _is_plain(clip: Clip, span: tuple[int, int], columns: IntArray, count: int) -> bool:
+    """Return whether so many whole rows are written, and nothing stands between values but single blanks and LF.
+
+    Such rows need no splicing: all their bytes are new. N values have N - 1 gaps, so as many blanks leave no room for
+    a second one anywhere.
+    """
+    width = clip.motion.skeleton.channel_count
+    text = clip.text.data[span[0] : span[1]]
+    if len(columns) < width or any(blank in text for blank in (b"\t", b"\r", b"\v", b"\f")):
+        return False
+    return text.count(b" ") + text.count(b"\n") == count * width - 1
 
 
 def _write_tail(stream: BytesIO, clip: Clip, at: int) -> None:

@@ -39,7 +39,7 @@ def resampled_bytes(clip: Clip, motion: Motion) -> bytes:
     data, header = clip.text.data, clip.text.header
     head = head_bytes(clip, frames=len(values), frame_time=motion.frame_time)
     ending = _line_ending(data, header.rows_start)
-    return head + ending + _rows_text(values, decimals=decimals_of_edits(clip), ending=ending)
+    return head + ending + rows_text(values, decimals=decimals_of_edits(clip), ending=ending)
 
 
 def new_bytes(motion: Motion, *, decimals: int = FEWEST_DECIMALS) -> bytes:
@@ -55,7 +55,7 @@ def new_bytes(motion: Motion, *, decimals: int = FEWEST_DECIMALS) -> bytes:
     lines = [*hierarchy_lines(skeleton, decimals), "MOTION", f"Frames: {len(values)}"]
     lines.append(f"Frame Time: {plain_number(motion.frame_time)}")
     head = "".join(f"{line}\n" for line in lines).encode()
-    return head + _rows_text(values, decimals=decimals, ending=b"\n")
+    return head + rows_text(values, decimals=decimals, ending=b"\n")
 
 
 def plain_number(value: float) -> str:
@@ -91,7 +91,7 @@ def head_bytes(clip: Clip, *, frames: int, frame_time: float | None = None) -> b
     return data[:start] + count + data[stop:time_start] + time + data[time_stop : header.rows_start]
 
 
-def _rows_text(values: FloatArray, *, decimals: int, ending: bytes) -> bytes:
+def rows_text(values: FloatArray, *, decimals: int, ending: bytes) -> bytes:
     """Return rows of values with a blank between two and the line ending after each."""
     ends = np.full(values.shape[1], ord(" "), np.uint8)
     ends[-1] = ord("\n")
