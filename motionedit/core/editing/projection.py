@@ -10,7 +10,14 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
 from motionedit.core.motion import Motion
-from motionedit.core.pca.coordinates import pose_rows, relabelled, rotation_tracks, rotations_in_space
+from motionedit.core.pca.coordinates import (
+    pose_rows,
+    relabelled,
+    rotation_tracks,
+    rotations_in_space,
+    rotations_of_tracks,
+    split_rows,
+)
 from motionedit.core.timeline.alignment import Alignment, TravelPath, travel_path, with_travel_path
 from motionedit.core.timeline.resample import resample
 
@@ -103,10 +110,10 @@ def _rows(
 def with_rows(projection: Projection, space: PoseSpace, rows: FloatArray) -> Motion:
     """Return the clip with rows Theta, shape (F, n), in place of its own; all else as it was."""
     motion, alignment = projection.motion, projection.alignment
-    positions = alignment.undo(rows[:, :3] / (space.scale * space.root_weight))
-    q = rot.multiply(space.references, rot.exp(rows[:, 3:].reshape(len(rows), -1, 3)))
+    travel, tracks = split_rows(rows, space)
+    q = rotations_of_tracks(tracks, space.references)
     rotations = motion.rotations.copy()
     rotations[:, projection.joints[1:]] = q[:, 1:]
     turned = Motion(motion.skeleton, frozen(rotations), motion.translations, motion.frame_time)
-    path = TravelPath(positions, rot.multiply(rot.conjugate(alignment.rotation), q[:, 0]))
+    path = TravelPath(alignment.undo(travel), rot.multiply(rot.conjugate(alignment.rotation), q[:, 0]))
     return with_travel_path(turned, projection.travel, path)
