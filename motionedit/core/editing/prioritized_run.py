@@ -155,6 +155,7 @@ class Run:
         root = reference.translations[frames, place] if pull_root and reference.translations.shape[1] else None
         return Problem(
             columns=columns,
+            moves_root=any(self.recruits[i].root for i in members),
             layers=tuple(layers),
             hinges=_hinge_columns(self.body.hinges, joints),
             reference_rotations=reference.rotations[frames],

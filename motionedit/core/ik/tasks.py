@@ -85,7 +85,7 @@ class Point:
         """Return d(position)/d(unknowns), shape (N, 3, n): e_a x (p_e - p_j), the identity for the root."""
         offset = bool(np.any(self.effector.offset))
         levers = self.position(poses)[:, None] - poses.positions[:, self.columns.joints]
-        return lever_rows(levers, self._mask(itself=offset), root=self._root())
+        return lever_rows(levers, self._mask(itself=offset), root=self.moves_with_root)
 
     def rotation_rows(self, poses: WorldPoses) -> FloatArray:
         """Return d(world-axis increment of the rotation)/d(unknowns), shape (N, 3, n): the identity per ancestor."""
@@ -100,7 +100,9 @@ class Point:
         mask: BoolArray = moved[self.columns.joints] & self.recruited.joints
         return mask
 
-    def _root(self) -> bool:
+    @property
+    def moves_with_root(self) -> bool:
+        """Whether the root's translation is recruited and moves it."""
         return self.recruited.root and self.columns.root in self.columns.skeleton.chain(self.effector.joint)
 
 

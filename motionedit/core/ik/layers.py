@@ -1,0 +1,116 @@
+"""One pass down the priority layers: the step of eq. (1) and its recursion, and the rows that lower layers may not use."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from motionedit.core.arrays import BoolArray, FloatArray, IntArray
+
+# Singular values below this share of the layer's largest (or of `_LEAST_SCALE`) are no freedom.
+RANK_TOLERANCE = 1e-4
+_LEAST_SCALE = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class Descent:
+    """What a pass came to in N frames of n unknowns.
+
+    Attributes
+    ----------
+    tasks : shape (N, n)
+        The step that the layers ask for.
+    home : shape (N, n)
+        z - Q^T (Q z): what is left of the pull to the reference.
+    Q : shape (N, k, n)
+        Orthonormal rows of all layers; rows of zeros where a direction was not kept.
+    free : shape (N, n)
+        Unknowns that took part; the others are hinges on their limits.
+    ranks : shape (N, L)
+        Independent rows of each layer.
+    """
+
+    tasks: FloatArray
+    home: FloatArray
+    Q: FloatArray
+    free: BoolArray
+    ranks: IntArray
+
+    def replace_rows(self, rows: IntArray, other: Descent) -> None:
+        """Put the frames of another descent in place of some of these."""
+        for mine, new in (
+            (self.tasks, other.tasks),
+            (self.home, other.home),
+            (self.Q, other.Q),
+            (self.free, other.free),
+            (self.ranks, other.ranks),
+        ):
+            mine[rows] = new
+
+
+def descend(
+    evaluated: Sequence[tuple[FloatArray, FloatArray]],
+    z: FloatArray,
+    *,
+    fixed: FloatArray,
+    free: BoolArray,
+    largest_errors: Sequence[float],
+) -> Descent:
+    """Return one pass down the layers.
+
+    Parameters
+    ----------
+    evaluated : L pairs of shapes (N, k) and (N, k, n)
+        Weighted errors and rows, the most important layer first.
+    z : shape (N, n)
+        The pull to the reference.
+    fixed : shape (N, n)
+        The step of unknowns that are not free.
+    free : shape (N, n)
+    largest_errors : L numbers
+        b_max of each layer: a longer error is clamped to it, all rows by one factor.
+    """
+    tasks = fixed.copy()
+    ranks = np.zeros((len(z), len(evaluated)), dtype=np.intp)
+    Q = np.zeros((len(z), 0, z.shape[1]))
+    for level, ((e, J), largest) in enumerate(zip(evaluated, largest_errors, strict=True)):
+        size = np.linalg.norm(e, axis=1, keepdims=True)
+        clamped = e * np.minimum(1.0, largest / np.maximum(size, largest))
+        b = clamped - (J @ tasks[..., None])[..., 0]
+        A = J * free[:, None]
+        A = A - (A @ np.swapaxes(Q, 1, 2)) @ Q
+        change, rows, ranks[:, level] = _damped_step(A, b, largest)
+        tasks += change
+        Q = np.concatenate((Q, rows), axis=1)
+    return Descent(tasks, off_layers(Q, z * free), Q, free, ranks)
+
+
+def off_layers(Q: FloatArray, v: FloatArray) -> FloatArray:
+    """Return v - Q^T (Q v), shape (N, n): what no layer sees."""
+    rest: FloatArray = v - (np.swapaxes(Q, 1, 2) @ (Q @ v[..., None]))[..., 0]
+    return rest
+
+
+def _damped_step(A: FloatArray, b: FloatArray, largest: float) -> tuple[FloatArray, FloatArray, IntArray]:
+    """Return the layer's step (N, n), its orthonormal rows (N, k, n; zero where not kept), and its rank (N,).
+
+    lambda follows the smallest kept singular value and the length of b: none where the step is safe.
+    """
+    values, vectors = np.linalg.eigh(A @ np.swapaxes(A, 1, 2))
+    s = np.sqrt(np.maximum(values, 0.0))
+    kept = s > RANK_TOLERANCE * np.maximum(s[:, -1:], _LEAST_SCALE)
+    safe = np.where(kept, s, 1.0)
+    rows = np.where(kept, 1.0 / safe, 0.0)[..., None] * (np.swapaxes(vectors, 1, 2) @ A)
+    least = np.where(kept, s, np.inf).min(axis=1)
+    d = np.linalg.norm(b, axis=1) / largest
+    damping = np.where(least <= 0.5 * d, 0.5 * d, np.sqrt(np.maximum(least * (d - least), 0.0)))
+    damping = np.where((least <= d) & np.isfinite(least), damping, 0.0)
+    along = (np.swapaxes(vectors, 1, 2) @ b[..., None])[..., 0]
+    weights = np.where(kept, along * safe / (safe**2 + damping[:, None] ** 2), 0.0)
+    step: FloatArray = (weights[:, None] @ rows)[:, 0]
+    return step, rows, np.count_nonzero(kept, axis=1)
