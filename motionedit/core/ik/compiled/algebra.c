@@ -12,10 +12,16 @@
 /* A pivot below this share of the trace is rounding. */
 #define ROUNDING 1e-13
 #define SWEEPS 30
-/* A layer of more rows is always factored by eigenvectors. */
-#define MOST_ROWS 256
 
-size_t factor_scratch(int k) { return (size_t)(3 * k * k + 4 * k); }
+/* L, the diagonal, and the most that any of the three solutions takes. */
+size_t factor_scratch(int k) { return (size_t)(3 * k * k + 5 * k); }
+
+/* out += factor a */
+static void add_multiple(double *restrict out, double factor, const double *restrict a, int n)
+{
+    for (int i = 0; i < n; i++)
+        out[i] += factor * a[i];
+}
 
 /* lambda by the smallest kept singular value s and the length d of b over b_max: none where the step is safe. */
 static double damping(double s, double d)
@@ -53,41 +59,46 @@ static void cholesky_solve(const double *L, int k, double *x)
     }
 }
 
-/* Cholesky with pivots: rows order[0..k) of S are L L^T, L k x rank, lower; returns the rank. */
-static int pivoted_cholesky(double *S, int k, double least, int *order)
+/* Cholesky with pivots, a column of M = L^T at a time, and the inverse of the pivots' triangle beside it.
+
+   S: shape (k, k), full. Out: L, shape (rank, k), with S = L^T L on what is kept; B, shape (rank, k), lower triangular,
+   with Q = B A~ orthonormal, the rows of A~ in the order of pivots; order: the pivots, then the other rows; inverse:
+   |B|^2. Returns the rank: pivots up to `least` are 0. */
+static int pivoted_cholesky(
+    const double *S, int k, double least, double *L, double *B, int *order, double *diagonal, double *inverse)
 {
     for (int i = 0; i < k; i++)
-        order[i] = i;
+        order[i] = i, diagonal[i] = S[i * k + i];
+    *inverse = 0.0;
     for (int c = 0; c < k; c++) {
         int best = c;
         for (int i = c + 1; i < k; i++)
-            if (S[i * k + i] > S[best * k + best])
+            if (diagonal[order[i]] > diagonal[order[best]])
                 best = i;
-        if (S[best * k + best] <= least)
+        const int row = order[best];
+        order[best] = order[c], order[c] = row;
+        double *l = L + c * k, *own = B + c * k;
+        memcpy(l, S + row * k, sizeof *l * k);
+        memset(own, 0, sizeof *own * c);
+        for (int p = 0; p < c; p++) {
+            const double factor = L[p * k + row];
+            add_multiple(l, -factor, L + p * k, k);
+            add_multiple(own, -factor, B + p * k, p + 1);
+        }
+        if (l[row] <= least)
             return c;
-        if (best != c) {
-            const int other = order[c];
-            order[c] = order[best], order[best] = other;
-            for (int p = 0; p < k; p++) {
-                const double t = S[c * k + p];
-                S[c * k + p] = S[best * k + p], S[best * k + p] = t;
-            }
-            for (int p = 0; p < k; p++) {
-                const double t = S[p * k + c];
-                S[p * k + c] = S[p * k + best], S[p * k + best] = t;
-            }
+        const double pivot = sqrt(l[row]), scale = 1.0 / pivot;
+        own[c] = 1.0;
+        for (int i = 0; i <= c; i++) {
+            own[i] *= scale;
+            *inverse += own[i] * own[i];
         }
-        const double pivot = sqrt(S[c * k + c]), inverse = 1.0 / pivot;
-        S[c * k + c] = pivot;
-        for (int i = c + 1; i < k; i++)
-            S[i * k + c] *= inverse;
-        for (int i = c + 1; i < k; i++) {
-            const double l = S[i * k + c];
-            for (int j = c + 1; j <= i; j++) {
-                S[i * k + j] -= l * S[j * k + c];
-                S[j * k + i] = S[i * k + j];
-            }
+        for (int i = 0; i < k; i++) {
+            l[i] *= scale;
+            diagonal[i] -= l[i] * l[i];
         }
+        for (int p = 0; p < c; p++)
+            l[order[p]] = 0.0;
     }
     return k;
 }
@@ -218,110 +229,105 @@ static void jacobi(double *S, int k, double *U)
 }
 
 /* Where the rank is in doubt: the singular triples one by one, as the reference has them. */
-static int factor_by_eigenvectors(
-    double *S, int k, const double *b, double d, double *M, double *B, double *c, double *U)
+static void factor_by_eigenvectors(Layer *layer, double *S, const double *b, double d, double *c, double *U)
 {
+    const int k = layer->rows;
     double largest = 0.0, least = INFINITY;
-    int rank = 0;
     jacobi(S, k, U);
     for (int i = 0; i < k; i++)
         largest = fmax(largest, sqrt(fmax(S[i * k + i], 0.0)));
+    const double tolerance = RANK_TOLERANCE * fmax(largest, LEAST_SCALE);
     for (int i = 0; i < k; i++) {
         const double s = sqrt(fmax(S[i * k + i], 0.0));
-        if (s > RANK_TOLERANCE * fmax(largest, LEAST_SCALE)) {
+        if (s > tolerance)
             least = fmin(least, s);
-            rank++;
-        }
+        layer->order[i] = i;
     }
     const double lambda = damping(least, d);
-    for (int i = 0, q = 0; i < k; i++) {
+    layer->rank = layer->triangular = 0;
+    for (int i = 0; i < k; i++) {
         const double s = sqrt(fmax(S[i * k + i], 0.0));
-        if (!(s > RANK_TOLERANCE * fmax(largest, LEAST_SCALE)))
+        if (!(s > tolerance))
             continue;
         double along = 0.0;
         for (int r = 0; r < k; r++) {
-            M[r * rank + q] = U[r * k + i] * s;
-            B[q * k + r] = U[r * k + i] / s;
+            layer->B[layer->rank * k + r] = U[r * k + i] / s;
             along += U[r * k + i] * b[r];
         }
-        c[q++] = along * s / (s * s + lambda * lambda);
+        c[layer->rank++] = along * s / (s * s + lambda * lambda);
     }
-    return rank;
 }
 
-/* c <- (M^T M + lambda^2)^-1 M^T b, with the least singular value found first where `wants` says that it may matter. */
-static void damped_solve(
-    const double *M, int k, int rank, const double *b, double d, int wants, double *c, double *scratch)
+/* c = M^+ b without damping. Rows that are no pivots are W times the pivots' rows, and least squares asks for
+   (I + W^T W)^-1 (b_1 + W^T b_2) there: a system of as many unknowns as there are such rows. */
+static void solve_undamped(
+    const double *L, const double *B, int k, int rank, const int *order, const double *b, double *c, double *scratch)
+{
+    const int rest = k - rank;
+    double *W = scratch, *N = W + rest * rank, *t = N + rest * rest, *y = t + rest;
+    for (int q = 0; q < rank; q++)
+        y[q] = b[order[q]];
+    for (int i = 0; i < rest; i++) {
+        double *w = W + i * rank;
+        memset(w, 0, sizeof *w * rank);
+        for (int q = 0; q < rank; q++)
+            add_multiple(w, L[q * k + order[rank + i]], B + q * k, q + 1);
+        add_multiple(y, b[order[rank + i]], w, rank);
+    }
+    if (rest > 0) {
+        for (int i = 0; i < rest; i++) {
+            for (int j = 0; j <= i; j++)
+                N[i * rest + j] = dot_product(W + i * rank, W + j * rank, rank);
+            N[i * rest + i] += 1.0;
+            t[i] = dot_product(W + i * rank, y, rank);
+        }
+        cholesky(N, rest);
+        cholesky_solve(N, rest, t);
+        for (int i = 0; i < rest; i++)
+            add_multiple(y, -t[i], W + i * rank, rank);
+    }
+    for (int q = 0; q < rank; q++)
+        c[q] = dot_product(B + q * k, y, q + 1);
+}
+
+/* c = (M^T M + lambda^2)^-1 M^T b, with lambda by the least singular value. */
+static void solve_damped(const double *L, int k, int rank, const double *b, double d, double *c, double *scratch)
 {
     double *N = scratch, *copy = scratch + rank * rank, *diagonal = copy + rank * rank, *off = diagonal + rank;
     for (int i = 0; i < rank; i++) {
-        for (int j = 0; j <= i; j++) {
-            double sum = 0.0;
-            for (int r = 0; r < k; r++)
-                sum += M[r * rank + i] * M[r * rank + j];
-            N[i * rank + j] = N[j * rank + i] = sum;
-        }
-        c[i] = 0.0;
-        for (int r = 0; r < k; r++)
-            c[i] += M[r * rank + i] * b[r];
+        for (int j = 0; j <= i; j++)
+            N[i * rank + j] = N[j * rank + i] = dot_product(L + i * k, L + j * k, k);
+        c[i] = dot_product(L + i * k, b, k);
     }
-    if (wants) {
-        memcpy(copy, N, sizeof(double) * rank * rank);
-        const double lambda = damping(sqrt(fmax(least_eigenvalue(copy, rank, diagonal, off), 0.0)), d);
-        for (int i = 0; i < rank; i++)
-            N[i * rank + i] += lambda * lambda;
-    }
+    memcpy(copy, N, sizeof *N * rank * rank);
+    const double lambda = damping(sqrt(fmax(least_eigenvalue(copy, rank, diagonal, off), 0.0)), d);
+    for (int i = 0; i < rank; i++)
+        N[i * rank + i] += lambda * lambda;
     cholesky(N, rank);
     cholesky_solve(N, rank, c);
 }
 
-/* Factor a layer; returns its rank.
+/* Factor a layer.
 
-   S: shape (k, k), A~ A~^T, destroyed. b: shape (k,). largest: b_max. Out: M (k, rank) with S = M M^T on what is kept,
-   B (rank, k) with Q = B A~ orthonormal, and c (rank,), the layer's step dm = Q^T c in rank space. */
-int damped_factor(
-    double *S, int k, const double *b, double largest, double *M, double *B, double *c, double *scratch)
+   S: shape (k, k), A~ A~^T, destroyed. b: shape (k,). largest: b_max. Out: the layer's rank and B, with Q = B A~
+   orthonormal, and c, shape (rank,): its step is dm = Q^T c. scratch: `factor_scratch(k)` numbers. */
+void damped_factor(Layer *layer, double *S, const double *b, double largest, double *c, double *scratch)
 {
-    double *original = scratch, trace = 0.0, length = 0.0, inverse = 0.0;
-    double *rest = scratch + k * k;
-    int order[MOST_ROWS];
+    const int k = layer->rows;
+    double *L = scratch, *diagonal = L + k * k, *rest = diagonal + k, trace = 0.0, inverse;
     for (int i = 0; i < k; i++)
-        trace += S[i * k + i], length += b[i] * b[i];
-    length = sqrt(length);
-    const double d = length / largest, tolerance = RANK_TOLERANCE * fmax(sqrt(trace), LEAST_SCALE);
-    if (k > MOST_ROWS)
-        return factor_by_eigenvectors(S, k, b, d, M, B, c, rest);
-    memcpy(original, S, sizeof(double) * k * k);
-    const int rank = pivoted_cholesky(S, k, ROUNDING * trace, order);
-    /* B: the inverse of the pivots' triangle; 1 / |B| is a lower bound of the least singular value. */
-    memset(B, 0, sizeof(double) * rank * k);
-    for (int q = 0; q < rank; q++) {
-        const double pivot = 1.0 / S[q * k + q];
-        for (int p = 0; p < q; p++) {
-            double sum = 0.0;
-            for (int i = p; i < q; i++)
-                sum += S[q * k + i] * B[i * k + order[p]];
-            B[q * k + order[p]] = -pivot * sum;
-            inverse += B[q * k + order[p]] * B[q * k + order[p]];
-        }
-        B[q * k + order[q]] = pivot;
-        inverse += pivot * pivot;
-    }
+        trace += S[i * k + i];
+    const double d = sqrt(dot_product(b, b, k)) / largest;
+    const int rank = pivoted_cholesky(S, k, ROUNDING * trace, L, layer->B, layer->order, diagonal, &inverse);
+    /* 1 / |B| is a lower bound of the least singular value, the root of the trace an upper one of the largest. */
     const double bound = inverse > 0.0 ? 1.0 / sqrt(inverse) : 0.0;
-    if (rank == 0 || bound <= tolerance)
-        return factor_by_eigenvectors(original, k, b, d, M, B, c, rest);
-    for (int i = 0; i < k; i++)
-        for (int q = 0; q < rank; q++)
-            M[order[i] * rank + q] = q <= i ? S[i * k + q] : 0.0;
-    if (length == 0.0)
-        memset(c, 0, sizeof(double) * rank);
-    else if (rank == k && bound > d)
-        for (int q = 0; q < rank; q++) {
-            c[q] = 0.0;
-            for (int r = 0; r < k; r++)
-                c[q] += B[q * k + r] * b[r];
-        }
+    if (bound <= RANK_TOLERANCE * fmax(sqrt(trace), LEAST_SCALE)) {
+        factor_by_eigenvectors(layer, S, b, d, c, rest);
+        return;
+    }
+    layer->rank = rank, layer->triangular = 1;
+    if (bound > d)
+        solve_undamped(L, layer->B, k, rank, layer->order, b, c, rest);
     else
-        damped_solve(M, k, rank, b, d, bound <= d, c, rest);
-    return rank;
+        solve_damped(L, k, rank, b, d, c, rest);
 }

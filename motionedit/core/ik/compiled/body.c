@@ -6,37 +6,39 @@
 #include <math.h>
 #include <string.h>
 
-static const double IDENTITY[4] = {1.0, 0.0, 0.0, 0.0};
+static const double IDENTITY[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
 
-static const double *parent_rotation(const Frame *frame, int64_t node)
+const double *parent_rotation(const Frame *frame, int64_t node)
 {
     const int64_t parent = frame->problem->node[node].parent;
-    return parent < 0 ? IDENTITY : frame->rotations + 4 * parent;
+    return parent < 0 ? IDENTITY : frame->rotations + 9 * parent;
 }
 
-/* The centre of all mass at and below each node, and its share of the whole. */
+/* The moment (share times centre) of all mass at and below each node, and its share of the whole. */
 static void weigh(Frame *frame)
 {
     const Problem *problem = frame->problem;
-    double *centers = frame->mass_centers, *shares = frame->mass_shares;
+    double *moments = frame->mass_moments, *shares = frame->mass_shares;
     for (int64_t i = 0; i < problem->nodes; i++) {
         const Node *node = problem->node + i;
         double arm[3];
-        q_rotate(frame->rotations + 4 * i, node->center, arm);
         shares[i] = node->share;
+        if (node->share == 0.0) {
+            memset(moments + 3 * i, 0, 3 * sizeof *moments);
+            continue;
+        }
+        turned(frame->rotations + 9 * i, node->center, arm);
         for (int a = 0; a < 3; a++)
-            centers[3 * i + a] = node->share * (frame->positions[3 * i + a] + arm[a]);
+            moments[3 * i + a] = node->share * (frame->positions[3 * i + a] + arm[a]);
     }
     memset(frame->center, 0, sizeof frame->center);
     for (int64_t i = problem->nodes - 1; i >= 0; i--) {
         const int64_t parent = problem->node[i].parent;
         if (parent >= 0) {
             shares[parent] += shares[i];
-            add_scaled(centers + 3 * parent, 1.0, centers + 3 * i);
+            add_scaled(moments + 3 * parent, 1.0, moments + 3 * i);
         } else
-            add_scaled(frame->center, 1.0, centers + 3 * i);
-        for (int a = 0; a < 3 && shares[i] > 0.0; a++)
-            centers[3 * i + a] /= shares[i];
+            add_scaled(frame->center, 1.0, moments + 3 * i);
     }
 }
 
@@ -50,16 +52,26 @@ void forward(Frame *frame, const double *local, const double *translations)
         double *position = frame->positions + 3 * i;
         if (node->parent < 0) {
             memcpy(position, offset, 3 * sizeof *position);
-            memcpy(frame->rotations + 4 * i, local + 4 * node->joint, 4 * sizeof *local);
+            matrix_of(local + 4 * node->joint, frame->rotations + 9 * i);
             continue;
         }
-        const double *above = frame->rotations + 4 * node->parent;
-        q_rotate(above, offset, position);
+        const double *above = frame->rotations + 9 * node->parent;
+        double own[9];
+        turned(above, offset, position);
         add_scaled(position, 1.0, frame->positions + 3 * node->parent);
-        q_multiply(above, local + 4 * node->joint, frame->rotations + 4 * i);
+        matrix_of(local + 4 * node->joint, own);
+        matrix_product(above, own, frame->rotations + 9 * i);
     }
     if (frame->weighs)
         weigh(frame);
+}
+
+/* A node's world rotation as a quaternion: what orientations are compared by. */
+void world_quaternion(const Frame *frame, const double *local, int64_t node, double *q)
+{
+    memcpy(q, local + 4 * frame->problem->node[node].joint, 4 * sizeof *q);
+    for (int64_t i = frame->problem->node[node].parent; i >= 0; i = frame->problem->node[i].parent)
+        q_multiply(local + 4 * frame->problem->node[i].joint, q, q);
 }
 
 /* z: the world-axis increments that bring the columns back to the reference, hinges along their axes alone. */
@@ -76,7 +88,7 @@ void attraction(Frame *frame, const double *local, const double *translations, i
         q_conjugate(local + 4 * joint, inverse);
         q_multiply(reference + 4 * joint, inverse, turn);
         q_log(turn, turn);
-        q_rotate(parent_rotation(frame, i), turn, z);
+        turned(parent_rotation(frame, i), turn, z);
         if (h >= 0) {
             const double *axis = frame->hinge_axes + 3 * h, along = dot(z, axis);
             for (int a = 0; a < 3; a++)
@@ -88,7 +100,7 @@ void attraction(Frame *frame, const double *local, const double *translations, i
         const double *goal = problem->reference_root + 3 * at;
         const double *place = translations + 3 * problem->node[problem->root].translation;
         const double back[3] = {goal[0] - place[0], goal[1] - place[1], goal[2] - place[2]};
-        q_rotate(parent_rotation(frame, problem->root), back, root);
+        turned(parent_rotation(frame, problem->root), back, root);
     }
 }
 
@@ -100,7 +112,7 @@ void hinge_state(Frame *frame, const double *local)
         const Hinge *hinge = problem->hinge + h;
         const int64_t i = problem->column_node[hinge->column];
         double v[4];
-        q_rotate(parent_rotation(frame, i), hinge->axis, frame->hinge_axes + 3 * h);
+        turned(parent_rotation(frame, i), hinge->axis, frame->hinge_axes + 3 * h);
         q_log(local + 4 * problem->node[i].joint, v);
         frame->hinge_angles[h] = dot(v, hinge->axis);
     }
@@ -116,7 +128,7 @@ double apply_step(Frame *frame, double *local, double *translations)
             continue;
         const int64_t i = problem->column_node[k];
         double v[3], turn[4], *q = local + 4 * problem->node[i].joint;
-        q_rotate_back(parent_rotation(frame, i), w, v);
+        turned_back(parent_rotation(frame, i), w, v);
         q_exp(v, turn);
         q_multiply(turn, q, q);
         const double size = 1.0 / sqrt(q[0] * q[0] + dot(q + 1, q + 1));
@@ -127,7 +139,7 @@ double apply_step(Frame *frame, double *local, double *translations)
         return 0.0;
     const double *shift = frame->step + 3 * problem->columns;
     double own[3];
-    q_rotate_back(parent_rotation(frame, problem->root), shift, own);
+    turned_back(parent_rotation(frame, problem->root), shift, own);
     add_scaled(translations + 3 * problem->node[problem->root].translation, 1.0, own);
     return sqrt(dot(shift, shift));
 }

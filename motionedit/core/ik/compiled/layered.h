@@ -9,7 +9,7 @@
    so G = J J^T needs sums over common columns of the levers l_j alone, J v and J^T y one sweep each. Everything else
    happens among the R rows, and in the space of the orthonormal rows Q that they span ("rank space"):
 
-       C_l = J_l Q_above^T,   S_l = G_ll - C_l C_l^T = M_l M_l^T,   Q_l = B_l (J_l - C_l Q_above)
+       C_l = J_l Q_above^T,   S_l = G_ll - C_l C_l^T,   Q_l = B_l (J_l - C_l Q_above)
 
    Lengths are metres at leg length 0.85 m, angles radians. Symbols: N frames, J joints, K columns (joints that turn),
    n = 3 K + 3 unknowns, T tasks, R rows, L layers, H hinges. */
@@ -79,7 +79,7 @@ typedef struct {
     int *columns;    /* shape (count,), growing */
     double *levers;  /* shape (count, 3) */
     double force[3][3], torque[3][3]; /* per row */
-    int has_force, has_torque;
+    int has_torque, plain; /* plain: the world's axes times one weight, and no torque */
 } Part;
 
 typedef struct {
@@ -96,28 +96,30 @@ typedef struct {
 /* One layer among the rows and in rank space. */
 typedef struct {
     int first_row, rows, first_rank, rank;
-    double *M; /* shape (rows, rank) */
-    double *B; /* shape (rank, rows) */
+    int triangular; /* row q of B has q + 1 numbers, else all */
+    int *order;     /* shape (rows,): B's columns are the layer's rows in this order */
+    double *B;      /* shape (rank, rows) */
 } Layer;
 
 /* A frame on its way; all arrays are a thread's own. */
 typedef struct {
     const Problem *problem;
-    double *positions, *rotations; /* world, shapes (nodes, 3), (nodes, 4) */
-    double *mass_centers, *mass_shares; /* of subtrees, shapes (nodes, 3), (nodes,) */
+    double *positions, *rotations;      /* world, shapes (nodes, 3), (nodes, 9) */
+    double *mass_moments, *mass_shares; /* of subtrees, shapes (nodes, 3), (nodes,) */
     double center[3];                   /* of the whole body */
     Pull *pulls;
     Shared *shared;
     int shared_count, weighs;
     int *column_hinge;      /* shape (K,): its hinge, or -1 */
-    uint8_t *recruits_hinge; /* shape (H, T): whether a task's rows feel it */
+    int *hinge_felt, *hinge_felt_count; /* shapes (H, R), (H,): the rows that feel it turn */
     double *hinge_axes, *hinge_angles, *hinge_rows; /* shapes (H, 3), (H,), (H, R) */
     uint8_t *hinge_free, *hinge_free_before;        /* shape (H,) */
     double *hinge_fixed;                            /* rad, shape (H,) */
     Layer *layers;
-    double *errors, *G, *G_free, *C;  /* shapes (R,), (R, R), (R, R), (R, R) */
+    double *errors, *G, *G_frozen, *C; /* shapes (R,), (R, R), (R, R), (R, R) */
+    const double *G_free;             /* G, or G_frozen where hinges are on their limits */
     double *c, *scratch_rank;         /* rank space, shape (R,) */
-    double *scratch_rows;             /* shape (2 R,) */
+    double *scratch_rows;             /* shape (3 R,) */
     double *algebra;                  /* scratch of the factorization */
     double *z, *home, *step, *fast;    /* shape (n,) */
     double *home_before, *step_before; /* shape (n,) */
@@ -126,6 +128,8 @@ typedef struct {
 } Frame;
 
 /* body.c: kinematics */
+const double *parent_rotation(const Frame *frame, int64_t node);
+void world_quaternion(const Frame *frame, const double *local, int64_t node, double *q);
 void forward(Frame *frame, const double *local, const double *translations);
 void attraction(Frame *frame, const double *local, const double *translations, int64_t at);
 void hinge_state(Frame *frame, const double *local);
@@ -136,6 +140,7 @@ void *take(char **memory, size_t *needed, size_t bytes);
 void lay_out_tasks(Frame *frame, char **memory, size_t *needed);
 void evaluate_tasks(Frame *frame, const double *local, int64_t at);
 void gram(Frame *frame);
+void add_hinge(const Frame *frame, int64_t h, double sign, double *G);
 void rows_times(const Frame *frame, const double *v, double *out);
 void add_rows_transposed(const Frame *frame, const double *y, double *out);
 
@@ -145,7 +150,19 @@ void into_rank_space(const Frame *frame, const double *Jv, double *Qv);
 void out_of_rank_space(const Frame *frame, double *q, double *y);
 
 /* algebra.c: small dense matrices, row-major */
-int damped_factor(double *S, int k, const double *b, double largest, double *M, double *B, double *c, double *scratch);
+void damped_factor(Layer *layer, double *S, const double *b, double largest, double *c, double *scratch);
+
+/* a . b; four sums at a time do not wait for each other. */
+static inline double dot_product(const double *a, const double *b, int n)
+{
+    double w = 0.0, x = 0.0, y = 0.0, z = 0.0;
+    int i = 0;
+    for (; i + 4 <= n; i += 4)
+        w += a[i] * b[i], x += a[i + 1] * b[i + 1], y += a[i + 2] * b[i + 2], z += a[i + 3] * b[i + 3];
+    for (; i < n; i++)
+        w += a[i] * b[i];
+    return (w + x) + (y + z);
+}
 size_t factor_scratch(int k);
 
 #define METRES_PER_RADIAN 0.3

@@ -8,29 +8,35 @@
 /* Metres: a layer's error is clamped to this much, all its rows by one factor. */
 #define LARGEST_ERROR 0.6
 
+/* q = B_l times numbers of the layer's rows, which are put into B's order first. */
+static void times_B(const Layer *layer, const double *rows, double *ordered, double *q)
+{
+    for (int s = 0; s < layer->rows; s++)
+        ordered[s] = rows[layer->order[s]];
+    for (int p = 0; p < layer->rank; p++)
+        q[p] = dot_product(layer->B + p * layer->rows, ordered, layer->triangular ? p + 1 : layer->rows);
+}
+
+/* Numbers of the layer's rows less what the layers above account for: rows - C_l q_above. */
+static void less_above(const Frame *frame, const Layer *layer, const double *rows, const double *above, double *rest)
+{
+    const double *C = frame->C + layer->first_row * frame->problem->rows;
+    memcpy(rest, rows, sizeof *rest * layer->rows);
+    for (int s = 0; s < layer->rows && layer->first_rank > 0; s++, C += frame->problem->rows)
+        rest[s] -= dot_product(C, above, layer->first_rank);
+}
+
 /* C_l, shape (rows, first_rank): what the rows of a layer have along the orthonormal rows Q of those above. */
 static void against_layers_above(Frame *frame, int l)
 {
     const int64_t R = frame->problem->rows;
     const Layer *layer = frame->layers + l;
     for (int r = layer->first_row; r < layer->first_row + layer->rows; r++) {
-        double *C = frame->C + r * R;
+        double *C = frame->C + r * R, *rest = frame->scratch_rows;
         for (int m = 0; m < l; m++) {
             const Layer *above = frame->layers + m;
-            double *rest = frame->scratch_rows;
-            for (int s = 0; s < above->rows; s++) {
-                const double *theirs = frame->C + (above->first_row + s) * R;
-                double sum = frame->G_free[r * R + above->first_row + s];
-                for (int q = 0; q < above->first_rank; q++)
-                    sum -= C[q] * theirs[q];
-                rest[s] = sum;
-            }
-            for (int q = 0; q < above->rank; q++) {
-                double sum = 0.0;
-                for (int s = 0; s < above->rows; s++)
-                    sum += above->B[q * above->rows + s] * rest[s];
-                C[above->first_rank + q] = sum;
-            }
+            less_above(frame, above, frame->G_free + r * R + above->first_row, C, rest);
+            times_B(above, rest, rest + R, C + above->first_rank);
         }
     }
 }
@@ -45,15 +51,12 @@ static void remaining_error(Frame *frame, const Layer *layer, double largest, do
         size += e[r] * e[r];
     size = sqrt(size);
     const double factor = size > largest ? largest / size : 1.0;
-    for (int r = 0; r < layer->rows; r++) {
-        const double *C = frame->C + (layer->first_row + r) * problem->rows;
+    for (int r = 0; r < layer->rows; r++)
         b[r] = factor * e[r];
-        for (int q = 0; q < layer->first_rank; q++)
-            b[r] -= C[q] * frame->c[q];
-        for (int64_t h = 0; h < problem->hinges; h++)
-            if (!frame->hinge_free[h])
-                b[r] -= frame->hinge_rows[h * problem->rows + layer->first_row + r] * frame->hinge_fixed[h];
-    }
+    less_above(frame, layer, b, frame->c, b);
+    for (int64_t h = 0; h < problem->hinges; h++)
+        for (int r = 0; r < layer->rows && !frame->hinge_free[h]; r++)
+            b[r] -= frame->hinge_rows[h * problem->rows + layer->first_row + r] * frame->hinge_fixed[h];
 }
 
 /* S = A~ A~^T = G_ll - C_l C_l^T, shape (rows, rows). */
@@ -64,8 +67,8 @@ static void layer_gram(const Frame *frame, const Layer *layer, double *S)
         for (int s = 0; s <= r; s++) {
             const double *mine = frame->C + (layer->first_row + r) * R, *theirs = frame->C + (layer->first_row + s) * R;
             double sum = frame->G_free[(layer->first_row + r) * R + layer->first_row + s];
-            for (int q = 0; q < layer->first_rank; q++)
-                sum -= mine[q] * theirs[q];
+            if (layer->first_rank > 0)
+                sum -= dot_product(mine, theirs, layer->first_rank);
             S[r * layer->rows + s] = S[s * layer->rows + r] = sum;
         }
 }
@@ -73,20 +76,18 @@ static void layer_gram(const Frame *frame, const Layer *layer, double *S)
 /* G without the hinges that are on their limits: a rank-one part less for each. */
 static void free_gram(Frame *frame)
 {
-    const Problem *problem = frame->problem;
-    const int64_t R = problem->rows;
-    memcpy(frame->G_free, frame->G, sizeof *frame->G * R * R);
-    for (int64_t h = 0; h < problem->hinges; h++) {
+    const int64_t R = frame->problem->rows;
+    frame->G_free = frame->G;
+    for (int64_t h = 0; h < frame->problem->hinges; h++) {
         if (frame->hinge_free[h])
             continue;
-        const double *rows = frame->hinge_rows + h * R;
-        for (int64_t r = 0; r < R; r++)
-            for (int64_t q = 0; q <= r; q++)
-                frame->G_free[r * R + q] -= rows[r] * rows[q];
+        if (frame->G_free == frame->G)
+            frame->G_free = memcpy(frame->G_frozen, frame->G, sizeof *frame->G * R * R);
+        add_hinge(frame, h, -1.0, frame->G_frozen);
     }
 }
 
-/* One pass: c, the steps of all layers in rank space, and for each layer its rank, M and B. */
+/* One pass: c, the steps of all layers in rank space, and for each layer its rank and B. */
 void descend(Frame *frame, double anneal)
 {
     double *S = frame->algebra, *b = S + frame->problem->rows * frame->problem->rows;
@@ -100,7 +101,7 @@ void descend(Frame *frame, double anneal)
         against_layers_above(frame, l);
         remaining_error(frame, layer, largest, b);
         layer_gram(frame, layer, S);
-        layer->rank = damped_factor(S, layer->rows, b, largest, layer->M, layer->B, frame->c + rank, scratch);
+        damped_factor(layer, S, b, largest, frame->c + rank, scratch);
         rank += layer->rank;
     }
 }
@@ -111,18 +112,8 @@ void into_rank_space(const Frame *frame, const double *Jv, double *Qv)
     for (int l = 0; l < frame->problem->layers; l++) {
         const Layer *layer = frame->layers + l;
         double *rest = frame->scratch_rows;
-        for (int s = 0; s < layer->rows; s++) {
-            const double *C = frame->C + (layer->first_row + s) * frame->problem->rows;
-            rest[s] = Jv[layer->first_row + s];
-            for (int q = 0; q < layer->first_rank; q++)
-                rest[s] -= C[q] * Qv[q];
-        }
-        for (int q = 0; q < layer->rank; q++) {
-            double sum = 0.0;
-            for (int s = 0; s < layer->rows; s++)
-                sum += layer->B[q * layer->rows + s] * rest[s];
-            Qv[layer->first_rank + q] = sum;
-        }
+        less_above(frame, layer, Jv + layer->first_row, Qv, rest);
+        times_B(layer, rest, rest + frame->problem->rows, Qv + layer->first_rank);
     }
 }
 
@@ -131,14 +122,15 @@ void out_of_rank_space(const Frame *frame, double *q, double *y)
 {
     for (int l = (int)frame->problem->layers - 1; l >= 0; l--) {
         const Layer *layer = frame->layers + l;
-        for (int s = 0; s < layer->rows; s++) {
+        double *own = y + layer->first_row;
+        memset(own, 0, sizeof *own * layer->rows);
+        for (int p = 0; p < layer->rank; p++)
+            for (int s = 0; s < (layer->triangular ? p + 1 : layer->rows); s++)
+                own[layer->order[s]] += layer->B[p * layer->rows + s] * q[layer->first_rank + p];
+        for (int s = 0; s < layer->rows && layer->first_rank > 0; s++) {
             const double *C = frame->C + (layer->first_row + s) * frame->problem->rows;
-            double sum = 0.0;
-            for (int p = 0; p < layer->rank; p++)
-                sum += layer->B[p * layer->rows + s] * q[layer->first_rank + p];
-            y[layer->first_row + s] = sum;
             for (int p = 0; p < layer->first_rank; p++)
-                q[p] -= C[p] * sum;
+                q[p] -= C[p] * own[s];
         }
     }
 }

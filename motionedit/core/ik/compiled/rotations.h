@@ -1,4 +1,5 @@
-/* Vectors (x, y, z) and unit quaternions (w, x, y, z), as in motionedit/core/rotations.py; angles in radians. */
+/* Vectors (x, y, z), unit quaternions (w, x, y, z) as in motionedit/core/rotations.py, and rotation matrices, row-major;
+   angles in radians. */
 
 #ifndef MOTIONEDIT_ROTATIONS_H
 #define MOTIONEDIT_ROTATIONS_H
@@ -34,23 +35,43 @@ static inline void q_conjugate(const double *q, double *out)
     out[0] = q[0], out[1] = -q[1], out[2] = -q[2], out[3] = -q[3];
 }
 
-/* v turned by q: v + 2 w (u x v) + 2 u x (u x v). */
-static inline void q_rotate(const double *q, const double *v, double *out)
+/* The matrix of a unit quaternion. */
+static inline void matrix_of(const double *q, double *R)
 {
-    double t[3], s[3];
-    cross(q + 1, v, t);
-    t[0] *= 2.0, t[1] *= 2.0, t[2] *= 2.0;
-    cross(q + 1, t, s);
-    for (int i = 0; i < 3; i++)
-        out[i] = v[i] + q[0] * t[i] + s[i];
+    const double w = q[0], x = q[1], y = q[2], z = q[3];
+    const double xx = x * x, yy = y * y, zz = z * z, xy = x * y, xz = x * z, yz = y * z, wx = w * x, wy = w * y, wz = w * z;
+    R[0] = 1.0 - 2.0 * (yy + zz), R[1] = 2.0 * (xy - wz), R[2] = 2.0 * (xz + wy);
+    R[3] = 2.0 * (xy + wz), R[4] = 1.0 - 2.0 * (xx + zz), R[5] = 2.0 * (yz - wx);
+    R[6] = 2.0 * (xz - wy), R[7] = 2.0 * (yz + wx), R[8] = 1.0 - 2.0 * (xx + yy);
 }
 
-/* v turned by the inverse of q. */
-static inline void q_rotate_back(const double *q, const double *v, double *out)
+/* out = A B */
+static inline void matrix_product(const double *A, const double *B, double *out)
 {
-    double inverse[4];
-    q_conjugate(q, inverse);
-    q_rotate(inverse, v, out);
+    for (int i = 0; i < 3; i++) {
+        const double a = A[3 * i], b = A[3 * i + 1], c = A[3 * i + 2];
+        out[3 * i] = a * B[0] + b * B[3] + c * B[6];
+        out[3 * i + 1] = a * B[1] + b * B[4] + c * B[7];
+        out[3 * i + 2] = a * B[2] + b * B[5] + c * B[8];
+    }
+}
+
+/* R v */
+static inline void turned(const double *R, const double *v, double *out)
+{
+    const double x = v[0], y = v[1], z = v[2];
+    out[0] = R[0] * x + R[1] * y + R[2] * z;
+    out[1] = R[3] * x + R[4] * y + R[5] * z;
+    out[2] = R[6] * x + R[7] * y + R[8] * z;
+}
+
+/* R^T v */
+static inline void turned_back(const double *R, const double *v, double *out)
+{
+    const double x = v[0], y = v[1], z = v[2];
+    out[0] = R[0] * x + R[3] * y + R[6] * z;
+    out[1] = R[1] * x + R[4] * y + R[7] * z;
+    out[2] = R[2] * x + R[5] * y + R[8] * z;
 }
 
 /* The quaternion of a rotation vector v, |v| <= 0.5: cos h and sin h / h by their series, exact to double precision. */

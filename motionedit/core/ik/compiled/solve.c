@@ -20,6 +20,8 @@
 #define LARGEST_TASK_SHARE 0.5
 #define LARGEST_FACTOR 3.0
 #define NO_CHANGE 1e-24
+/* Metres and radians: what is less is rounding. */
+#define AT_REST 1e-13
 
 static double length(const double *v, int64_t n)
 {
@@ -34,7 +36,7 @@ static int64_t unknowns(const Frame *frame) { return 3 * frame->problem->columns
 /* v <- v P, what no layer sees: v - Q^T (Q v). Hinges on their limits take no part. */
 static void off_layers(Frame *frame, double *v)
 {
-    double *y = frame->scratch_rows + frame->problem->rows;
+    double *y = frame->scratch_rows + 2 * frame->problem->rows;
     rows_times(frame, v, y);
     into_rank_space(frame, y, frame->scratch_rank);
     for (int64_t q = 0; q < frame->problem->rows; q++)
@@ -59,7 +61,7 @@ static void on_free_axes(const Frame *frame, double *v)
 static void compose_step(Frame *frame, double gain, const double *home, double *step)
 {
     const Problem *problem = frame->problem;
-    double *y = frame->scratch_rows + problem->rows;
+    double *y = frame->scratch_rows + 2 * problem->rows;
     memcpy(frame->scratch_rank, frame->c, sizeof *frame->c * problem->rows);
     out_of_rank_space(frame, frame->scratch_rank, y);
     for (int64_t i = 0; i < unknowns(frame); i++)
@@ -183,6 +185,20 @@ static int are_met(const Frame *frame)
     return 1;
 }
 
+/* Whether nothing is left to do: every layer met, the reference reached, to rounding, and hinges within limits. */
+static int is_at_rest(const Frame *frame)
+{
+    const Problem *problem = frame->problem;
+    if (length(frame->errors, problem->rows) > AT_REST || length(frame->z, unknowns(frame)) > AT_REST)
+        return 0;
+    for (int64_t h = 0; h < problem->hinges; h++) {
+        const double angle = frame->hinge_angles[h], *limits = problem->hinge[h].limits;
+        if (angle < limits[0] - ON_LIMIT || angle > limits[1] + ON_LIMIT)
+            return 0;
+    }
+    return 1;
+}
+
 static void solve_frame(Frame *frame, int64_t at)
 {
     const Problem *problem = frame->problem;
@@ -209,12 +225,17 @@ static void solve_frame(Frame *frame, int64_t at)
             gain *= GAIN_DECAY;
         attraction(frame, local, translations, at);
         gram(frame);
-        descend_within_limits(frame, gain, anneal);
-        const double task = task_length(frame);
-        accelerate(frame, gain, task);
-        double moved = bound_turns(frame);
-        remember(frame, task);
-        moved = fmax(moved, apply_step(frame, local, translations));
+        double moved = 0.0;
+        if (is_at_rest(frame)) /* for its ranks alone */
+            memset(frame->hinge_free, 1, problem->hinges), descend(frame, anneal);
+        else {
+            descend_within_limits(frame, gain, anneal);
+            const double task = task_length(frame);
+            accelerate(frame, gain, task);
+            moved = bound_turns(frame);
+            remember(frame, task);
+            moved = fmax(moved, apply_step(frame, local, translations));
+        }
         problem->iterations[at] = iteration + 1;
         for (int l = 0; l < problem->layers; l++)
             problem->ranks[at * problem->layers + l] = frame->layers[l].rank;
@@ -236,19 +257,20 @@ static size_t lay_out(Frame *frame, char *memory)
     size_t needed = 0;
     char **from = &memory;
 #define NUMBERS(count) take(from, &needed, sizeof(double) * (count))
-    frame->positions = NUMBERS(3 * nodes), frame->rotations = NUMBERS(4 * nodes);
-    frame->mass_centers = NUMBERS(3 * nodes), frame->mass_shares = NUMBERS(nodes);
+    frame->positions = NUMBERS(3 * nodes), frame->rotations = NUMBERS(9 * nodes);
+    frame->mass_moments = NUMBERS(3 * nodes), frame->mass_shares = NUMBERS(nodes);
     frame->hinge_axes = NUMBERS(3 * H), frame->hinge_angles = NUMBERS(H), frame->hinge_rows = NUMBERS(H * R);
     frame->hinge_fixed = NUMBERS(H);
-    frame->errors = NUMBERS(R), frame->G = NUMBERS(R * R), frame->G_free = NUMBERS(R * R), frame->C = NUMBERS(R * R);
-    frame->c = NUMBERS(R), frame->scratch_rows = NUMBERS(2 * R), frame->scratch_rank = NUMBERS(R);
+    frame->errors = NUMBERS(R), frame->G = NUMBERS(R * R), frame->G_frozen = NUMBERS(R * R), frame->C = NUMBERS(R * R);
+    frame->c = NUMBERS(R), frame->scratch_rows = NUMBERS(3 * R), frame->scratch_rank = NUMBERS(R);
     frame->algebra = NUMBERS(R * R + R + factor_scratch((int)R));
     frame->z = NUMBERS(n), frame->home = NUMBERS(n), frame->step = NUMBERS(n), frame->fast = NUMBERS(n);
     frame->home_before = NUMBERS(n), frame->step_before = NUMBERS(n);
     frame->hinge_free = take(from, &needed, H), frame->hinge_free_before = take(from, &needed, H);
     frame->column_hinge = take(from, &needed, sizeof(int) * problem->columns);
     frame->layers = take(from, &needed, sizeof(Layer) * problem->layers);
-    double *M = NUMBERS(R * R), *B = NUMBERS(R * R);
+    double *B = NUMBERS(R * R);
+    int *order = take(from, &needed, sizeof(int) * R);
 #undef NUMBERS
     if (memory != NULL) {
         memset(frame->c, 0, sizeof(double) * R), memset(frame->scratch_rank, 0, sizeof(double) * R);
@@ -259,7 +281,7 @@ static size_t lay_out(Frame *frame, char *memory)
         int row = 0, t = 0;
         for (int l = 0; l < problem->layers; l++) {
             Layer *layer = frame->layers + l;
-            *layer = (Layer){row, 0, 0, 0, M + row * R, B + row * R};
+            *layer = (Layer){row, 0, 0, 0, 0, order + row, B + row * R};
             for (; t < problem->tasks && problem->task[t].layer == l; t++)
                 row += (int)problem->task[t].rows;
             layer->rows = row - layer->first_row;

@@ -56,6 +56,16 @@ static int part_columns(const Frame *frame, const Task *task, int p, int *column
     return chain(frame->problem, task, p == 0 ? task->node : task->base, columns);
 }
 
+/* Whether a task's rows are the world's axes. */
+static int measures_plainly(const Task *task)
+{
+    int plain = task->rows == 3;
+    for (int r = 0; r < 3; r++)
+        for (int a = 0; a < 3; a++)
+            plain &= task->measure[r][a] == (r == a ? 1.0 : 0.0);
+    return plain;
+}
+
 static void lay_out_pull(Frame *frame, const Task *task, Pull *pull, char **memory, size_t *needed)
 {
     const int parts = task->base >= 0 ? 2 : 1;
@@ -71,8 +81,10 @@ static void lay_out_pull(Frame *frame, const Task *task, Pull *pull, char **memo
         memset(part, 0, sizeof *part);
         part->count = count, part->columns = columns, part->levers = levers;
         part->root = (int)(p == 0 ? task->root : task->base_root);
-        part->has_force = task->kind != ORIENTATION && task->kind != POSTURE;
         part->has_torque = task->kind != POSITION && task->kind != CENTER_OF_MASS;
+        part->plain = parts == 1 && !part->has_torque && measures_plainly(task);
+        for (int r = 0; r < 3 && part->plain; r++)
+            part->force[r][r] = task->weight;
     }
     if (pull != NULL)
         pull->parts = parts;
@@ -99,13 +111,31 @@ static int common(const Frame *frame, const Part *a, const Part *b, int *places)
     return count;
 }
 
+/* The rows that feel a hinge turn, growing. */
+static void list_felt(Frame *frame, int64_t h)
+{
+    const Problem *problem = frame->problem;
+    int *felt = frame->hinge_felt + h * problem->rows, count = 0;
+    for (int64_t t = 0; t < problem->tasks; t++) {
+        const Pull *pull = frame->pulls + t;
+        int feels = 0;
+        for (int p = 0; p < pull->parts; p++)
+            for (int i = 0; i < pull->part[p].count; i++)
+                feels |= frame->column_hinge[pull->part[p].columns[i]] == h;
+        for (int64_t r = 0; r < problem->task[t].rows && feels; r++)
+            felt[count++] = pull->first_row + (int)r;
+    }
+    frame->hinge_felt_count[h] = count;
+}
+
 /* Lay out what does not change from frame to frame. Called twice: to count the memory, and to fill it. */
 void lay_out_tasks(Frame *frame, char **memory, size_t *needed)
 {
     const Problem *problem = frame->problem;
     const int tasks = (int)problem->tasks;
     frame->pulls = take(memory, needed, sizeof *frame->pulls * tasks);
-    frame->recruits_hinge = take(memory, needed, problem->hinges * tasks);
+    frame->hinge_felt = take(memory, needed, sizeof *frame->hinge_felt * problem->hinges * problem->rows);
+    frame->hinge_felt_count = take(memory, needed, sizeof *frame->hinge_felt_count * problem->hinges);
     for (int t = 0; t < tasks; t++)
         lay_out_pull(frame, problem->task + t, frame->pulls == NULL ? NULL : frame->pulls + t, memory, needed);
     /* Every pair of parts, two a task at most: room for the longest lists. */
@@ -118,14 +148,12 @@ void lay_out_tasks(Frame *frame, char **memory, size_t *needed)
         frame->pulls[t].first_row = row;
         row += (int)problem->task[t].rows;
     }
-    memset(frame->recruits_hinge, 0, problem->hinges * tasks);
+    for (int64_t h = 0; h < problem->hinges; h++)
+        list_felt(frame, h);
     frame->shared_count = 0;
     for (int s = 0; s < tasks; s++)
         for (int p = 0; p < frame->pulls[s].parts; p++) {
             const Part *mine = frame->pulls[s].part + p;
-            for (int i = 0; i < mine->count; i++)
-                if (frame->column_hinge[mine->columns[i]] >= 0)
-                    frame->recruits_hinge[frame->column_hinge[mine->columns[i]] * tasks + s] = 1;
             for (int t = 0; t <= s; t++)
                 for (int q = 0; q < frame->pulls[t].parts; q++) {
                     const Part *theirs = frame->pulls[t].part + q;
@@ -138,11 +166,11 @@ void lay_out_tasks(Frame *frame, char **memory, size_t *needed)
         }
 }
 
-/* Put w times the measuring axes, turned by q, into the rows of a force or torque. */
-static void turned_axes(const Task *task, const double *q, double rows[3][3])
+/* Put w times the measuring axes, turned by R, into the rows of a force. */
+static void turned_axes(const Task *task, const double *R, double rows[3][3])
 {
     for (int64_t r = 0; r < task->rows; r++) {
-        q_rotate(q, task->measure[r], rows[r]);
+        turned(R, task->measure[r], rows[r]);
         for (int a = 0; a < 3; a++)
             rows[r][a] *= task->weight;
     }
@@ -165,23 +193,24 @@ static void levers_to(const Frame *frame, Part *part, const double *point)
     }
 }
 
-static const double IDENTITY[4] = {1.0, 0.0, 0.0, 0.0};
+static const double IDENTITY[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
 
 /* e = target - x along the axes; dx = R_b^T (dp - dp_b - w_b x (p - p_b)): the base pulls back at the same point. */
 static void evaluate_position(const Frame *frame, const Task *task, Pull *pull, const double *target, double *e)
 {
     double point[3], seen[3];
-    const double *base = task->base >= 0 ? frame->rotations + 4 * task->base : IDENTITY;
-    q_rotate(frame->rotations + 4 * task->node, task->offset, point);
+    const double *base = task->base >= 0 ? frame->rotations + 9 * task->base : IDENTITY;
+    turned(frame->rotations + 9 * task->node, task->offset, point);
     add_scaled(point, 1.0, frame->positions + 3 * task->node);
     memcpy(seen, point, sizeof seen);
     if (task->base >= 0) {
         add_scaled(seen, -1.0, frame->positions + 3 * task->base);
-        q_rotate_back(base, seen, seen);
+        turned_back(base, seen, seen);
     }
     for (int64_t r = 0; r < task->rows; r++)
         e[r] = task->weight * (target[task->axes[r]] - dot(task->measure[r], seen));
-    turned_axes(task, base, pull->part[0].force);
+    if (!pull->part[0].plain)
+        turned_axes(task, base, pull->part[0].force);
     levers_to(frame, pull->part, point);
     if (task->base >= 0) {
         negated(pull->part[0].force, pull->part[1].force);
@@ -195,31 +224,36 @@ static void evaluate_center_of_mass(const Frame *frame, const Task *task, Pull *
     Part *part = pull->part;
     for (int64_t r = 0; r < task->rows; r++)
         e[r] = task->weight * (target[task->axes[r]] - dot(task->measure[r], frame->center));
-    turned_axes(task, IDENTITY, part->force);
+    if (!part->plain)
+        turned_axes(task, IDENTITY, part->force);
     for (int i = 0; i < part->count; i++) {
         const int64_t node = frame->problem->column_node[part->columns[i]];
         for (int a = 0; a < 3; a++)
-            part->levers[3 * i + a] = frame->mass_shares[node] *
-                                      (frame->mass_centers[3 * node + a] - frame->positions[3 * node + a]);
+            part->levers[3 * i + a] =
+                frame->mass_moments[3 * node + a] - frame->mass_shares[node] * frame->positions[3 * node + a];
     }
 }
 
 /* e = log(q_target q^-1), in the base's frame where there is one. */
-static void evaluate_orientation(const Frame *frame, const Task *task, Pull *pull, const double *target, double *e)
+static void evaluate_orientation(
+    const Frame *frame, const Task *task, Pull *pull, const double *local, const double *target, double *e)
 {
-    const double *base = task->base >= 0 ? frame->rotations + 4 * task->base : IDENTITY;
+    const double *base = task->base >= 0 ? frame->rotations + 9 * task->base : IDENTITY;
     const double scale = task->weight * METRES_PER_RADIAN;
-    double q[4], inverse[4], v[4];
-    q_conjugate(base, inverse);
-    q_multiply(inverse, frame->rotations + 4 * task->node, q);
+    double q[4], v[4];
+    world_quaternion(frame, local, task->node, q);
     q_conjugate(q, q);
+    if (task->base >= 0) {
+        double below[4];
+        world_quaternion(frame, local, task->base, below);
+        q_multiply(q, below, q);
+    }
     q_multiply(target, q, v);
     q_log(v, v);
     for (int r = 0; r < 3; r++) {
         e[r] = scale * v[r];
-        double axis[3] = {0.0, 0.0, 0.0};
-        axis[r] = scale;
-        q_rotate(base, axis, pull->part[0].torque[r]);
+        for (int a = 0; a < 3; a++)
+            pull->part[0].torque[r][a] = scale * base[3 * a + r];
     }
     if (task->base >= 0)
         negated(pull->part[0].torque, pull->part[1].torque);
@@ -235,7 +269,7 @@ static void evaluate_posture(
     q_conjugate(local + 4 * node->joint, inverse);
     q_multiply(target, inverse, v);
     q_log(v, v);
-    q_rotate(node->parent < 0 ? IDENTITY : frame->rotations + 4 * node->parent, v, v);
+    turned(parent_rotation(frame, task->node), v, v);
     for (int r = 0; r < 3; r++) {
         e[r] = scale * v[r];
         pull->part[0].torque[r][r] = scale;
@@ -245,10 +279,10 @@ static void evaluate_posture(
 /* The turn from d to the target's direction, and (I - d d^T) w + d x (dp_e - dp_t) / r. */
 static void evaluate_aim(const Frame *frame, const Task *task, Pull *pull, const double *target, double *e)
 {
-    const double scale = task->weight * METRES_PER_RADIAN, *turn = frame->rotations + 4 * task->node;
+    const double scale = task->weight * METRES_PER_RADIAN, *turn = frame->rotations + 9 * task->node;
     double d[3], from[3], at[3], t[3], side[3];
-    q_rotate(turn, task->axis, d);
-    q_rotate(turn, task->offset, from);
+    turned(turn, task->axis, d);
+    turned(turn, task->offset, from);
     add_scaled(from, 1.0, frame->positions + 3 * task->node);
     if (task->base < 0)
         memcpy(at, target, sizeof at);
@@ -256,7 +290,7 @@ static void evaluate_aim(const Frame *frame, const Task *task, Pull *pull, const
         memcpy(at, frame->positions + 3 * task->base, sizeof at);
         if (task->width) {
             double arm[3];
-            q_rotate(frame->rotations + 4 * task->base, target, arm);
+            turned(frame->rotations + 9 * task->base, target, arm);
             add_scaled(at, 1.0, arm);
         }
     }
@@ -306,7 +340,7 @@ void evaluate_tasks(Frame *frame, const double *local, int64_t at)
         switch (task->kind) {
         case POSITION: evaluate_position(frame, task, pull, target, e); break;
         case CENTER_OF_MASS: evaluate_center_of_mass(frame, task, pull, target, e); break;
-        case ORIENTATION: evaluate_orientation(frame, task, pull, target, e); break;
+        case ORIENTATION: evaluate_orientation(frame, task, pull, local, target, e); break;
         case POSTURE: evaluate_posture(frame, task, pull, local, target, e); break;
         default: evaluate_aim(frame, task, pull, target, e);
         }
@@ -336,40 +370,81 @@ static void hinge_rows(Frame *frame)
     }
 }
 
-/* Add sum_j (l_j x f_r + t_r) . (m_j x f_s + t_s) over the shared columns, and the root's f_r . f_s. */
+/* Sums over the columns that two parts share, l the one's levers and m the other's. */
+typedef struct {
+    double between;     /* sum l . m */
+    double outer[3][3]; /* sum m l^T */
+    double l[3], m[3];
+} Sums;
+
+static void sum_levers(const Shared *shared, const Part *a, const Part *b, Sums *sums)
+{
+    double xx = 0.0, xy = 0.0, xz = 0.0, yx = 0.0, yy = 0.0, yz = 0.0, zx = 0.0, zy = 0.0, zz = 0.0;
+    for (int i = 0; i < shared->count; i++) {
+        const double *l = a->levers + 3 * shared->places[2 * i], *m = b->levers + 3 * shared->places[2 * i + 1];
+        xx += m[0] * l[0], xy += m[0] * l[1], xz += m[0] * l[2];
+        yx += m[1] * l[0], yy += m[1] * l[1], yz += m[1] * l[2];
+        zx += m[2] * l[0], zy += m[2] * l[1], zz += m[2] * l[2];
+    }
+    *sums = (Sums){xx + yy + zz, {{xx, xy, xz}, {yx, yy, yz}, {zx, zy, zz}}, {0.0}, {0.0}};
+    for (int i = 0; i < shared->count && (a->has_torque || b->has_torque); i++) {
+        add_scaled(sums->l, 1.0, a->levers + 3 * shared->places[2 * i]);
+        add_scaled(sums->m, 1.0, b->levers + 3 * shared->places[2 * i + 1]);
+    }
+}
+
+/* Add sum_j (l_j x f_r + t_r) . (m_j x g_s + u_s) over the shared columns, and the root's f_r . g_s. */
 static void add_block(Frame *frame, const Shared *shared)
 {
     const Problem *problem = frame->problem;
     const Pull *mine = frame->pulls + shared->task[0], *theirs = frame->pulls + shared->task[1];
     const Part *a = mine->part + shared->part[0], *b = theirs->part + shared->part[1];
-    double between = 0.0, outer[3][3] = {{0.0}}, l_sum[3] = {0.0}, m_sum[3] = {0.0};
-    for (int i = 0; i < shared->count; i++) {
-        const double *l = a->levers + 3 * shared->places[2 * i], *m = b->levers + 3 * shared->places[2 * i + 1];
-        between += dot(l, m);
-        for (int x = 0; x < 3; x++) {
-            outer[x][0] += m[x] * l[0], outer[x][1] += m[x] * l[1], outer[x][2] += m[x] * l[2];
-            l_sum[x] += l[x], m_sum[x] += m[x];
-        }
+    const int64_t rows = problem->task[shared->task[0]].rows, others = problem->task[shared->task[1]].rows;
+    Sums sums;
+    sum_levers(shared, a, b, &sums);
+    const double between = sums.between + (a->root && b->root);
+    if (a->plain && b->plain) { /* the world's axes on both sides: (l x e_r) . (m x e_s) = (l . m) [r = s] - m_r l_s */
+        const double scale = a->force[0][0] * b->force[0][0];
+        double *out = frame->G + mine->first_row * problem->rows + theirs->first_row;
+        for (int r = 0; r < 3; r++, out += problem->rows)
+            for (int s = 0; s < 3; s++)
+                out[s] += scale * ((r == s ? between : 0.0) - sums.outer[r][s]);
+        return;
     }
-    if (a->root && b->root)
-        between += 1.0;
-    for (int64_t r = 0; r < problem->task[shared->task[0]].rows; r++) {
+    for (int64_t r = 0; r < rows; r++) {
         const double *f = a->force[r], *t = a->torque[r];
         double pushed[3], *out = frame->G + (mine->first_row + r) * problem->rows + theirs->first_row;
         /* (l x f) . (m x g) = (l . m) (f . g) - (m . f) (l . g) */
         for (int x = 0; x < 3; x++)
-            pushed[x] = between * f[x] - (outer[0][x] * f[0] + outer[1][x] * f[1] + outer[2][x] * f[2]);
-        double turned[3] = {0.0}, lever[3];
-        if (a->has_torque) {
-            cross(t, m_sum, lever); /* t . (m x g) = g . (t x m) */
+            pushed[x] = between * f[x] - (sums.outer[0][x] * f[0] + sums.outer[1][x] * f[1] + sums.outer[2][x] * f[2]);
+        if (a->has_torque) { /* t . (m x g) = g . (t x m) */
+            double lever[3];
+            cross(t, sums.m, lever);
             add_scaled(pushed, 1.0, lever);
         }
+        for (int64_t s = 0; s < others; s++)
+            out[s] += dot(pushed, b->force[s]);
         if (b->has_torque) {
-            cross(l_sum, f, turned);
-            add_scaled(turned, shared->count, t);
+            double twisted[3];
+            cross(sums.l, f, twisted);
+            add_scaled(twisted, shared->count, t);
+            for (int64_t s = 0; s < others; s++)
+                out[s] += dot(twisted, b->torque[s]);
         }
-        for (int64_t s = 0; s < problem->task[shared->task[1]].rows; s++)
-            out[s] += dot(pushed, b->force[s]) + dot(turned, b->torque[s]);
+    }
+}
+
+/* G += sign times a hinge's rank-one part, in the rows that feel it. */
+void add_hinge(const Frame *frame, int64_t h, double sign, double *G)
+{
+    const int64_t R = frame->problem->rows;
+    const double *along = frame->hinge_rows + h * R;
+    const int *felt = frame->hinge_felt + h * R;
+    for (int i = 0; i < frame->hinge_felt_count[h]; i++) {
+        const double factor = sign * along[felt[i]];
+        double *row = G + felt[i] * R;
+        for (int j = 0; j <= i; j++)
+            row[felt[j]] += factor * along[felt[j]];
     }
 }
 
@@ -382,19 +457,8 @@ void gram(Frame *frame)
     for (int i = 0; i < frame->shared_count; i++)
         add_block(frame, frame->shared + i);
     hinge_rows(frame);
-    for (int64_t h = 0; h < problem->hinges; h++) {
-        const double *rows = frame->hinge_rows + h * R;
-        const uint8_t *recruits = frame->recruits_hinge + h * problem->tasks;
-        for (int64_t s = 0; s < problem->tasks; s++)
-            for (int64_t t = 0; t <= s && recruits[s]; t++) {
-                if (!recruits[t])
-                    continue;
-                const int first = frame->pulls[s].first_row, other = frame->pulls[t].first_row;
-                for (int64_t r = first; r < first + problem->task[s].rows; r++)
-                    for (int64_t q = other; q < other + problem->task[t].rows; q++)
-                        frame->G[r * R + q] += rows[r] * rows[q];
-            }
-    }
+    for (int64_t h = 0; h < problem->hinges; h++)
+        add_hinge(frame, h, 1.0, frame->G);
 }
 
 /* J v, shape (R,), of a step v, shape (n,), that turns hinges about their axes alone. */
@@ -407,17 +471,18 @@ void rows_times(const Frame *frame, const double *v, double *out)
             out[pull->first_row + r] = 0.0;
         for (int p = 0; p < pull->parts; p++) {
             const Part *part = pull->part + p;
-            double moved[3] = {0.0}, turned[3] = {0.0}, way[3];
+            double x = 0.0, y = 0.0, z = 0.0, twist[3] = {0.0};
             for (int i = 0; i < part->count; i++) {
-                const double *w = v + 3 * part->columns[i];
-                cross(w, part->levers + 3 * i, way);
-                add_scaled(moved, 1.0, way);
-                add_scaled(turned, 1.0, w);
+                const double *w = v + 3 * part->columns[i], *l = part->levers + 3 * i;
+                x += w[1] * l[2] - w[2] * l[1], y += w[2] * l[0] - w[0] * l[2], z += w[0] * l[1] - w[1] * l[0];
             }
+            for (int i = 0; i < part->count && part->has_torque; i++)
+                add_scaled(twist, 1.0, v + 3 * part->columns[i]);
+            double moved[3] = {x, y, z};
             if (part->root)
                 add_scaled(moved, 1.0, v + 3 * problem->columns);
             for (int64_t r = 0; r < problem->task[t].rows; r++)
-                out[pull->first_row + r] += dot(part->force[r], moved) + dot(part->torque[r], turned);
+                out[pull->first_row + r] += dot(part->force[r], moved) + dot(part->torque[r], twist);
         }
     }
 }
