@@ -12,17 +12,18 @@ export OPENBLAS_NUM_THREADS ?= 1
 export OMP_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install demo test test-all lint types docs docs-check golden bench figures data clean
+.PHONY: help install demo test test-numpy sanitize test-all lint types docs docs-check golden bench figures data clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
 
 install: $(STAMP)  ## set up a virtual environment in .venv with everything that the other targets need
 
-$(STAMP): pyproject.toml
+$(STAMP): pyproject.toml $(wildcard motionedit/core/csrc/*)
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade pip
 	$(BIN)/python -m pip install --quiet --editable '.[plot,dev]'
+	@$(BIN)/motionedit --version
 	@touch $@
 
 demo: $(STAMP)  ## normalize ten golf swings, fit the motion PCA, move the ball, and say what to open
@@ -39,6 +40,12 @@ test: $(STAMP)  ## run the tests that take less than two minutes, and the linter
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/python -m pytest -n $(JOBS) -m 'not slow'
+
+test-numpy: $(STAMP)  ## run the same tests without the compiled solver, as where there is no C compiler
+	MOTIONEDIT_SOLVER=numpy $(BIN)/python -m pytest -n $(JOBS) -m 'not slow'
+
+sanitize: $(STAMP)  ## run the compiled part's tests under the address and undefined-behaviour sanitizers (gcc)
+	bash tests/sanitize.sh $(abspath $(BIN)/python)
 
 test-all: $(STAMP)  ## run every test, with branch coverage
 	$(BIN)/python -m pytest -n $(JOBS) --cov --cov-report=term-missing:skip-covered

@@ -97,6 +97,14 @@ class _Program(click.Group):
             formatter.write_dl(list(COMMANDS.items()))
 
 
+def _show_version(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:  # noqa: FBT001  as click calls it
+    if wanted and not ctx.resilient_parsing:
+        from motionedit.core.compiled import solver_name
+
+        click.echo(f"motionedit {__version__} ({solver_name()} solver)")
+        ctx.exit()
+
+
 @click.group(
     cls=_Program,
     context_settings={"help_option_names": ["-h", "--help"]},
@@ -105,7 +113,14 @@ class _Program(click.Group):
     Example:
       motionedit edit-prioritized walks/ -s step.yaml -o edited/""",
 )
-@click.version_option(__version__, message="%(prog)s %(version)s")
+@click.option(
+    "--version",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_show_version,
+    help="Show the version and exit.",
+)
 @verbosity_options
 @click.pass_context
 def main(ctx: click.Context) -> None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
+from motionedit.core.compiled import compiled
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray, IntArray
@@ -46,6 +47,12 @@ def forward(motion: Motion) -> WorldPoses:
     """
     frames, joints = motion.rotations.shape[:2]
     positions, rotations = np.empty((frames, joints, 3)), np.empty((frames, joints, 4))
+    kernel = compiled()
+    if kernel is not None:
+        skeleton = motion.skeleton
+        numbers = [np.ascontiguousarray(a) for a in (skeleton.offsets, motion.rotations, motion.translations)]
+        kernel.forward(skeleton.parents, skeleton.translation_places, *numbers, positions, rotations, frames)
+        return WorldPoses(positions, rotations)
     # Blocks of frames stay in the processor's cache.
     step = max(_BLOCK_POSES // joints, 1)
     for start in range(0, frames, step):
@@ -106,6 +113,8 @@ def forward_of(motion: Motion, joint: int) -> tuple[FloatArray, FloatArray]:
 def effector_positions(poses: WorldPoses, effector: Effector) -> FloatArray:
     """Return the world positions of an effector, shape (F, 3)."""
     j = effector.joint
+    if not effector.offset.any():
+        return poses.positions[:, j].copy()
     return poses.positions[:, j] + rot.rotate(poses.rotations[:, j], effector.offset)
 
 

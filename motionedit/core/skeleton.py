@@ -126,6 +126,13 @@ class Skeleton:
         return frozen(np.array([j for j, axes in enumerate(self.position_axes) if axes], dtype=np.intp))
 
     @cached_property
+    def translation_places(self) -> IntArray:
+        """Each joint's place among `translated`, shape (J,); -1 where it has no position channels."""
+        places = np.full(len(self), -1)
+        places[self.translated] = np.arange(len(self.translated))
+        return frozen(places)
+
+    @cached_property
     def levels(self) -> tuple[IntArray, ...]:
         """Joint indices by depth, the root first: forward kinematics goes level by level."""
         depth = np.zeros(len(self), dtype=np.intp)

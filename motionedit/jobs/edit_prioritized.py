@@ -10,6 +10,7 @@ import numpy as np
 from motionedit.core import kinematics
 from motionedit.core.bvh import edited_bytes, unedited_bytes
 from motionedit.core.center_of_mass import center_of_mass
+from motionedit.core.compiled import solver_name
 from motionedit.core.editing.prioritized_edit import (
     LayeredSettings,
     PaperFilter,
@@ -25,6 +26,7 @@ from motionedit.jobs.clip_facts import facts_of
 from motionedit.jobs.collected import Faults
 from motionedit.jobs.edit_metrics import edit_metrics
 from motionedit.jobs.events import event_frames
+from motionedit.jobs.pool import threads_within
 from motionedit.jobs.prioritized_body import sized_clip
 from motionedit.jobs.prioritized_constraints import clip_constraints
 from motionedit.jobs.prioritized_record import edit_record
@@ -59,7 +61,7 @@ def run(
     """
     tasks = plan(clips, output, options=options, depends=loaded.files)
     others = tuple(task.relative for task in tasks)
-    return run_batch(tasks, _Edit(loaded, others), options)
+    return run_batch(tasks, _Edit(loaded, others, threads_within(len(tasks), options)), options)
 
 
 @dataclass(frozen=True)
@@ -68,6 +70,7 @@ class _Edit:
 
     loaded: LoadedSpec[EditPrioritizedSpec]
     others: tuple[str, ...]
+    threads: int = 1
 
     def __call__(self, clip: Clip, task: ClipTask) -> Outcome:
         """Return the edited clip, and how near each constraint came."""
@@ -112,6 +115,7 @@ class _Edit:
             attraction=spec.attraction,
             max_iterations=spec.solver.max_iterations,
             recruiting_rule=spec.recruiting_rule,
+            threads=self.threads,
         )
 
     def _outcome(
@@ -123,7 +127,12 @@ class _Edit:
         motion = _in_clip_units(clip.motion, edit, sized) if changed else clip.motion
         after = kinematics.forward(motion) if changed else facts.poses
         result = edit_record(edit, constraints, facts, scale=sized.scale, settings=settings)
-        about = {**self._about(sized, after), **result.record, "passes": spec.smoothing.pass_count}
+        about = {
+            **self._about(sized, after),
+            "solver": solver_name(),
+            **result.record,
+            "passes": spec.smoothing.pass_count,
+        }
         asked = [each.constraint for each in constraints]
         breaches = breach_warnings(edit.breaches, asked, facts, rule=spec.recruiting_rule)
         return Outcome(

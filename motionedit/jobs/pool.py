@@ -47,6 +47,11 @@ def results_in_order(
     return _one_by_one(function, items, is_last)
 
 
+def threads_within(items: int, options: RunOptions) -> int:
+    """Return the threads that the work on one item may use: all that --jobs gives where there is one item alone."""
+    return (options.jobs or _cores()) if items == 1 and options.scheduler is None else 1
+
+
 def _one_by_one(
     function: Callable[[Item], Result], items: Sequence[Item], is_last: Callable[[Result | WorkerDiedError], bool]
 ) -> Generator[Result | WorkerDiedError]:

@@ -14,6 +14,7 @@ from motionedit.cli import main
 from motionedit.cli.boundary import run_guarded
 from motionedit.cli.program import COMMANDS
 from motionedit.cli.progress import progress_on_terminal
+from motionedit.core.compiled import solver_name
 from motionedit.errors import ClipError, MotionEditErrors, SpecError
 
 COMMAND_LINE = [sys.executable, "-m", "motionedit"]
@@ -55,7 +56,7 @@ def test_each_option_has_a_help_text(name):
 
 
 def test_the_version(run):
-    assert run("--version").stdout == f"motionedit {__version__}\n"
+    assert run("--version").stdout == f"motionedit {__version__} ({solver_name()} solver)\n"
 
 
 def test_without_a_command_the_help_is_shown_as_an_error(run):

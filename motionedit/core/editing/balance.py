@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from motionedit.core.center_of_mass import Masses, center_of_mass
 from motionedit.core.editing.constraints import Constraint, Targets
 from motionedit.core.editing.trajectories import position_targets
 
@@ -30,7 +29,7 @@ def support_points(constraint: Constraint, poses: WorldPoses, goals: Mapping[int
 def com_targets(
     constraint: Constraint,
     poses: WorldPoses,
-    masses: Masses,
+    path: FloatArray,
     *,
     support: FloatArray | None,
     curve: Literal["time", "index"],
@@ -41,10 +40,11 @@ def com_targets(
     ----------
     poses : WorldPoses
         The input's.
+    path : shape (F, 3)
+        The input's center of mass.
     support : shape (F, 3) or None
         mean(A') of the edited motion; None: the input's own path.
     """
-    path = center_of_mass(poses, masses)
     if support is not None and constraint.support:
         path = support + path - support_points(constraint, poses, None)
     along = path @ constraint.measure.T

@@ -231,7 +231,9 @@ def task_of(
 
     `reference` is the input, whose local rotations a posture keeps.
     """
-    recruited = Recruited(np.isin(columns.joints, list(recruits.joints)), recruits.root)
+    mine = np.zeros(len(columns.skeleton), dtype=np.bool_)
+    mine[list(recruits.joints)] = True
+    recruited = Recruited(mine[columns.joints], recruits.root)
     at = frames - targets.first
     if constraint.kind == "posture":
         joints = [j for j in constraint.joints if j in set(map(int, columns.joints))]

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
+from motionedit.core.compiled import compiled
 from motionedit.core.motion import Motion
-from motionedit.core.timeline.interpolation import low_pass
+from motionedit.core.timeline.interpolation import gaussian, low_pass
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
@@ -31,16 +32,23 @@ def smoothed_displacement(before: Motion, after: Motion, *, sigma: float, first:
     first : int
         Frames before it, a rest pose, keep their displacement and lend none.
     """
-    turns = rot.log(rot.multiply(rot.conjugate(before.rotations), after.rotations))
     shifts = after.translations - before.translations
+    shifts[first:] = low_pass(shifts[first:], sigma=sigma)
+    translations = before.translations + shifts
+    kernel, taps = compiled(), gaussian(sigma, len(before) - first)
+    if kernel is not None:
+        rotations = np.empty_like(before.rotations)
+        inputs = [np.ascontiguousarray(a) for a in (before.rotations, after.rotations, taps)]
+        kernel.smooth(*inputs, rotations, len(before), first, NO_DISPLACEMENT)
+        return Motion(before.skeleton, rotations, translations, before.frame_time)
+    turns = rot.log(rot.multiply(rot.conjugate(before.rotations), after.rotations))
     turns[np.abs(turns) < NO_DISPLACEMENT] = 0.0
     moving = turns.any(axis=(0, 2))
     rotations = before.rotations.copy()
     smooth = turns[:, moving]
     smooth[first:] = low_pass(smooth[first:], sigma=sigma)
     rotations[:, moving] = rot.multiply(before.rotations[:, moving], rot.exp(smooth))
-    shifts[first:] = low_pass(shifts[first:], sigma=sigma)
-    return Motion(before.skeleton, rotations, before.translations + shifts, before.frame_time)
+    return Motion(before.skeleton, rotations, translations, before.frame_time)
 
 
 def filtered_root(before: Motion, after: Motion, place: int, *, cutoff: float, first: int) -> Motion:

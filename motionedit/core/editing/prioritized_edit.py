@@ -53,6 +53,7 @@ class LayeredSettings:
     attraction: float = 1.0
     max_iterations: int = 40
     recruiting_rule: Literal["expand", "error", "ignore"] = "expand"
+    threads: int = 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,8 +188,9 @@ def edit_by_priorities(
 
 
 def _changes(before: Motion, after: Motion, travel: int) -> tuple[BoolArray, BoolArray]:
-    angles = rot.log(rot.multiply(rot.conjugate(before.rotations), after.rotations))
-    touched: BoolArray = np.abs(angles).max(axis=2) > NO_DISPLACEMENT
+    # A turn so small is twice the vector part of its quaternion.
+    turns = rot.multiply(rot.conjugate(before.rotations), after.rotations)[..., 1:]
+    touched: BoolArray = 2.0 * np.abs(turns).max(axis=2) > NO_DISPLACEMENT
     place = np.searchsorted(before.skeleton.translated, travel)
     shifts = (after.translations - before.translations)[:, place : place + 1]
     moved: BoolArray = np.abs(shifts).max(axis=(1, 2), initial=0.0) > NO_DISPLACEMENT

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
+from operator import itemgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.center_of_mass import center_of_mass
+from motionedit.core.compiled import compiled
 from motionedit.core.editing.balance import com_targets, support_points
 from motionedit.core.editing.constraint_errors import ConstraintErrors, errors_of
 from motionedit.core.editing.constraints import (
@@ -18,9 +22,10 @@ from motionedit.core.editing.constraints import (
     task_of,
 )
 from motionedit.core.editing.continuity import filtered_root
-from motionedit.core.ik.layered_solver import HingeColumns, Problem, WeightedTask, solve_layers
+from motionedit.core.ik.kernel import Layout
+from motionedit.core.ik.layered_solver import HingeColumns, Problem, Reference, WeightedTask, solve_layers
 from motionedit.core.ik.recruiting import Recruits
-from motionedit.core.ik.tasks import Columns
+from motionedit.core.ik.tasks import CenterOfMassTask, Columns
 from motionedit.core.kinematics import WorldPoses, forward
 from motionedit.core.motion import Motion
 
@@ -40,7 +45,37 @@ class Solved:
     iterations: IntArray
     converged: BoolArray
     ranks: IntArray
-    targets: list[Targets]
+    targets: tuple[Targets, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Group:
+    """Frames at which the same constraints are active, which are solved together.
+
+    Attributes
+    ----------
+    frames : shape (n,)
+    levels : shape (L,)
+        Where the problem's layers stand among those of the whole edit.
+    problem : Problem
+    following : pairs of (layer, place in the layer) and constraint
+        Tasks whose targets depend on the edited motion.
+    """
+
+    frames: IntArray
+    levels: IntArray
+    problem: Problem
+    following: tuple[tuple[int, int, int], ...]
+
+    def with_targets(self, targets: Sequence[Targets]) -> Problem:
+        """Return the problem with new targets for the tasks that follow the edited motion."""
+        layers = [list(layer) for layer in self.problem.layers]
+        for layer, place, constraint in self.following:
+            each, new = layers[layer][place], targets[constraint]
+            if isinstance(each.task, CenterOfMassTask) and new.positions is not None:
+                task = replace(each.task, targets=new.positions[self.frames - new.first])
+                layers[layer][place] = WeightedTask(task, each.weight)
+        return replace(self.problem, layers=tuple(map(tuple, layers)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,161 +89,223 @@ class Run:
     settings: LayeredSettings
     poses: WorldPoses
 
-    def targets(self, current: WorldPoses | None) -> list[Targets]:
-        """Return all targets; `current` is the edited motion so far, for supports."""
-        curve = self.settings.curve
-        fixed: dict[int, Targets] = {
-            i: targets_of(c, self.poses, curve=curve)
+    @cached_property
+    def targets(self) -> tuple[Targets, ...]:
+        """The targets of all constraints, supports where they are in the input."""
+        curve, found = self.settings.curve, []
+        for i, constraint in enumerate(self.constraints):
+            if i in self._fixed:
+                found.append(self._fixed[i])
+            elif constraint.kind == "com":
+                found.append(self._com_targets(constraint, None))
+            elif constraint.kind == "aim":
+                found.append(aim_targets(constraint, self.poses, curve=curve))
+            else:
+                found.append(Targets(*constraint.active(len(self.motion))))
+        return tuple(found)
+
+    @cached_property
+    def _fixed(self) -> dict[int, Targets]:
+        """The targets of what is bound to the input alone."""
+        return {
+            i: targets_of(c, self.poses, curve=self.settings.curve)
             for i, c in enumerate(self.constraints)
             if c.kind in {"position", "orientation", "pose"}
         }
-        result = []
-        for i, constraint in enumerate(self.constraints):
-            if i in fixed:
-                result.append(fixed[i])
-            elif constraint.kind == "com":
-                support = self._support(constraint, fixed, current)
-                result.append(com_targets(constraint, self.poses, self.body.masses, support=support, curve=curve))
-            elif constraint.kind == "aim":
-                result.append(aim_targets(constraint, self.poses, curve=curve))
-            else:
-                result.append(Targets(*constraint.active(len(self.motion))))
-        return result
 
-    def _support(
-        self, constraint: Constraint, fixed: dict[int, Targets], current: WorldPoses | None
-    ) -> FloatArray | None:
-        """Return mean(A'): where members of the support have goals the goals, else where they are so far."""
-        if not constraint.support:
-            return None
+    @cached_property
+    def _com_path(self) -> FloatArray:
+        """The input's center of mass, shape (F, 3)."""
+        return center_of_mass(self.poses, self.body.masses)
+
+    def _com_targets(self, constraint: Constraint, current: WorldPoses | None) -> Targets:
+        """Return the targets of a `com`; `current` is the edited motion so far, None before there is one."""
+        support = None
+        if constraint.support:
+            poses = self.poses if current is None else current
+            support = support_points(constraint, poses, self._support_goals(constraint))
+        return com_targets(constraint, self.poses, self._com_path, support=support, curve=self.settings.curve)
+
+    def _support_goals(self, constraint: Constraint) -> dict[int, FloatArray]:
+        """Return the goals of members of a support, by joint, shape (F, 3), nan where there is none: they are A'."""
         goals: dict[int, FloatArray] = {}
-        for i, targets in fixed.items():
+        for i, targets in self._fixed.items():
             other = self.constraints[i]
             whole = other.base is None and other.axes == (0, 1, 2) and not np.any(other.effector.offset)
             if targets.positions is not None and whole and other.effector.joint in constraint.support:
                 joint = other.effector.joint
                 goals.setdefault(joint, np.full((len(self.motion), 3), np.nan))
                 goals[joint][targets.first : targets.last + 1] = targets.positions @ other.measure
-        return support_points(constraint, self.poses if current is None else current, goals)
+        return goals
 
-    def groups(self, targets: Sequence[Targets]) -> list[tuple[tuple[int, ...], IntArray]]:
-        """Return (constraints, frames): frames at which the same constraints are active are solved together."""
-        active = np.zeros((len(self.motion), len(targets)), dtype=np.bool_)
-        for i, each in enumerate(targets):
+    @cached_property
+    def _following(self) -> frozenset[int]:
+        """Constraints whose targets follow the edited motion: a `com` over a support that has no goals of its own."""
+        return frozenset(
+            i for i, c in enumerate(self.constraints) if c.kind == "com" and c.support and not self._has_goals(c)
+        )
+
+    def _has_goals(self, constraint: Constraint) -> bool:
+        goals, (first, last) = self._support_goals(constraint), constraint.active(len(self.motion))
+        return all(
+            joint in goals and not np.isnan(goals[joint][first : last + 1]).any() for joint in constraint.support
+        )
+
+    @cached_property
+    def levels(self) -> list[int]:
+        """The distinct priorities, the most important first."""
+        return order_of_layers([c.priority for c in self.constraints])
+
+    @cached_property
+    def groups(self) -> tuple[Group, ...]:
+        """Frames at which the same constraints are active, together."""
+        active = np.zeros((len(self.motion), len(self.constraints)), dtype=np.bool_)
+        for i, each in enumerate(self.targets):
             active[each.first : each.last + 1, i] = True
         rows, which = np.unique(active, axis=0, return_inverse=True)
-        return [
-            (tuple(map(int, np.flatnonzero(row))), np.flatnonzero(which.ravel() == i))
+        return tuple(
+            self._group(tuple(map(int, np.flatnonzero(row))), np.flatnonzero(which.ravel() == i))
             for i, row in enumerate(rows)
             if row.any()
-        ]
+        )
 
-    def solve(self, start: Motion, *, reference: Motion, pull_root: bool, previous: Motion | None = None) -> Solved:
-        """Return the motion with every frame solved from `start`, attracted to `reference`."""
-        targets = self.targets(None if previous is None else forward(previous))
-        count, levels = len(start), order_of_layers([c.priority for c in self.constraints])
-        rotations, translations = start.rotations.copy(), start.translations.copy()
-        iterations = np.zeros(count, dtype=np.intp)
-        converged = np.ones(count, dtype=np.bool_)
-        ranks = np.zeros((count, len(levels)), dtype=np.intp)
-        for members, frames in self.groups(targets):
-            problem = self._problem(members, frames, targets, reference, pull_root=pull_root)
-            part = Motion(start.skeleton, start.rotations[frames], start.translations[frames], start.frame_time)
-            solution = solve_layers(problem, part)
-            rotations[frames] = solution.motion.rotations
-            translations[frames] = solution.motion.translations
-            iterations[frames], converged[frames] = solution.iterations, solution.converged
-            there = [levels.index(p) for p in order_of_layers([self.constraints[i].priority for i in members])]
-            ranks[frames[:, None], there] = solution.ranks
-        motion = Motion(start.skeleton, rotations, translations, start.frame_time)
-        return Solved(motion, iterations, converged, ranks, targets)
-
-    def _problem(
-        self,
-        members: Sequence[int],
-        frames: IntArray,
-        targets: Sequence[Targets],
-        reference: Motion,
-        *,
-        pull_root: bool,
-    ) -> Problem:
+    def _group(self, members: Sequence[int], frames: IntArray) -> Group:
         joints = np.array(sorted(set().union(*(self.recruits[i].joints for i in members))), dtype=np.intp)
         columns = Columns(self.motion.skeleton, joints, self.body.travel)
-        layers = []
-        for priority in order_of_layers([self.constraints[i].priority for i in members]):
-            tasks = []
-            for i in members:
-                constraint = self.constraints[i]
-                if constraint.priority == priority:
-                    task = task_of(
-                        constraint,
-                        targets[i],
-                        frames,
-                        columns,
-                        self.recruits[i],
-                        masses=self.body.masses,
-                        reference=self.motion,
-                    )
-                    tasks.append(WeightedTask(task, constraint.weight))
-            layers.append(tuple(tasks))
-        place = np.searchsorted(self.motion.skeleton.translated, self.body.travel)
-        root = reference.translations[frames, place] if pull_root and reference.translations.shape[1] else None
-        return Problem(
+        priorities = order_of_layers([self.constraints[i].priority for i in members])
+        layers: list[tuple[WeightedTask, ...]] = []
+        following = []
+        for level, priority in enumerate(priorities):
+            here = [i for i in members if self.constraints[i].priority == priority]
+            layers.append(tuple(self._task(i, frames, columns) for i in here))
+            following += [(level, place, i) for place, i in enumerate(here) if i in self._following]
+        problem = Problem(
             columns=columns,
             moves_root=any(self.recruits[i].root for i in members),
             layers=tuple(layers),
             hinges=_hinge_columns(self.body.hinges, joints),
-            reference_rotations=reference.rotations[frames],
-            reference_root=root,
             attraction=self.settings.attraction,
             max_iterations=self.settings.max_iterations,
         )
+        laid_out = replace(problem, layout=None if compiled() is None else Layout.of(problem))
+        levels = np.array([self.levels.index(priority) for priority in priorities])
+        return Group(frames, levels, laid_out, tuple(following))
+
+    def _task(self, i: int, frames: IntArray, columns: Columns) -> WeightedTask:
+        constraint = self.constraints[i]
+        task = task_of(
+            constraint,
+            self.targets[i],
+            frames,
+            columns,
+            self.recruits[i],
+            masses=self.body.masses,
+            reference=self.motion,
+        )
+        return WeightedTask(task, constraint.weight)
+
+    @cached_property
+    def place(self) -> int:
+        """The root's place among the joints with translations."""
+        return int(np.searchsorted(self.motion.skeleton.translated, self.body.travel))
+
+    def untouched(self, start: Motion) -> Solved:
+        """Return a motion before anything is solved."""
+        motion = Motion(start.skeleton, start.rotations.copy(), start.translations.copy(), start.frame_time)
+        count = len(start)
+        return Solved(
+            motion,
+            np.zeros(count, dtype=np.intp),
+            np.ones(count, dtype=np.bool_),
+            np.zeros((count, len(self.levels)), dtype=np.intp),
+            self.targets,
+        )
+
+    def solve(self, start: Motion, *, reference: Motion, pull_root: bool, previous: Motion | None = None) -> Solved:
+        """Return the motion with every frame solved from `start`, attracted to `reference`.
+
+        Parameters
+        ----------
+        previous : Motion, optional
+            The edited motion so far, which supports without goals stand on.
+        """
+        targets = list(self.targets)
+        if previous is not None and self._following:
+            poses = forward(previous)
+            for i in self._following:
+                targets[i] = self._com_targets(self.constraints[i], poses)
+        solved = replace(self.untouched(start), targets=tuple(targets))
+        for group in self.groups:
+            rows = _rows(group.frames)
+            self._solve_frames(solved, group, group.with_targets(targets), rows, reference, pull_root=pull_root)
+        return solved
+
+    def _solve_frames(
+        self,
+        solved: Solved,
+        group: Group,
+        problem: Problem,
+        rows: slice | IntArray,
+        reference: Motion,
+        *,
+        pull_root: bool,
+        in_order: bool = False,
+    ) -> None:
+        """Solve frames of `solved` from where they are, in place."""
+        motion = solved.motion
+        start = Motion(motion.skeleton, motion.rotations[rows], motion.translations[rows], motion.frame_time)
+        root = reference.translations[rows, self.place] if pull_root and reference.translations.shape[1] else None
+        solution = solve_layers(
+            problem,
+            start,
+            Reference(reference.rotations[rows], root),
+            in_order=in_order,
+            threads=self.settings.threads,
+        )
+        motion.rotations[rows] = solution.motion.rotations
+        motion.translations[rows] = solution.motion.translations
+        solved.iterations[rows], solved.converged[rows] = solution.iterations, solution.converged
+        for layer, level in enumerate(group.levels):
+            solved.ranks[rows, level] = solution.ranks[:, layer]
 
     def solve_as_the_paper(self, smoothing: PaperFilter) -> tuple[Solved, IntArray]:
         """Solve frame by frame from eq. (4)'s start states, filter the root, and solve again with the root frozen."""
-        targets = self.targets(None)
-        state = self._in_order(targets)
+        state = self._in_order()
         iterations = state.iterations.copy()
-        place = int(np.searchsorted(self.motion.skeleton.translated, self.body.travel))
         frozen = replace(self, recruits=tuple(Recruits(each.joints, root=False) for each in self.recruits))
         for number in range(smoothing.count):
             if number == 0:
                 filtered = filtered_root(
-                    self.motion, state.motion, place, cutoff=smoothing.cutoff, first=self.body.first
+                    self.motion, state.motion, self.place, cutoff=smoothing.cutoff, first=self.body.first
                 )
                 state = replace(state, motion=filtered)
             else:
                 state = frozen.solve(state.motion, reference=self.motion, pull_root=False, previous=state.motion)
         return state, iterations
 
-    def _in_order(self, targets: Sequence[Targets]) -> Solved:
+    def _in_order(self) -> Solved:
         """Solve the frames one after the other: joints that an active constraint controls start where they were."""
-        motion = self.motion
-        rotations, translations = motion.rotations.copy(), motion.translations.copy()
-        levels = order_of_layers([c.priority for c in self.constraints])
-        iterations = np.zeros(len(motion), dtype=np.intp)
-        converged = np.ones(len(motion), dtype=np.bool_)
-        ranks = np.zeros((len(motion), len(levels)), dtype=np.intp)
-        ordered = sorted((int(f), members) for members, frames in self.groups(targets) for f in frames)
-        place = int(np.searchsorted(motion.skeleton.translated, self.body.travel))
+        solved = self.untouched(self.motion)
+        spans = [(int(span[0]), span, group) for group in self.groups for span in _spans(group.frames)]
         before = -2
-        for frame, members in ordered:
-            controlled = sorted(set().union(*(self.recruits[i].joints for i in members)))
-            if before == frame - 1:
-                rotations[frame, controlled] = rotations[frame - 1, controlled]
-                if any(self.recruits[i].root for i in members):
-                    translations[frame, place] = translations[frame - 1, place]
-            at = np.array([frame])
-            problem = self._problem(members, at, targets, motion, pull_root=False)
-            start = Motion(motion.skeleton, rotations[at], translations[at], motion.frame_time)
-            solution = solve_layers(problem, start)
-            rotations[at], translations[at] = solution.motion.rotations, solution.motion.translations
-            iterations[at], converged[at] = solution.iterations, solution.converged
-            there = [levels.index(p) for p in order_of_layers([self.constraints[i].priority for i in members])]
-            ranks[frame, there] = solution.ranks[0]
-            before = frame
-        edited = Motion(motion.skeleton, rotations, translations, motion.frame_time)
-        return Solved(edited, iterations, converged, ranks, list(targets))
+        for first, span, group in sorted(spans, key=itemgetter(0)):
+            problem = self._at(group, span)
+            if before == first - 1:
+                motion, joints = solved.motion, problem.columns.joints
+                motion.rotations[first, joints] = motion.rotations[first - 1, joints]
+                if problem.moves_root:
+                    motion.translations[first, self.place] = motion.translations[first - 1, self.place]
+            rows = slice(first, first + len(span))
+            self._solve_frames(solved, group, problem, rows, self.motion, pull_root=False, in_order=True)
+            before = first + len(span) - 1
+        return solved
+
+    def _at(self, group: Group, frames: IntArray) -> Problem:
+        """Return a group's problem at some of its frames."""
+        if len(frames) == len(group.frames):
+            return group.problem
+        members = [i for i, each in enumerate(self.targets) if each.first <= frames[0] <= each.last]
+        return self._group(members, frames).problem
 
     def errors(self, solved: Solved) -> tuple[ConstraintErrors, ...]:
         """Return what is left of every constraint, against the targets of the last pass, by forward kinematics."""
@@ -226,3 +323,14 @@ def _hinge_columns(hinges: Sequence[Hinge], joints: IntArray) -> HingeColumns:
         axes=np.array([hinge.axis for hinge in here]).reshape(-1, 3),
         limits=np.array([hinge.limits for hinge in here]).reshape(-1, 2),
     )
+
+
+def _rows(frames: IntArray) -> slice | IntArray:
+    """Return frames as a slice where they follow each other: numpy need not copy then."""
+    first, count = int(frames[0]), len(frames)
+    return slice(first, first + count) if int(frames[-1]) == first + count - 1 else frames
+
+
+def _spans(frames: IntArray) -> list[IntArray]:
+    """Return frames cut where they do not follow each other."""
+    return np.split(frames, np.flatnonzero(np.diff(frames) > 1) + 1)

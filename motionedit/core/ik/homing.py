@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
-    from motionedit.core.ik.layered_solver import Problem
+    from motionedit.core.ik.layered_solver import Reference
+    from motionedit.core.ik.tasks import Columns
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.motion import Motion
 
@@ -32,18 +33,20 @@ _LARGEST_FACTOR = 3.0
 _NO_CHANGE = 1e-24
 
 
-def attraction(problem: Problem, poses: WorldPoses, motion: Motion, frames: IntArray, root: int) -> FloatArray:
+def attraction(
+    columns: Columns, reference: Reference, poses: WorldPoses, motion: Motion, frames: IntArray
+) -> FloatArray:
     """Return z, shape (N, n): the increments that bring the column joints back to the reference.
 
-    z = log(q_ref q^-1) per joint, as world-axis increments; and the way back of the root where the problem asks for it.
+    z = log(q_ref q^-1) per joint, as world-axis increments; and the way back of the root where the reference has one.
     """
-    columns = problem.columns
-    targets = problem.reference_rotations[frames[:, None], columns.joints]
+    targets = reference.rotations[frames[:, None], columns.joints]
     z = np.zeros((len(frames), columns.size))
     turns = posture_error(columns.skeleton, poses, motion.rotations, joints=columns.joints, targets=targets)
     z[:, :-3] = turns.reshape(len(frames), -1)
-    if problem.reference_root is not None and len(columns.skeleton.translated):
-        back = problem.reference_root[frames] - motion.translations[:, root]
+    if reference.root is not None and len(columns.skeleton.translated):
+        root = int(np.searchsorted(columns.skeleton.translated, columns.root))
+        back = reference.root[frames] - motion.translations[:, root]
         above = int(columns.skeleton.parents[columns.root])
         z[:, -3:] = rot.rotate(poses.rotations[:, above], back) if above >= 0 else back
     return z

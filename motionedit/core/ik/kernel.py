@@ -1,14 +1,13 @@
-"""The way into the compiled layered solver: a problem laid out as plain arrays, and frames shared out among threads."""
+"""The way into the compiled layered solver: a problem laid out as plain arrays, frames shared out among threads."""
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
-from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from motionedit.core.compiled import compiled
 from motionedit.core.ik.tasks import (
     AimTask,
     CenterOfMassTask,
@@ -22,47 +21,54 @@ from motionedit.core.ik.tasks import (
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from numpy.typing import NDArray
+
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.center_of_mass import Masses
-    from motionedit.core.ik.layered_solver import LayeredSolution, Problem
-    from motionedit.core.ik.tasks import Recruited, Task
+    from motionedit.core.ik.layered_solver import LayeredSolution, Problem, Reference
+    from motionedit.core.ik.tasks import Task
 
-# Set to ``numpy``, it keeps the compiled solver out, as where none could be built.
-CHOICE = "MOTIONEDIT_SOLVER"
 # Frames a thread takes at least.
 _LEAST_SHARE = 32
 
 _POSITION, _ORIENTATION, _CENTER_OF_MASS, _AIM, _POSTURE = range(5)
 
 
-@cache
-def _compiled() -> Any:  # noqa: ANN401  a module without types
-    try:
-        from motionedit.core.ik import _layered
-    except ImportError:
-        return None
-    return _layered
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """What of a problem does not change from solve to solve, as buffers of module.c, in its order."""
+
+    sizes: tuple[int, ...]
+    nodes: tuple[NDArray[Any], ...]
+    tasks: tuple[NDArray[Any], ...]
+    hinges: tuple[NDArray[Any], ...]
+
+    @classmethod
+    def of(cls, problem: Problem) -> Layout:
+        """Return the layout of a problem."""
+        return _layout(problem)
 
 
-def is_used() -> bool:
-    """Return whether the compiled solver is there and wanted."""
-    return os.environ.get(CHOICE) != "numpy" and _compiled() is not None
-
-
-def name() -> str:
-    """Return which solver runs: ``compiled`` or ``numpy``."""
-    return "compiled" if is_used() else "numpy"
-
-
-def solve(problem: Problem, solution: LayeredSolution, *, in_order: bool, threads: int) -> None:
+def solve(problem: Problem, solution: LayeredSolution, reference: Reference, *, in_order: bool, threads: int) -> None:
     """Solve every frame of `solution` from where it is, in place; see `layered_solver.solve_layers`."""
-    count = len(solution.iterations)
-    arrays = _arrays(problem, solution, in_order=in_order)
+    count, motion = len(solution.iterations), solution.motion
+    layout = problem.layout or Layout.of(problem)
+    pulls_root = reference.root is not None
+    arrays = (
+        _integers((count, *layout.sizes, in_order, problem.moves_root, pulls_root, problem.max_iterations)),
+        *layout.nodes,
+        *layout.tasks,
+        _targets(problem),
+        *layout.hinges,
+        _numbers(reference.rotations),
+        _numbers([] if reference.root is None else reference.root),
+        *(motion.rotations, motion.translations, solution.iterations, solution.converged, solution.ranks),
+    )
     shares = 1 if in_order else max(1, min(threads, count // _LEAST_SHARE))
     bounds = [count * i // shares for i in range(shares + 1)]
 
     def run(share: int) -> None:
-        _compiled().solve(*arrays, problem.attraction, bounds[share], bounds[share + 1])
+        compiled().solve(*arrays, problem.attraction, bounds[share], bounds[share + 1])
 
     if shares == 1:
         run(0)
@@ -71,6 +77,23 @@ def solve(problem: Problem, solution: LayeredSolution, *, in_order: bool, thread
 
     with ThreadPoolExecutor(shares) as pool:
         list(pool.map(run, range(shares)))
+
+
+def _targets(problem: Problem) -> FloatArray:
+    """Return the targets of all tasks in the order of their rows, one after the other."""
+    parts = [part for tasks in problem.layers for each in tasks for part in _targets_of(each.task)]
+    return np.concatenate([np.zeros(0), *(np.ravel(part) for part in parts if part is not None)])
+
+
+def _targets_of(task: Task) -> Iterator[FloatArray | None]:
+    if isinstance(task, PoseTask):
+        yield from (task.position.targets, task.orientation.targets)
+    elif isinstance(task, PostureTask):
+        yield from np.moveaxis(task.targets, 1, 0)
+    elif isinstance(task, PositionTask | OrientationTask | AimTask | CenterOfMassTask):
+        yield task.targets
+    else:
+        raise TypeError(f"the compiled solver does not know {type(task).__name__}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +112,7 @@ class _Row:
     offset: FloatArray | None = None
     measure: FloatArray | None = None
     axis: FloatArray | None = None
-    targets: FloatArray | None = None
+    width: int = 3
 
 
 def _rows_of(task: Task, layer: int, weight: float) -> Iterator[_Row]:
@@ -101,12 +124,12 @@ def _rows_of(task: Task, layer: int, weight: float) -> Iterator[_Row]:
             **_point(_POSITION, task.point, task.base, layer, weight),
             axes=task.axes,
             measure=task.measure[list(task.axes)],
-            targets=task.targets,
         )
     elif isinstance(task, OrientationTask):
-        yield _Row(**_point(_ORIENTATION, task.point, task.base, layer, weight), targets=task.targets)
+        yield _Row(**_point(_ORIENTATION, task.point, task.base, layer, weight), width=4)
     elif isinstance(task, AimTask):
-        yield _Row(**_point(_AIM, task.point, task.base, layer, weight), axis=task.axis, targets=task.targets)
+        width = 0 if task.targets is None else 3
+        yield _Row(**_point(_AIM, task.point, task.base, layer, weight), axis=task.axis, width=width)
     elif isinstance(task, CenterOfMassTask):
         yield _Row(
             _CENTER_OF_MASS,
@@ -116,15 +139,12 @@ def _rows_of(task: Task, layer: int, weight: float) -> Iterator[_Row]:
             root=task.recruited.root,
             axes=task.axes,
             measure=task.measure[list(task.axes)],
-            targets=task.targets,
         )
     elif isinstance(task, PostureTask):
-        for i, place in enumerate(task.places):
+        for place in task.places:
             own = np.arange(len(task.columns.joints)) == place
             joint = int(task.columns.joints[place])
-            yield _Row(_POSTURE, layer, weight, own, joint=joint, targets=task.targets[:, i])
-    else:
-        raise TypeError(f"the compiled solver does not know {type(task).__name__}")
+            yield _Row(_POSTURE, layer, weight, own, joint=joint, width=4)
 
 
 def _point(kind: int, point: Point, base: Point | None, layer: int, weight: float) -> dict[str, Any]:
@@ -141,9 +161,8 @@ def _point(kind: int, point: Point, base: Point | None, layer: int, weight: floa
     }
 
 
-def _arrays(problem: Problem, solution: LayeredSolution, *, in_order: bool) -> tuple[FloatArray | IntArray, ...]:
-    """Return the buffers of module.c, in its order."""
-    columns, skeleton, motion = problem.columns, problem.columns.skeleton, solution.motion
+def _layout(problem: Problem) -> Layout:
+    columns, skeleton, hinges = problem.columns, problem.columns.skeleton, problem.hinges
     rows = [
         row
         for layer, tasks in enumerate(problem.layers)
@@ -152,40 +171,38 @@ def _arrays(problem: Problem, solution: LayeredSolution, *, in_order: bool) -> t
     ]
     masses = _masses(problem)
     nodes = _nodes(problem, rows, masses)
-    node_of = np.full(len(skeleton), -1)
-    node_of[nodes] = np.arange(len(nodes))
-    column_of = np.full(len(skeleton), -1)
-    column_of[columns.joints] = np.arange(len(columns.joints))
-    place_of = np.full(len(skeleton), -1)
-    place_of[skeleton.translated] = np.arange(len(skeleton.translated))
+    node_of = _places(nodes, len(skeleton))
+    column_of = _places(columns.joints, len(skeleton))
+    translation_of = _places(skeleton.translated, len(skeleton))
     parents = skeleton.parents[nodes]
-    node_integers = np.stack(
-        (nodes, np.where(parents >= 0, node_of[parents], -1), place_of[nodes], column_of[nodes]), axis=1
-    )
-    shares = np.zeros((len(nodes), 1)) if masses is None else masses.shares[nodes, None]
+    above = np.where(parents >= 0, node_of[parents], -1)
+    shares = np.zeros(len(nodes)) if masses is None else masses.shares[nodes]
     centers = np.zeros((len(nodes), 3)) if masses is None else masses.points[nodes]
-    travels = len(skeleton.translated) > 0
-    hinges = problem.hinges
-    sizes = (
-        *(len(motion), len(nodes), len(columns.joints), len(rows), len(hinges.places), len(problem.layers)),
-        *(len(skeleton), len(skeleton.translated), int(node_of[columns.root]) if travels else -1),
-        *(in_order, problem.moves_root, problem.reference_root is not None, problem.max_iterations),
+    root = int(node_of[columns.root]) if len(skeleton.translated) else -1
+    return Layout(
+        sizes=(
+            *(len(nodes), len(columns.joints), len(rows), len(hinges.places), len(problem.layers)),
+            *(len(skeleton), len(skeleton.translated), root),
+        ),
+        nodes=(
+            _integers(np.stack((nodes, above, translation_of[nodes], column_of[nodes]), axis=1)),
+            _numbers(np.column_stack((skeleton.offsets[nodes], shares, centers))),
+            _integers(node_of[columns.joints]),
+        ),
+        tasks=(
+            _integers([_task_integers(row, node_of) for row in rows]),
+            _numbers([_task_numbers(row) for row in rows]),
+            np.ascontiguousarray([row.recruited for row in rows], dtype=np.uint8),
+        ),
+        hinges=(_integers(hinges.places), _numbers(np.concatenate((hinges.axes, hinges.limits), axis=1))),
     )
-    return (
-        _integers(sizes),
-        _integers(node_integers),
-        _numbers(np.concatenate((skeleton.offsets[nodes], shares, centers), axis=1)),
-        _integers(node_of[columns.joints]),
-        _integers([_task_integers(row, node_of) for row in rows]),
-        _numbers([_task_numbers(row) for row in rows]),
-        _numbers(np.concatenate([np.ravel(row.targets) for row in rows if row.targets is not None] or [[]])),
-        np.ascontiguousarray([row.recruited for row in rows], dtype=np.uint8),
-        _integers(hinges.places),
-        _numbers(np.concatenate((hinges.axes, hinges.limits), axis=1)),
-        _numbers(problem.reference_rotations),
-        _numbers([] if problem.reference_root is None else problem.reference_root),
-        *(motion.rotations, motion.translations, solution.iterations, solution.converged, solution.ranks),
-    )
+
+
+def _places(joints: IntArray, count: int) -> IntArray:
+    """Return each joint's place among some of them, shape (count,); -1 where it is none of them."""
+    places = np.full(count, -1)
+    places[joints] = np.arange(len(joints))
+    return places
 
 
 def _integers(values: Any) -> IntArray:  # noqa: ANN401  whatever numpy takes
@@ -219,10 +236,9 @@ def _nodes(problem: Problem, rows: list[_Row], masses: Masses | None) -> IntArra
 
 def _task_integers(row: _Row, node_of: IntArray) -> list[int]:
     axes = [*row.axes, 0, 0, 0][:3]
-    width = 0 if row.targets is None else row.targets.shape[-1]
     node = -1 if row.joint < 0 else int(node_of[row.joint])
     base = -1 if row.base < 0 else int(node_of[row.base])
-    return [row.kind, row.layer, len(row.axes), node, base, row.root, row.base_root, *axes, width, 0]
+    return [row.kind, row.layer, len(row.axes), node, base, row.root, row.base_root, *axes, row.width, 0]
 
 
 def _task_numbers(row: _Row) -> FloatArray:

@@ -5,6 +5,7 @@ All frames iterate together; those that have converged leave.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
-    from motionedit.core.ik.layered_solver import HingeColumns, LayeredSolution, Problem, WeightedTask
+    from motionedit.core.ik.layered_solver import LayeredSolution, Problem, Reference, WeightedTask
     from motionedit.core.ik.tasks import Columns
 
 # Metres at leg length 0.85 m: a layer's error is clamped to this much per iteration.
@@ -43,12 +44,12 @@ _ON_LIMIT = 1e-12
 BLOCK = 1024
 
 
-def solve(problem: Problem, solution: LayeredSolution, *, in_order: bool) -> None:
+def solve(problem: Problem, solution: LayeredSolution, reference: Reference, *, in_order: bool) -> None:
     """Solve every frame of `solution` from where it is, in place; see `layered_solver.solve_layers`."""
     count = len(solution.iterations)
     if not in_order:
         for block in range(0, count, BLOCK):
-            _iterate(problem, solution, np.arange(block, min(block + BLOCK, count)))
+            _iterate(problem, solution, reference, np.arange(block, min(block + BLOCK, count)))
         return
     columns, motion = problem.columns, solution.motion
     root = int(np.searchsorted(columns.skeleton.translated, columns.root))
@@ -57,23 +58,47 @@ def solve(problem: Problem, solution: LayeredSolution, *, in_order: bool) -> Non
             motion.rotations[frame, columns.joints] = motion.rotations[frame - 1, columns.joints]
             if problem.moves_root:
                 motion.translations[frame, root] = motion.translations[frame - 1, root]
-        _iterate(problem, solution, np.array([frame]))
+        _iterate(problem, solution, reference, np.array([frame]))
 
 
-def _iterate(problem: Problem, solution: LayeredSolution, frames: IntArray) -> None:
+@dataclass(frozen=True, eq=False)
+class _Block:
+    """Frames from `first` on that iterate together, with what they remember; `root` is its place among translations."""
+
+    problem: Problem
+    reference: Reference
+    memory: Memory
+    first: int
+    root: int
+
+
+@dataclass(frozen=True, eq=False)
+class _Pose:
+    """Where N `frames` of a block are."""
+
+    frames: IntArray
+    motion: Motion
+    world: WorldPoses
+
+    @classmethod
+    def of(cls, state: Motion, frames: IntArray) -> _Pose:
+        motion = Motion(state.skeleton, state.rotations[frames], state.translations[frames], state.frame_time)
+        return cls(frames, motion, forward(motion))
+
+
+def _iterate(problem: Problem, solution: LayeredSolution, reference: Reference, frames: IntArray) -> None:
     columns, state = problem.columns, solution.motion
     root = int(np.searchsorted(columns.skeleton.translated, columns.root))
-    first = int(frames[0])
     memory = Memory.empty(len(frames), columns.size)
+    block = _Block(problem, reference, memory, int(frames[0]), root)
     moved_before = np.zeros(len(frames))
     for iteration in range(problem.max_iterations):
-        here = frames - first
-        motion = Motion(state.skeleton, state.rotations[frames], state.translations[frames], state.frame_time)
-        poses = forward(motion)
-        step, descent = _step(problem, poses, motion, frames, iteration, root, memory, here)
+        here = frames - block.first
+        pose = _Pose.of(state, frames)
+        step, descent = _step(block, pose, iteration)
         largest = np.linalg.norm(step[:, :-3].reshape(len(frames), -1, 3), axis=2).max(axis=1, initial=0.0)
         step *= np.minimum(1.0, LARGEST_TURN / np.maximum(largest, LARGEST_TURN))[:, None]
-        _apply(state, frames, columns, poses, step, root)
+        _apply(state, columns, pose, step, root)
         memory.keep(here, descent, step)
         solution.iterations[frames] = iteration + 1
         solution.ranks[frames] = descent.ranks
@@ -102,65 +127,53 @@ def _left(moved: FloatArray, before: FloatArray) -> FloatArray:
 
 def _are_met(problem: Problem, solution: LayeredSolution, frames: IntArray) -> BoolArray:
     """Return which frames meet every layer, shape (N,)."""
-    state = solution.motion
-    motion = Motion(state.skeleton, state.rotations[frames], state.translations[frames], state.frame_time)
-    poses = forward(motion)
-    met = np.ones(len(frames), dtype=np.bool_)
-    for layer in problem.layers:
-        met &= np.linalg.norm(_evaluated(layer, poses, motion.rotations, frames)[0], axis=1) < STOP_ERROR
+    pose = _Pose.of(solution.motion, frames)
+    errors = [_evaluated(layer, pose)[0] for layer in problem.layers]
+    met: BoolArray = np.all([np.linalg.norm(e, axis=1) < STOP_ERROR for e in errors], axis=0)
     return met
 
 
-def _apply(
-    state: Motion, frames: IntArray, columns: Columns, poses: WorldPoses, step: FloatArray, root: int
-) -> None:
+def _apply(state: Motion, columns: Columns, pose: _Pose, step: FloatArray, root: int) -> None:
     """Turn the column joints by world-axis increments, q <- exp(R_parent^-1 w) q, and shift the root."""
-    skeleton, joints = columns.skeleton, columns.joints
+    skeleton, joints, frames = columns.skeleton, columns.joints, pose.frames
     turns = step[:, :-3].reshape(len(frames), -1, 3).copy()
     parents = skeleton.parents[joints]
     inner = parents >= 0
-    turns[:, inner] = rot.rotate(rot.conjugate(poses.rotations[:, parents[inner]]), turns[:, inner])
+    turns[:, inner] = rot.rotate(rot.conjugate(pose.world.rotations[:, parents[inner]]), turns[:, inner])
     q = rot.multiply(rot.exp(turns), state.rotations[frames[:, None], joints])
     state.rotations[frames[:, None], joints] = rot.normalize(q)
     if len(skeleton.translated):
         shift, above = step[:, -3:], int(skeleton.parents[columns.root])
         if above >= 0:
-            shift = rot.rotate(rot.conjugate(poses.rotations[:, above]), shift)
+            shift = rot.rotate(rot.conjugate(pose.world.rotations[:, above]), shift)
         state.translations[frames, root] += shift
 
 
-def _step(
-    problem: Problem,
-    poses: WorldPoses,
-    motion: Motion,
-    frames: IntArray,
-    iteration: int,
-    root: int,
-    memory: Memory,
-    here: IntArray,
-) -> tuple[FloatArray, Descent]:
+def _step(block: _Block, pose: _Pose, iteration: int) -> tuple[FloatArray, Descent]:
     """Return the step, shape (N, n), and the descent behind it; hinges that leave their limits are set on them."""
+    problem = block.problem
     anneal = 2.0 ** min(0, problem.max_iterations - ANNEALED_ITERATIONS - iteration - 1)
     gain = problem.attraction * GAIN_DECAY ** max(0, iteration + 1 - FULL_GAIN_ITERATIONS) * anneal
-    hinges = _Hinges(problem, poses, motion)
-    evaluated = [_evaluated(layer, poses, motion.rotations, frames) for layer in problem.layers]
+    hinges = _Hinges(problem, pose)
+    evaluated = [_evaluated(layer, pose) for layer in problem.layers]
     evaluated = [(e, hinges.on_axes(J)) for e, J in evaluated]
-    z = hinges.on_axes(attraction(problem, poses, motion, frames, root)[:, None])[:, 0]
+    z = attraction(problem.columns, block.reference, pose.world, pose.motion, pose.frames)
+    z = hinges.on_axes(z[:, None])[:, 0]
     largest_errors = [LARGEST_ERROR * (1.0 if level == 0 else anneal) for level in range(len(evaluated))]
     everything = np.ones(z.shape, dtype=np.bool_)
     descent = descend(evaluated, z, fixed=np.zeros_like(z), free=everything, largest_errors=largest_errors)
     hinges.keep_limits(evaluated, z, descent, largest_errors, gain)
     step = descent.tasks + gain * descent.home
-    fast = descent.tasks + gain * accelerated(memory, here, descent, on_axes=hinges.on_axes)
-    within = ~hinges.out_of_limits(fast, descent.free).any(axis=1)
-    return np.where(within[:, None], fast, step), descent
+    home = accelerated(block.memory, pose.frames - block.first, descent, on_axes=hinges.on_axes)
+    fast = descent.tasks + gain * home
+    outside = hinges.out_of_limits(fast, descent.free).any(axis=1, keepdims=True)
+    return np.where(outside, step, fast), descent
 
 
-def _evaluated(
-    layer: Sequence[WeightedTask], poses: WorldPoses, local: FloatArray, frames: IntArray
-) -> tuple[FloatArray, FloatArray]:
+def _evaluated(layer: Sequence[WeightedTask], pose: _Pose) -> tuple[FloatArray, FloatArray]:
     """Return a layer's weighted errors (N, k) and rows (N, k, n)."""
-    parts = [(each.weight, *each.task.evaluate(poses, local, frames)) for each in layer]
+    local = pose.motion.rotations
+    parts = [(each.weight, *each.task.evaluate(pose.world, local, pose.frames)) for each in layer]
     e = np.concatenate([weight * error for weight, error, _ in parts], axis=1)
     J = np.concatenate([weight * rows for weight, _, rows in parts], axis=1)
     return e, J
@@ -169,15 +182,15 @@ def _evaluated(
 class _Hinges:
     """The hinges of N frames: world axes (N, H, 3), angles (N, H) in rad, and their unknowns `blocks` (H, 3)."""
 
-    def __init__(self, problem: Problem, poses: WorldPoses, motion: Motion) -> None:
+    def __init__(self, problem: Problem, pose: _Pose) -> None:
         hinges = problem.hinges
         joints = problem.columns.joints[hinges.places]
         parents = problem.columns.skeleton.parents[joints]
         inner = parents >= 0
         # A turn about an axis leaves it where the parent has it.
-        self.axes = np.repeat(hinges.axes[None], len(motion), axis=0)
-        self.axes[:, inner] = rot.rotate(poses.rotations[:, parents[inner]], self.axes[:, inner])
-        self.angles = np.einsum("nhc,hc->nh", rot.log(motion.rotations[:, joints]), hinges.axes)
+        self.axes = np.repeat(hinges.axes[None], len(pose.frames), axis=0)
+        self.axes[:, inner] = rot.rotate(pose.world.rotations[:, parents[inner]], self.axes[:, inner])
+        self.angles = np.einsum("nhc,hc->nh", rot.log(pose.motion.rotations[:, joints]), hinges.axes)
         self.limits = hinges.limits
         self.places = hinges.places
         self.blocks = 3 * hinges.places[:, None] + np.arange(3)

@@ -9,8 +9,8 @@ Per frame and iteration, with Q the orthonormal rows of the layers above:
 The damping lambda is in the step, never in the projector, so a layer cannot disturb those above it to first order;
 what it does to second order is annealed away: in the last iterations the steps of lower layers shrink to nothing.
 
-Two solvers do this: `layered_numpy`, the readable reference, with all frames at once, and `layered.c`, compiled, frame
-by frame. They agree to rounding.
+Two solvers do this: `layered_numpy`, the readable reference, with all frames at once, and the compiled one of `csrc`,
+frame by frame. They agree to rounding.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.compiled import compiled
 from motionedit.core.ik import kernel
 from motionedit.core.motion import Motion
 
@@ -56,23 +57,28 @@ class Problem:
         Whether any task may move the root's translation.
     layers : tuple of tuples of WeightedTask
     hinges : HingeColumns
-    reference_rotations : shape (F, J, 4)
-        Local rotations that z pulls to.
-    reference_root : shape (F, 3) or None
-        Root translations that z pulls to; None leaves the root out of z.
     attraction : float
         Gain of z.
     max_iterations : int
+    layout : kernel.Layout or None
+        The problem as the compiled solver has it, where it was laid out before; only the targets are read anew.
     """
 
     columns: Columns
     moves_root: bool
     layers: tuple[tuple[WeightedTask, ...], ...]
     hinges: HingeColumns
-    reference_rotations: FloatArray
-    reference_root: FloatArray | None
     attraction: float
     max_iterations: int
+    layout: kernel.Layout | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """What z pulls to: local `rotations` (F, J, 4), and the `root`'s translations (F, 3); None leaves it out of z."""
+
+    rotations: FloatArray
+    root: FloatArray | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +91,9 @@ class LayeredSolution:
     ranks: IntArray
 
 
-def solve_layers(problem: Problem, start: Motion, *, in_order: bool = False, threads: int = 1) -> LayeredSolution:
+def solve_layers(
+    problem: Problem, start: Motion, reference: Reference, *, in_order: bool = False, threads: int = 1
+) -> LayeredSolution:
     """Return the frames of `start` moved so that the layers are met, each as far as those above it allow.
 
     Parameters
@@ -102,10 +110,10 @@ def solve_layers(problem: Problem, start: Motion, *, in_order: bool = False, thr
         np.zeros(count, dtype=np.bool_),
         np.zeros((count, len(problem.layers)), dtype=np.intp),
     )
-    if kernel.is_used():
-        kernel.solve(problem, solution, in_order=in_order, threads=threads)
-    else:
+    if compiled() is None:
         from motionedit.core.ik import layered_numpy
 
-        layered_numpy.solve(problem, solution, in_order=in_order)
+        layered_numpy.solve(problem, solution, reference, in_order=in_order)
+    else:
+        kernel.solve(problem, solution, reference, in_order=in_order, threads=threads)
     return solution

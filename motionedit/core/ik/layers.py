@@ -1,4 +1,4 @@
-"""One pass down the priority layers: the step of eq. (1) and its recursion, and the rows that lower layers may not use."""
+"""One pass down the priority layers: the recursion of eq. (1), and the rows that lower layers may not use."""
 
 from __future__ import annotations
 

@@ -100,6 +100,19 @@ def _second_derivatives(rows: FloatArray) -> FloatArray:
     return M
 
 
+def gaussian(sigma: float, frames: int) -> FloatArray:
+    """Return the right half of a normalized Gaussian over frames, shape (radius + 1,), the middle first.
+
+    `sigma` is in frames; the radius leaves a reflection of `frames` rows something to reflect.
+    """
+    radius = max(min(int(np.ceil(KERNEL_RADIUS * sigma)), frames - 1), 0)
+    if radius < 1:
+        return np.ones(1)
+    weights = np.exp(-0.5 * (np.arange(radius + 1) / sigma) ** 2)
+    taps: FloatArray = weights / (weights[0] + 2.0 * weights[1:].sum())
+    return taps
+
+
 def low_pass(rows: FloatArray, *, sigma: float) -> FloatArray:
     """Return rows smoothed over frames by a zero-phase Gaussian, shape (F, ...).
 
@@ -111,12 +124,11 @@ def low_pass(rows: FloatArray, *, sigma: float) -> FloatArray:
     sigma : float
         Standard deviation in frames; 0 changes nothing.
     """
-    radius = min(int(np.ceil(KERNEL_RADIUS * sigma)), len(rows) - 1)
+    taps = gaussian(sigma, len(rows))
+    radius = len(taps) - 1
     if radius < 1:
         return rows.copy()
-    offsets = np.arange(-radius, radius + 1)
-    kernel = np.exp(-0.5 * (offsets / sigma) ** 2)
-    kernel /= kernel.sum()
+    kernel = np.concatenate((taps[:0:-1], taps))
     head = 2.0 * rows[:1] - rows[radius:0:-1]
     tail = 2.0 * rows[-1:] - rows[-2 : -radius - 2 : -1]
     padded = np.concatenate((head, rows, tail))

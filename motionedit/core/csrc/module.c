@@ -1,7 +1,7 @@
-/* The Python module `_layered`: buffers in, `solve_frames` without the interpreter's lock, the same buffers out.
+/* The Python module `_compiled`: buffers in, work without the interpreter's lock, results in buffers that came in.
 
-   kernel.py beside this folder lays the buffers out; the sizes are checked here, so that a slip there is an error and
-   not a crash. */
+   core/ik/kernel.py lays out the buffers of `solve`, core/kinematics.py and core/editing/continuity.py those of the others;
+   sizes are checked here, so that a slip there is an error and not a crash. */
 
 #define PY_SSIZE_T_CLEAN
 #define Py_LIMITED_API 0x030B0000
@@ -13,7 +13,7 @@
 #include <string.h>
 
 enum {
-    SIZES, NODE_INTEGERS, NODE_NUMBERS, COLUMN_NODES, TASK_INTEGERS, TASK_NUMBERS, TARGETS, RECRUITED, HINGE_COLUMNS,
+    SIZES, NODE_INTEGERS, NODE_NUMBERS, COLUMN_NODES, TASK_INTEGERS, TASK_NUMBERS, RECRUITED, TARGETS, HINGE_COLUMNS,
     HINGE_NUMBERS, REFERENCE_ROTATIONS, REFERENCE_ROOT, ROTATIONS, TRANSLATIONS, ITERATIONS, CONVERGED, RANKS, BUFFERS
 };
 enum {
@@ -146,15 +146,81 @@ static PyObject *solve(PyObject *self, PyObject *arguments)
     Py_RETURN_NONE;
 }
 
+static PyObject *forward_frames(PyObject *self, PyObject *arguments)
+{
+    enum { PARENTS, PLACES, OFFSETS, LOCAL, MOVED, POSITIONS, WORLD, COUNT };
+    Py_buffer b[COUNT] = {{0}};
+    long long frames;
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "y*y*y*y*y*w*w*L", b, b + 1, b + 2, b + 3, b + 4, b + 5, b + 6, &frames))
+        return NULL;
+    const size_t number = sizeof(double);
+    const int64_t joints = b[PARENTS].len / (Py_ssize_t)sizeof(int64_t), poses = frames * joints;
+    const int64_t translated = frames > 0 ? b[MOVED].len / (Py_ssize_t)(3 * number) / frames : 0;
+    const int fits = has_size(b + PLACES, joints, sizeof(int64_t), "places") &&
+                     has_size(b + OFFSETS, 3 * joints, number, "offsets") &&
+                     has_size(b + LOCAL, 4 * poses, number, "rotations") &&
+                     has_size(b + MOVED, 3 * translated * frames, number, "translations") &&
+                     has_size(b + POSITIONS, 3 * poses, number, "positions") &&
+                     has_size(b + WORLD, 4 * poses, number, "world rotations");
+    if (fits) {
+        Py_BEGIN_ALLOW_THREADS
+        world_poses(b[PARENTS].buf, b[PLACES].buf, b[OFFSETS].buf, frames, joints, translated, b[LOCAL].buf,
+            b[MOVED].buf, b[POSITIONS].buf, b[WORLD].buf);
+        Py_END_ALLOW_THREADS
+    }
+    for (int i = 0; i < COUNT; i++)
+        PyBuffer_Release(b + i);
+    if (!fits)
+        return NULL;
+    Py_RETURN_NONE;
+}
+
+static PyObject *smooth(PyObject *self, PyObject *arguments)
+{
+    enum { BEFORE, AFTER, TAPS, OUT, COUNT };
+    Py_buffer b[COUNT] = {{0}};
+    long long frames, first;
+    double none;
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "y*y*y*w*LLd", b, b + 1, b + 2, b + 3, &frames, &first, &none))
+        return NULL;
+    const size_t number = sizeof(double);
+    const int64_t joints = frames > 0 ? b[BEFORE].len / (Py_ssize_t)(4 * number) / frames : 0;
+    const int64_t radius = b[TAPS].len / (Py_ssize_t)number - 1;
+    int status = -2;
+    if (has_size(b + BEFORE, 4 * joints * frames, number, "rotations before") &&
+        has_size(b + AFTER, 4 * joints * frames, number, "rotations after") &&
+        has_size(b + OUT, 4 * joints * frames, number, "smooth rotations")) {
+        if (radius < 0 || first < 0 || frames - first <= radius)
+            PyErr_SetString(PyExc_ValueError, "too few frames for the filter");
+        else {
+            Py_BEGIN_ALLOW_THREADS
+            status = smooth_rotations(
+                b[BEFORE].buf, b[AFTER].buf, frames, joints, first, radius, b[TAPS].buf, none, b[OUT].buf);
+            Py_END_ALLOW_THREADS
+            if (status < 0)
+                PyErr_NoMemory();
+        }
+    }
+    for (int i = 0; i < COUNT; i++)
+        PyBuffer_Release(b + i);
+    if (status < 0)
+        return NULL;
+    Py_RETURN_NONE;
+}
+
 static PyMethodDef methods[] = {
-    {"solve", solve, METH_VARARGS, "Solve frames begin to end - 1 in place; kernel.py lays the buffers out."},
+    {"solve", solve, METH_VARARGS, "Solve frames begin to end - 1 in place."},
+    {"forward", forward_frames, METH_VARARGS, "Write the world transforms of all joints at all frames."},
+    {"smooth", smooth, METH_VARARGS, "Write rotations plus their low-passed displacement."},
     {NULL, NULL, 0, NULL},
 };
 
 static PyModuleDef_Slot slots[] = {{0, NULL}};
 
 static struct PyModuleDef definition = {
-    PyModuleDef_HEAD_INIT, "_layered", "The layered solver in C.", 0, methods, slots, NULL, NULL, NULL,
+    PyModuleDef_HEAD_INIT, "_compiled", "The layered solver, forward kinematics and smoothing in C.", 0, methods, slots, NULL, NULL, NULL,
 };
 
-PyMODINIT_FUNC PyInit__layered(void) { return PyModuleDef_Init(&definition); }
+PyMODINIT_FUNC PyInit__compiled(void) { return PyModuleDef_Init(&definition); }

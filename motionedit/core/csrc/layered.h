@@ -1,6 +1,6 @@
 /* The layered solver in C: its data, and who does what.
 
-   The method is that of layers.py, homing.py and layered_numpy.py beside this folder, frame by frame; what differs is
+   The method is that of layers.py, homing.py and layered_numpy.py in core/ik, frame by frame; what differs is
    how the same numbers are found. The Jacobian J of a frame is never formed. Every row of every task is a force f at a
    point and a torque t, shared by the columns of a chain:
 
@@ -72,6 +72,12 @@ typedef struct {
 
 /* Solve frames begin to end - 1; 0, or -1 where memory ran out. */
 int solve_frames(const Problem *problem, int64_t begin, int64_t end);
+
+/* motion.c: whole motions */
+void world_poses(const int64_t *parents, const int64_t *places, const double *offsets, int64_t frames, int64_t joints,
+    int64_t translated, const double *rotations, const double *translations, double *positions, double *world);
+int smooth_rotations(const double *before, const double *after, int64_t frames, int64_t joints, int64_t first,
+    int64_t radius, const double *taps, double none, double *out);
 
 /* What a task pulls at: a force and a torque for each of its rows, on the columns of a chain. */
 typedef struct {

@@ -1,0 +1,29 @@
+"""The compiled part of the core, where it could be built: the layered solver, forward kinematics, smoothing."""
+
+from __future__ import annotations
+
+import os
+from functools import cache
+from typing import Any
+
+# Set to ``numpy``, it keeps the compiled part out, as where none could be built.
+CHOICE = "MOTIONEDIT_SOLVER"
+
+
+@cache
+def _module() -> Any:  # noqa: ANN401  a module without types
+    try:
+        from motionedit.core import _compiled  # type: ignore[attr-defined]
+    except ImportError:
+        return None
+    return _compiled
+
+
+def compiled() -> Any:  # noqa: ANN401  as above
+    """Return the compiled module, or None where there is none or numpy alone is wanted."""
+    return None if os.environ.get(CHOICE) == "numpy" else _module()
+
+
+def solver_name() -> str:
+    """Return which solver runs: ``compiled`` or ``numpy``."""
+    return "numpy" if compiled() is None else "compiled"

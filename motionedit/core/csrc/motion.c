@@ -1,0 +1,105 @@
+/* Whole motions, frame by frame: forward kinematics, and the low-passed displacement between passes. */
+
+#include "layered.h"
+#include "rotations.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* World transforms of every joint: p_j = p_parent + R_parent t_j, q_j = q_parent q_local.
+
+   parents: shape (J,), -1 for the root. places: shape (J,), a joint's row of the translations, or -1. offsets: (J, 3).
+   rotations: (N, J, 4), translations: (N, P, 3). Out: positions (N, J, 3), world (N, J, 4). */
+void world_poses(const int64_t *parents, const int64_t *places, const double *offsets, int64_t frames, int64_t joints,
+    int64_t translated, const double *rotations, const double *translations, double *positions, double *world)
+{
+    for (int64_t f = 0; f < frames; f++, rotations += 4 * joints, translations += 3 * translated)
+        for (int64_t j = 0; j < joints; j++) {
+            const double *own = places[j] < 0 ? offsets + 3 * j : translations + 3 * places[j];
+            double *p = positions + 3 * (f * joints + j), *q = world + 4 * (f * joints + j);
+            if (parents[j] < 0) {
+                memcpy(p, own, 3 * sizeof *p), memcpy(q, rotations + 4 * j, 4 * sizeof *q);
+                continue;
+            }
+            const double *above = world + 4 * (f * joints + parents[j]);
+            double t[3], s[3];
+            cross(above + 1, own, t); /* v + 2 w (u x v) + 2 u x (u x v) */
+            t[0] *= 2.0, t[1] *= 2.0, t[2] *= 2.0;
+            cross(above + 1, t, s);
+            for (int a = 0; a < 3; a++)
+                p[a] = positions[3 * (f * joints + parents[j]) + a] + own[a] + above[0] * t[a] + s[a];
+            q_multiply(above, rotations + 4 * j, q);
+        }
+}
+
+/* One column of numbers through a symmetric filter, with odd reflection at the ends.
+
+   padded: shape (frames + 2 radius, width), its middle filled; taps: shape (radius + 1,), the middle one first. */
+static void low_pass(double *padded, int64_t frames, int64_t width, int64_t radius, const double *taps, double *out)
+{
+    double *rows = padded + radius * width;
+    for (int64_t i = 1; i <= radius; i++)
+        for (int64_t a = 0; a < width; a++) {
+            rows[-i * width + a] = 2.0 * rows[a] - rows[i * width + a];
+            rows[(frames - 1 + i) * width + a] = 2.0 * rows[(frames - 1) * width + a] - rows[(frames - 1 - i) * width + a];
+        }
+    for (int64_t i = 0; i < frames * width; i++)
+        out[i] = taps[0] * rows[i];
+    for (int64_t k = 1; k <= radius; k++)
+        for (int64_t i = 0; i < frames * width; i++)
+            out[i] += taps[k] * (rows[i - k * width] + rows[i + k * width]);
+}
+
+/* The rotation vector as a quaternion; any length. */
+static void q_exp_any(const double *v, double *out)
+{
+    const double angle = sqrt(dot(v, v));
+    if (angle <= 0.5) {
+        q_exp(v, out);
+        return;
+    }
+    const double scale = sin(0.5 * angle) / angle;
+    out[0] = cos(0.5 * angle), out[1] = scale * v[0], out[2] = scale * v[1], out[3] = scale * v[2];
+}
+
+/* Rotations plus their low-passed displacement, d = log(q_before^-1 q_after), joint by joint.
+
+   before, after, out: shape (frames, joints, 4). Frames before `first` keep their displacement and lend none; components
+   below `none` (rad) are 0, and joints without any stay as they were before. Returns -1 where memory ran out. */
+int smooth_rotations(const double *before, const double *after, int64_t frames, int64_t joints, int64_t first,
+    int64_t radius, const double *taps, double none, double *out)
+{
+    const int64_t count = frames - first;
+    double *turns = malloc(sizeof *turns * (size_t)(3 * (2 * count + 2 * radius + first) + 1));
+    if (turns == NULL)
+        return -1;
+    double *padded = turns + 3 * first, *smooth = padded + 3 * (count + 2 * radius);
+    for (int64_t j = 0; j < joints; j++) {
+        int moves = 0;
+        for (int64_t f = 0; f < frames; f++) {
+            double inverse[4], turn[4], *v = f < first ? turns + 3 * f : padded + 3 * (f - first + radius);
+            q_conjugate(before + 4 * (f * joints + j), inverse);
+            q_multiply(inverse, after + 4 * (f * joints + j), turn);
+            q_log(turn, turn);
+            for (int a = 0; a < 3; a++) {
+                v[a] = fabs(turn[a]) < none ? 0.0 : turn[a];
+                moves |= v[a] != 0.0;
+            }
+        }
+        if (moves)
+            low_pass(padded, count, 3, radius, taps, smooth);
+        for (int64_t f = 0; f < frames; f++) {
+            const double *q = before + 4 * (f * joints + j), *v = f < first ? turns + 3 * f : smooth + 3 * (f - first);
+            double turn[4];
+            if (!moves || (v[0] == 0.0 && v[1] == 0.0 && v[2] == 0.0)) {
+                memcpy(out + 4 * (f * joints + j), q, 4 * sizeof *q);
+                continue;
+            }
+            q_exp_any(v, turn);
+            q_multiply(q, turn, out + 4 * (f * joints + j));
+        }
+    }
+    free(turns);
+    return 0;
+}
