@@ -40,7 +40,7 @@ def main() -> None:
         parts = [
             ("BVH files", bvh_files.rows(Path(scratch))),
             ("The edit by coefficients, data/golf/swing04.bvh", pc_edit.rows(Path(scratch))),
-            ("The edit by prioritized constraints, data/walk.bvh, numpy alone", prioritized.rows()),
+            ("The edit by prioritized constraints", prioritized.rows(Path(scratch))),
             ("Many clips, in one process", batches.rows(Path(scratch))),
         ]
     print(machine())

@@ -61,11 +61,11 @@ def run(
     """
     tasks = plan(clips, output, options=options, depends=loaded.files)
     others = tuple(task.relative for task in tasks)
-    return run_batch(tasks, _Edit(loaded, others, threads_within(len(tasks), options)), options)
+    return run_batch(tasks, EditByPriorities(loaded, others, threads_within(len(tasks), options)), options)
 
 
 @dataclass(frozen=True)
-class _Edit:
+class EditByPriorities:
     """The work on one clip."""
 
     loaded: LoadedSpec[EditPrioritizedSpec]
@@ -74,22 +74,33 @@ class _Edit:
 
     def __call__(self, clip: Clip, task: ClipTask) -> Outcome:
         """Return the edited clip, and how near each constraint came."""
-        facts = facts_of(clip, up=self.loaded.model.up)
-        faults = Faults()
-        sized = sized_clip(self.loaded, facts, faults)
-        constraints = self._constraints(sized, task, faults)
-        faults.raise_all(f"what the spec names and {task.label} lacks")
+        sized, constraints = self.resolved(clip, task)
         if not constraints:
-            record = {**self._about(sized, facts.poses), "constraints": []}
+            record = {**self._about(sized, sized.facts.poses), "constraints": []}
             return Outcome(
                 unedited_bytes(clip), record, warnings=sized.warnings, details=("no constraints: the same bytes",)
             )
-        settings = self._settings(clip)
+        settings = self.settings(clip)
         try:
             edit = edit_by_priorities(sized.motion, [c.constraint for c in constraints], sized.body, settings)
         except RecruitingError as error:
-            raise breach_error(self.loaded, error.breach, [c.constraint for c in constraints], facts) from None
+            asked = [c.constraint for c in constraints]
+            raise breach_error(self.loaded, error.breach, asked, sized.facts) from None
         return self._outcome(sized, constraints, edit, settings)
+
+    def resolved(self, clip: Clip, task: ClipTask) -> tuple[SizedClip, list[ClipConstraint]]:
+        """Return a clip in normalised metres, and the spec's constraints in it.
+
+        Raises
+        ------
+        MotionEditErrors
+            Everything that the spec names and the clip lacks.
+        """
+        faults = Faults()
+        sized = sized_clip(self.loaded, facts_of(clip, up=self.loaded.model.up), faults)
+        constraints = self._constraints(sized, task, faults)
+        faults.raise_all(f"what the spec names and {task.label} lacks")
+        return sized, constraints
 
     def _constraints(self, sized: SizedClip, task: ClipTask, faults: Faults) -> list[ClipConstraint]:
         spec = self.loaded.model
@@ -104,7 +115,8 @@ class _Edit:
         events = faults.get(frames, otherwise=none)
         return clip_constraints(self.loaded, sized.facts, events, scale=sized.scale, faults=faults)
 
-    def _settings(self, clip: Clip) -> LayeredSettings:
+    def settings(self, clip: Clip) -> LayeredSettings:
+        """Return how the spec wants a clip solved."""
         spec = self.loaded.model
         smoothing = spec.smoothing
         return LayeredSettings(
