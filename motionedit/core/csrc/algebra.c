@@ -13,8 +13,8 @@
 #define ROUNDING 1e-13
 #define SWEEPS 30
 
-/* L, the diagonal, and the most that any of the three solutions takes. */
-size_t factor_scratch(int k) { return (size_t)(3 * k * k + 5 * k); }
+/* L, the diagonal, and the most that any of the solutions takes. */
+size_t factor_scratch(int k) { return (size_t)(3 * k * k + 3 * k); }
 
 /* out += factor a */
 static void add_multiple(double *restrict out, double factor, const double *restrict a, int n)
@@ -23,7 +23,7 @@ static void add_multiple(double *restrict out, double factor, const double *rest
         out[i] += factor * a[i];
 }
 
-/* lambda by the smallest kept singular value s and the length d of b over b_max: none where the step is safe. */
+/* lambda by s = 1 / |A~^+|_F, which the smallest kept singular value exceeds, and the length d of b over b_max. */
 static double damping(double s, double d)
 {
     if (s <= 0.5 * d)
@@ -34,13 +34,10 @@ static double damping(double s, double d)
 /* A = L L^T in the lower triangle, in place; A is k x k, positive definite. */
 static void cholesky(double *A, int k)
 {
-    for (int j = 0; j < k; j++) {
-        for (int i = j; i < k; i++) {
-            double sum = A[i * k + j];
-            for (int p = 0; p < j; p++)
-                sum -= A[i * k + p] * A[j * k + p];
-            A[i * k + j] = i == j ? sqrt(fmax(sum, DBL_MIN)) : sum / A[j * k + j];
-        }
+    for (int i = 0; i < k; i++) {
+        for (int j = 0; j < i; j++)
+            A[i * k + j] = (A[i * k + j] - dot_product(A + i * k, A + j * k, j)) / A[j * k + j];
+        A[i * k + i] = sqrt(fmax(A[i * k + i] - dot_product(A + i * k, A + i * k, i), DBL_MIN));
     }
 }
 
@@ -103,94 +100,6 @@ static int pivoted_cholesky(
     return k;
 }
 
-/* The least eigenvalue of a symmetric k x k matrix, which is destroyed: Householder, then implicit QL, without vectors. */
-static double least_eigenvalue(double *A, int k, double *d, double *e)
-{
-    for (int i = k - 1; i > 0; i--) {
-        const int l = i - 1;
-        double h = 0.0, scale = 0.0;
-        if (l > 0) {
-            for (int m = 0; m <= l; m++)
-                scale += fabs(A[i * k + m]);
-            if (scale == 0.0)
-                e[i] = A[i * k + l];
-            else {
-                for (int m = 0; m <= l; m++) {
-                    A[i * k + m] /= scale;
-                    h += A[i * k + m] * A[i * k + m];
-                }
-                double f = A[i * k + l];
-                double g = f >= 0.0 ? -sqrt(h) : sqrt(h);
-                e[i] = scale * g;
-                h -= f * g;
-                A[i * k + l] = f - g;
-                f = 0.0;
-                for (int j = 0; j <= l; j++) {
-                    g = 0.0;
-                    for (int m = 0; m <= j; m++)
-                        g += A[j * k + m] * A[i * k + m];
-                    for (int m = j + 1; m <= l; m++)
-                        g += A[m * k + j] * A[i * k + m];
-                    e[j] = g / h;
-                    f += e[j] * A[i * k + j];
-                }
-                const double hh = f / (h + h);
-                for (int j = 0; j <= l; j++) {
-                    f = A[i * k + j];
-                    e[j] = g = e[j] - hh * f;
-                    for (int m = 0; m <= j; m++)
-                        A[j * k + m] -= f * e[m] + g * A[i * k + m];
-                }
-            }
-        } else
-            e[i] = A[i * k + l];
-    }
-    for (int i = 0; i < k; i++)
-        d[i] = A[i * k + i];
-    for (int i = 1; i < k; i++)
-        e[i - 1] = e[i];
-    e[k - 1] = 0.0;
-    for (int l = 0; l < k; l++) {
-        for (int round = 0; round < SWEEPS; round++) {
-            int m = l;
-            for (; m < k - 1; m++) {
-                const double size = fabs(d[m]) + fabs(d[m + 1]);
-                if (fabs(e[m]) <= DBL_EPSILON * size)
-                    break;
-            }
-            if (m == l)
-                break;
-            double g = (d[l + 1] - d[l]) / (2.0 * e[l]), r = hypot(g, 1.0);
-            g = d[m] - d[l] + e[l] / (g + copysign(r, g));
-            double s = 1.0, c = 1.0, p = 0.0;
-            int i = m - 1;
-            for (; i >= l; i--) {
-                double f = s * e[i];
-                const double b = c * e[i];
-                e[i + 1] = r = hypot(f, g);
-                if (r == 0.0) {
-                    d[i + 1] -= p;
-                    e[m] = 0.0;
-                    break;
-                }
-                s = f / r, c = g / r;
-                g = d[i + 1] - p;
-                r = (d[i] - g) * s + 2.0 * c * b;
-                p = s * r;
-                d[i + 1] = g + p;
-                g = c * r - b;
-            }
-            if (r == 0.0 && i >= l)
-                continue;
-            d[l] -= p, e[l] = g, e[m] = 0.0;
-        }
-    }
-    double least = d[0];
-    for (int i = 1; i < k; i++)
-        least = fmin(least, d[i]);
-    return least;
-}
-
 /* Eigenvalues on the diagonal of S and eigenvectors in the columns of U, by cyclic Jacobi rotations. */
 static void jacobi(double *S, int k, double *U)
 {
@@ -232,7 +141,7 @@ static void jacobi(double *S, int k, double *U)
 static void factor_by_eigenvectors(Layer *layer, double *S, const double *b, double d, double *c, double *U)
 {
     const int k = layer->rows;
-    double largest = 0.0, least = INFINITY;
+    double largest = 0.0, inverse = 0.0;
     jacobi(S, k, U);
     for (int i = 0; i < k; i++)
         largest = fmax(largest, sqrt(fmax(S[i * k + i], 0.0)));
@@ -240,10 +149,10 @@ static void factor_by_eigenvectors(Layer *layer, double *S, const double *b, dou
     for (int i = 0; i < k; i++) {
         const double s = sqrt(fmax(S[i * k + i], 0.0));
         if (s > tolerance)
-            least = fmin(least, s);
+            inverse += 1.0 / (s * s);
         layer->order[i] = i;
     }
-    const double lambda = damping(least, d);
+    const double lambda = inverse > 0.0 ? damping(1.0 / sqrt(inverse), d) : 0.0;
     layer->rank = layer->triangular = 0;
     for (int i = 0; i < k; i++) {
         const double s = sqrt(fmax(S[i * k + i], 0.0));
@@ -258,51 +167,70 @@ static void factor_by_eigenvectors(Layer *layer, double *S, const double *b, dou
     }
 }
 
-/* c = M^+ b without damping. Rows that are no pivots are W times the pivots' rows, and least squares asks for
-   (I + W^T W)^-1 (b_1 + W^T b_2) there: a system of as many unknowns as there are such rows. */
-static void solve_undamped(
-    const double *L, const double *B, int k, int rank, const int *order, const double *b, double *c, double *scratch)
+/* Rows that are no pivots, as W times the pivots' rows: W, shape (rest, rank), and I + W W^T = N N^T. */
+typedef struct {
+    int rest;
+    double *W, *N, *scratch;
+} Dependent;
+
+static Dependent dependent_rows(const double *L, const Layer *layer, double *scratch)
 {
-    const int rest = k - rank;
-    double *W = scratch, *N = W + rest * rank, *t = N + rest * rest, *y = t + rest;
-    for (int q = 0; q < rank; q++)
-        y[q] = b[order[q]];
+    const int k = layer->rows, rank = layer->rank, rest = k - rank;
+    Dependent found = {rest, scratch, scratch + rest * rank, scratch + rest * (rank + rest)};
     for (int i = 0; i < rest; i++) {
-        double *w = W + i * rank;
+        double *w = found.W + i * rank;
         memset(w, 0, sizeof *w * rank);
         for (int q = 0; q < rank; q++)
-            add_multiple(w, L[q * k + order[rank + i]], B + q * k, q + 1);
-        add_multiple(y, b[order[rank + i]], w, rank);
+            add_multiple(w, L[q * k + layer->order[rank + i]], layer->B + q * k, q + 1);
+        for (int j = 0; j <= i; j++)
+            found.N[i * rest + j] = dot_product(w, found.W + j * rank, rank) + (i == j ? 1.0 : 0.0);
     }
-    if (rest > 0) {
-        for (int i = 0; i < rest; i++) {
-            for (int j = 0; j <= i; j++)
-                N[i * rest + j] = dot_product(W + i * rank, W + j * rank, rank);
-            N[i * rest + i] += 1.0;
-            t[i] = dot_product(W + i * rank, y, rank);
-        }
-        cholesky(N, rest);
-        cholesky_solve(N, rest, t);
-        for (int i = 0; i < rest; i++)
-            add_multiple(y, -t[i], W + i * rank, rank);
-    }
-    for (int q = 0; q < rank; q++)
-        c[q] = dot_product(B + q * k, y, q + 1);
+    cholesky(found.N, rest);
+    return found;
 }
 
-/* c = (M^T M + lambda^2)^-1 M^T b, with lambda by the least singular value. */
-static void solve_damped(const double *L, int k, int rank, const double *b, double d, double *c, double *scratch)
+/* |M^+|_F^2 = |B|_F^2 - tr((I + W W^T)^-1 V V^T), V = W B^T: 1 / s^2 of the damping. */
+static double squared_inverse(const Dependent *rows, const Layer *layer, double inverse)
 {
-    double *N = scratch, *copy = scratch + rank * rank, *diagonal = copy + rank * rank, *off = diagonal + rank;
+    const int rank = layer->rank, rest = rows->rest;
+    double *column = rows->scratch, *solved = column + rest;
+    for (int q = 0; q < rank; q++) {
+        for (int i = 0; i < rest; i++)
+            column[i] = dot_product(rows->W + i * rank, layer->B + q * layer->rows, q + 1);
+        memcpy(solved, column, sizeof *solved * rest);
+        cholesky_solve(rows->N, rest, solved);
+        inverse -= dot_product(column, solved, rest);
+    }
+    return inverse;
+}
+
+/* c = M^+ b without damping: least squares asks the pivots' rows for (I + W^T W)^-1 (b_1 + W^T b_2). */
+static void solve_undamped(const Dependent *rows, const Layer *layer, const double *b, double *c)
+{
+    const int rank = layer->rank, rest = rows->rest;
+    double *y = rows->scratch, *t = y + rank;
+    for (int q = 0; q < rank; q++)
+        y[q] = b[layer->order[q]];
+    for (int i = 0; i < rest; i++)
+        add_multiple(y, b[layer->order[rank + i]], rows->W + i * rank, rank);
+    for (int i = 0; i < rest; i++)
+        t[i] = dot_product(rows->W + i * rank, y, rank);
+    cholesky_solve(rows->N, rest, t);
+    for (int i = 0; i < rest; i++)
+        add_multiple(y, -t[i], rows->W + i * rank, rank);
+    for (int q = 0; q < rank; q++)
+        c[q] = dot_product(layer->B + q * layer->rows, y, q + 1);
+}
+
+/* c = (M^T M + lambda^2)^-1 M^T b */
+static void solve_damped(const double *L, int k, int rank, const double *b, double lambda, double *c, double *N)
+{
     for (int i = 0; i < rank; i++) {
         for (int j = 0; j <= i; j++)
-            N[i * rank + j] = N[j * rank + i] = dot_product(L + i * k, L + j * k, k);
+            N[i * rank + j] = dot_product(L + i * k, L + j * k, k);
+        N[i * rank + i] += lambda * lambda;
         c[i] = dot_product(L + i * k, b, k);
     }
-    memcpy(copy, N, sizeof *N * rank * rank);
-    const double lambda = damping(sqrt(fmax(least_eigenvalue(copy, rank, diagonal, off), 0.0)), d);
-    for (int i = 0; i < rank; i++)
-        N[i * rank + i] += lambda * lambda;
     cholesky(N, rank);
     cholesky_solve(N, rank, c);
 }
@@ -318,16 +246,18 @@ void damped_factor(Layer *layer, double *S, const double *b, double largest, dou
     for (int i = 0; i < k; i++)
         trace += S[i * k + i];
     const double d = sqrt(dot_product(b, b, k)) / largest;
-    const int rank = pivoted_cholesky(S, k, ROUNDING * trace, L, layer->B, layer->order, diagonal, &inverse);
+    layer->rank = pivoted_cholesky(S, k, ROUNDING * trace, L, layer->B, layer->order, diagonal, &inverse);
+    layer->triangular = 1;
     /* 1 / |B| is a lower bound of the least singular value, the root of the trace an upper one of the largest. */
     const double bound = inverse > 0.0 ? 1.0 / sqrt(inverse) : 0.0;
     if (bound <= RANK_TOLERANCE * fmax(sqrt(trace), LEAST_SCALE)) {
         factor_by_eigenvectors(layer, S, b, d, c, rest);
         return;
     }
-    layer->rank = rank, layer->triangular = 1;
-    if (bound > d)
-        solve_undamped(L, layer->B, k, rank, layer->order, b, c, rest);
+    const Dependent rows = dependent_rows(L, layer, rest);
+    const double lambda = bound > d ? 0.0 : damping(1.0 / sqrt(squared_inverse(&rows, layer, inverse)), d);
+    if (lambda > 0.0)
+        solve_damped(L, k, layer->rank, b, lambda, c, rest);
     else
-        solve_damped(L, k, rank, b, d, c, rest);
+        solve_undamped(&rows, layer, b, c);
 }
