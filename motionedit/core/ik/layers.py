@@ -99,8 +99,8 @@ def off_layers(Q: FloatArray, v: FloatArray) -> FloatArray:
 def _damped_step(A: FloatArray, b: FloatArray, largest: float) -> tuple[FloatArray, FloatArray, IntArray]:
     """Return the layer's step (N, n), its orthonormal rows (N, k, n; zero where not kept), and its rank (N,).
 
-    lambda follows the length of b and s = 1 / |A~^+|_F, which is a little less than the smallest kept singular value and
-    costs no search for it: none where the step is safe.
+    lambda follows the length of b and s = 1 / |A~^+|_F, a little less than the smallest kept singular value and found
+    without a search for it: none where the step is safe.
     """
     values, vectors = np.linalg.eigh(A @ np.swapaxes(A, 1, 2))
     s = np.sqrt(np.maximum(values, 0.0))
@@ -108,7 +108,7 @@ def _damped_step(A: FloatArray, b: FloatArray, largest: float) -> tuple[FloatArr
     safe = np.where(kept, s, 1.0)
     rows = np.where(kept, 1.0 / safe, 0.0)[..., None] * (np.swapaxes(vectors, 1, 2) @ A)
     inverse = np.sqrt(np.sum(np.where(kept, 1.0 / safe, 0.0) ** 2, axis=1))
-    least = 1.0 / np.maximum(inverse, 1e-300)
+    least = np.where(inverse > 0.0, 1.0 / np.where(inverse > 0.0, inverse, 1.0), 0.0)
     d = np.linalg.norm(b, axis=1) / largest
     damping = np.where(least <= 0.5 * d, 0.5 * d, np.sqrt(np.maximum(least * (d - least), 0.0)))
     damping = np.where(least <= d, damping, 0.0)
