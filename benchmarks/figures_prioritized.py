@@ -32,6 +32,7 @@ HEADINGS = (
     "first not met (mm)",
     "holds slide (mm/s)",
     "iterations, median",
+    "95 %",
     "most",
     "jerk",
 )
@@ -88,9 +89,16 @@ def measured(what: str, clip: Path, edit: Edited, spec: Sequence[dict[str, Any]]
         f"{max((c['error_max'] or 0.0 for c in unmet), default=0.0) * millimetres:.1f}" if unmet else "",
         "" if held is None else f"{held * millimetres:.3f}",
         f"{edit.record['iterations']['median']:g}",
+        f"{percentile(edit.record['frames']['iterations'], 95.0):g}",
         f"{edit.record['iterations']['max']:g}",
         f"{jerks[1] / jerks[0]:.2f}",
     )
+
+
+def percentile(iterations: Sequence[int], share: float) -> float:
+    """Return what so many per cent of the frames that were solved do not exceed."""
+    solved = np.array(iterations)
+    return float(np.percentile(solved[solved > 0], share, method="higher"))
 
 
 def slide(edited: Path, constraints: Sequence[dict[str, Any]]) -> float | None:
