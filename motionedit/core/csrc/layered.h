@@ -66,7 +66,7 @@ typedef struct {
     double *rotations;    /* shape (N, J, 4) */
     double *translations; /* shape (N, P, 3) */
     int64_t *iterations;  /* shape (N,) */
-    uint8_t *converged;   /* shape (N,) */
+    uint8_t *converged;   /* shape (N,); in: frames that are left as they are */
     int64_t *ranks;       /* shape (N, L) */
 } Problem;
 

@@ -319,7 +319,8 @@ int solve_frames(const Problem *problem, int64_t begin, int64_t end)
     for (int64_t at = begin; at < end; at++) {
         if (problem->in_order && at > 0)
             start_where_the_last_ended(problem, at);
-        solve_frame(&frame, at);
+        if (!problem->converged[at])
+            solve_frame(&frame, at);
     }
     free(memory);
     return 0;

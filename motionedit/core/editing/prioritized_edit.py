@@ -170,7 +170,7 @@ def edit_by_priorities(
         iterations = state.iterations.copy()
         for _ in range(settings.smoothing.count):
             smooth = smoothed_displacement(motion, state.motion, sigma=settings.smoothing.sigma, first=body.first)
-            state = run.solve(smooth, reference=smooth, pull_root=True, previous=state.motion)
+            state = run.solve(smooth, reference=smooth, pull_root=True, previous=state)
     else:
         state, iterations = run.solve_as_the_paper(settings.smoothing)
     touched, moved = _changes(motion, state.motion, body.travel)

@@ -221,23 +221,29 @@ class Run:
             self.targets,
         )
 
-    def solve(self, start: Motion, *, reference: Motion, pull_root: bool, previous: Motion | None = None) -> Solved:
+    def solve(self, start: Motion, *, reference: Motion, pull_root: bool, previous: Solved | None = None) -> Solved:
         """Return the motion with every frame solved from `start`, attracted to `reference`.
 
         Parameters
         ----------
-        previous : Motion, optional
-            The edited motion so far, which supports without goals stand on.
+        previous : Solved, optional
+            The edit so far: supports without goals stand on it, and frames that it left as in the input, and that start
+            from there again, need nothing.
         """
-        targets = list(self.targets)
+        targets, done = list(self.targets), np.zeros(len(start), dtype=np.bool_)
         if previous is not None and self._following:
-            poses = forward(previous)
+            poses = forward(previous.motion)
             for i in self._following:
                 targets[i] = self._com_targets(self.constraints[i], poses)
+        elif previous is not None:
+            done = _same(start, self.motion) & _same(previous.motion, self.motion) & previous.converged
         solved = replace(self.untouched(start), targets=tuple(targets))
         for group in self.groups:
+            problem = group.with_targets(targets)
             rows = _rows(group.frames)
-            self._solve_frames(solved, group, group.with_targets(targets), rows, reference, pull_root=pull_root)
+            self._solve_frames(solved, group, problem, rows, reference, done=done[rows], pull_root=pull_root)
+        if previous is not None:
+            solved.ranks[done] = previous.ranks[done]
         return solved
 
     def _solve_frames(
@@ -249,6 +255,7 @@ class Run:
         reference: Motion,
         *,
         pull_root: bool,
+        done: BoolArray | None = None,
         in_order: bool = False,
     ) -> None:
         """Solve frames of `solved` from where they are, in place."""
@@ -259,6 +266,7 @@ class Run:
             problem,
             start,
             Reference(reference.rotations[rows], root),
+            done=done,
             in_order=in_order,
             threads=self.settings.threads,
         )
@@ -280,7 +288,7 @@ class Run:
                 )
                 state = replace(state, motion=filtered)
             else:
-                state = frozen.solve(state.motion, reference=self.motion, pull_root=False, previous=state.motion)
+                state = frozen.solve(state.motion, reference=self.motion, pull_root=False, previous=state)
         return state, iterations
 
     def _in_order(self) -> Solved:
@@ -323,6 +331,13 @@ def _hinge_columns(hinges: Sequence[Hinge], joints: IntArray) -> HingeColumns:
         axes=np.array([hinge.axis for hinge in here]).reshape(-1, 3),
         limits=np.array([hinge.limits for hinge in here]).reshape(-1, 2),
     )
+
+
+def _same(one: Motion, other: Motion) -> BoolArray:
+    """Return the frames at which two motions are alike to the bit, shape (F,)."""
+    turned = (one.rotations == other.rotations).all(axis=(1, 2))
+    same: BoolArray = turned & (one.translations == other.translations).all(axis=(1, 2))
+    return same
 
 
 def _rows(frames: IntArray) -> slice | IntArray:

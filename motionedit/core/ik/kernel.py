@@ -50,7 +50,7 @@ class Layout:
 
 
 def solve(problem: Problem, solution: LayeredSolution, reference: Reference, *, in_order: bool, threads: int) -> None:
-    """Solve every frame of `solution` from where it is, in place; see `layered_solver.solve_layers`."""
+    """Solve the frames of `solution` that are not converged from where they are; see `layered_solver.solve_layers`."""
     count, motion = len(solution.iterations), solution.motion
     layout = problem.layout or Layout.of(problem)
     pulls_root = reference.root is not None

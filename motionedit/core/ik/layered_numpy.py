@@ -45,11 +45,12 @@ BLOCK = 1024
 
 
 def solve(problem: Problem, solution: LayeredSolution, reference: Reference, *, in_order: bool) -> None:
-    """Solve every frame of `solution` from where it is, in place; see `layered_solver.solve_layers`."""
+    """Solve the frames of `solution` that are not converged from where they are; see `layered_solver.solve_layers`."""
     count = len(solution.iterations)
     if not in_order:
         for block in range(0, count, BLOCK):
-            _iterate(problem, solution, reference, np.arange(block, min(block + BLOCK, count)))
+            frames = np.arange(block, min(block + BLOCK, count))
+            _iterate(problem, solution, reference, frames[~solution.converged[frames]])
         return
     columns, motion = problem.columns, solution.motion
     root = int(np.searchsorted(columns.skeleton.translated, columns.root))
@@ -89,9 +90,11 @@ class _Pose:
 def _iterate(problem: Problem, solution: LayeredSolution, reference: Reference, frames: IntArray) -> None:
     columns, state = problem.columns, solution.motion
     root = int(np.searchsorted(columns.skeleton.translated, columns.root))
-    memory = Memory.empty(len(frames), columns.size)
-    block = _Block(problem, reference, memory, int(frames[0]), root)
-    moved_before = np.zeros(len(frames))
+    if not len(frames):
+        return
+    first, count = int(frames[0]), int(frames[-1] - frames[0]) + 1
+    block = _Block(problem, reference, Memory.empty(count, columns.size), first, root)
+    memory, moved_before = block.memory, np.zeros(count)
     for iteration in range(problem.max_iterations):
         here = frames - block.first
         pose = _Pose.of(state, frames)

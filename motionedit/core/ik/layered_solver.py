@@ -92,12 +92,20 @@ class LayeredSolution:
 
 
 def solve_layers(
-    problem: Problem, start: Motion, reference: Reference, *, in_order: bool = False, threads: int = 1
+    problem: Problem,
+    start: Motion,
+    reference: Reference,
+    *,
+    done: BoolArray | None = None,
+    in_order: bool = False,
+    threads: int = 1,
 ) -> LayeredSolution:
     """Return the frames of `start` moved so that the layers are met, each as far as those above it allow.
 
     Parameters
     ----------
+    done : shape (F,), optional
+        Frames that are known to need nothing: they stay as they are, converged, without iterations and ranks.
     in_order : bool
         The frames follow each other, and each begins where the one before ended, in what the columns move: eq. (4).
     threads : int
@@ -107,7 +115,7 @@ def solve_layers(
     solution = LayeredSolution(
         Motion(start.skeleton, start.rotations.copy(), start.translations.copy(), start.frame_time),
         np.zeros(count, dtype=np.intp),
-        np.zeros(count, dtype=np.bool_),
+        np.zeros(count, dtype=np.bool_) if done is None else done.copy(),
         np.zeros((count, len(problem.layers)), dtype=np.intp),
     )
     if compiled() is None:
