@@ -130,6 +130,24 @@ def goal_record(goal: ClipGoal, poses: WorldPoses) -> dict[str, Any]:
     }
 
 
+def goal_place(goal: ClipGoal, poses: WorldPoses) -> FloatArray | None:
+    """Return where a goal wants its effector in the world, shape (3,); None where it asks for no position.
+
+    Along axes that the goal leaves free it is where the effector is in `poses`.
+    """
+    request = goal.request
+    if request.position is None:
+        return None
+    frame, base = request.frame, request.relative_to
+    wanted, _ = seen(poses, frame, request.effector, measure=request.measure, base=base)
+    axes = list(request.axes)
+    wanted[axes] = request.position[axes]
+    if base is None:
+        return wanted @ request.measure
+    place: FloatArray = poses.positions[frame, base] + rot.rotate(poses.rotations[frame, base], wanted)
+    return place
+
+
 def is_met(record: Mapping[str, Any]) -> bool:
     """Return whether a goal's record is within its tolerances."""
     pairs = ((record["error_max"], record["tolerance"]), (record["error_angle_max"], record["tolerance_angle"]))

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from motionedit.jobs.pc_goals import ClipGoal, goal_record, is_met
+from motionedit.jobs.effector_record import effector_record
+from motionedit.jobs.pc_goals import ClipGoal, goal_place, goal_record, is_met
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -42,7 +43,12 @@ def edit_record(
     bound: float | None,
 ) -> EditRecord:
     """Return what is to be said of an edit; `poses` are the edited motion's, `bound` the solver's."""
-    records = [goal_record(goal, poses) for goal in goals]
+    skeleton = edit.motion.skeleton
+    records = [
+        goal_record(goal, poses)
+        | {"effector": effector_record(goal.request.effector, skeleton), "target": goal_place(goal, poses)}
+        for goal in goals
+    ]
     before = float(model.mahalanobis(projection.coefficients))
     after = float(model.mahalanobis(edit.coefficients))
     largest = largest_norm(model)

@@ -9,6 +9,7 @@ import numpy as np
 
 from motionedit.core.editing.constraints import order_of_layers
 from motionedit.core.editing.prioritized_edit import LayeredSettings, PaperFilter
+from motionedit.jobs.effector_record import effector_record
 from motionedit.jobs.prioritized_recruits import recruited_names
 
 if TYPE_CHECKING:
@@ -42,7 +43,8 @@ class EditRecord:
 class _Measured:
     """A constraint and its errors: lengths (n,) in clip units, angles (n,) in degrees, from frame `first` on.
 
-    `excess` (n,) is the larger of both over their tolerances: above 1 the constraint is missed there.
+    `excess` (n,) is the larger of both over their tolerances: above 1 the constraint is missed there. `places` (n, 3)
+    is where the effector is wanted in the world, clip units.
     """
 
     each: ClipConstraint
@@ -50,6 +52,7 @@ class _Measured:
     lengths: FloatArray | None
     angles: FloatArray | None
     excess: FloatArray
+    places: FloatArray | None
 
     @property
     def last(self) -> int:
@@ -91,7 +94,8 @@ def edit_record(
     records, warnings, missed, statuses = [], [], [], set()
     for i, one in enumerate(measured):
         status, gave_way_to, reason = _verdict(i, measured, edit, settings)
-        records.append(_record(one, status, gave_way_to, recruited_names(edit.recruits[i], facts)))
+        about = _about(one, facts, scale) | {"recruited": recruited_names(edit.recruits[i], facts)}
+        records.append(_record(one, status, gave_way_to) | about | _frames(one))
         if status == "ok":
             continue
         line = f"{_missed_by(one)}: {reason}"
@@ -131,7 +135,8 @@ def _measured(each: ClipConstraint, errors: ConstraintErrors, scale: float) -> _
         for values, limit in ((lengths, each.tolerance), (angles, each.angle_tolerance))
         if values is not None
     ]
-    return _Measured(each, errors.first, lengths, angles, np.max(over, axis=0))
+    places = None if errors.places is None else errors.places / scale
+    return _Measured(each, errors.first, lengths, angles, np.max(over, axis=0), places)
 
 
 def _first_worst(excess: FloatArray) -> int:
@@ -195,7 +200,7 @@ def _reason(
     return _OUT_OF_REACH
 
 
-def _record(one: _Measured, status: str, gave_way_to: list[str], recruited: list[str]) -> dict[str, Any]:
+def _record(one: _Measured, status: str, gave_way_to: list[str]) -> dict[str, Any]:
     each, lengths, angles = one.each, one.lengths, one.angles
     limits = not each.may_give_way
     return {
@@ -213,9 +218,22 @@ def _record(one: _Measured, status: str, gave_way_to: list[str], recruited: list
         "strict": each.counts,
         "first_frame": one.first,
         "last_frame": one.last,
-        "recruited": recruited,
-        "frames": {"error": lengths, "error_angle": angles},
     }
+
+
+def _about(one: _Measured, facts: ClipFacts, scale: float) -> dict[str, Any]:
+    """Return what a constraint is about: its effector, and the frames of its points."""
+    constraint, skeleton = one.each.constraint, facts.clip.motion.skeleton
+    at_a_joint = constraint.kind not in {"com", "posture"}
+    return {
+        "effector": effector_record(constraint.effector, skeleton, scale=scale) if at_a_joint else None,
+        "points": [{"mode": point.mode, "first": point.start, "last": point.stop} for point in constraint.points],
+    }
+
+
+def _frames(one: _Measured) -> dict[str, Any]:
+    """Return what is told frame by frame, from the first one on."""
+    return {"frames": {"error": one.lengths, "error_angle": one.angles, "target": one.places}}
 
 
 def _layers(edit: PrioritizedEdit, measured: Sequence[_Measured]) -> list[dict[str, Any]]:

@@ -40,9 +40,24 @@ def report_bytes(
         "clips": clips,
         **(more or {}),
     }
-    text = json.dumps(plain(report), indent=2, ensure_ascii=False, allow_nan=False)
+    text = _text(plain(report), "\n")
     # File names need not be text; JSON must be.
     return f"{text}\n".encode(errors="replace")
+
+
+def _text(value: Any, newline: str) -> str:  # noqa: ANN401  any plain value
+    """Return JSON with a line for each key; a list of numbers or words stands on one, however long it is."""
+    inner = f"{newline}  "
+    if isinstance(value, dict) and value:
+        items = [f"{_scalar(key)}: {_text(item, inner)}" for key, item in value.items()]
+        return f"{{{inner}{f',{inner}'.join(items)}{newline}}}"
+    if isinstance(value, list) and any(isinstance(item, (dict, list)) for item in value):
+        return f"[{inner}{f',{inner}'.join(_text(item, inner) for item in value)}{newline}]"
+    return _scalar(value)
+
+
+def _scalar(value: Any) -> str:  # noqa: ANN401  a number, a text, or a list of them
+    return json.dumps(value, ensure_ascii=False, allow_nan=False)
 
 
 def plain(value: Any) -> Any:  # noqa: ANN401  any value that a report may hold

@@ -76,3 +76,12 @@ def test_of_many_clips_only_those_that_are_not_ok_get_a_row():
         "200 clips: 199 ok, 1 failed",
     ]
     assert len(results_table(records, [0.1] * 200, verbosity=1).splitlines()) == 202
+
+
+def test_a_list_of_numbers_stands_on_one_line_and_a_key_on_its_own():
+    text = report_bytes("info", [{"a": [1.0, 2.5], "b": {}, "c": [], "d": [[1], [2]]}]).decode()
+    assert text.partition('"clips": [\n')[2] == (
+        '    {\n      "a": [1.0, 2.5],\n      "b": {},\n      "c": [],\n'
+        '      "d": [\n        [1],\n        [2]\n      ]\n    }\n  ]\n}\n'
+    )
+    assert json.loads(text)["clips"] == [{"a": [1.0, 2.5], "b": {}, "c": [], "d": [[1], [2]]}]
