@@ -11,6 +11,7 @@ from motionedit.cli.options import (
     model_option,
     not_supported_yet,
     output_option,
+    preview_option,
     run_options,
     set_option,
     spec_option,
@@ -34,7 +35,8 @@ if TYPE_CHECKING:
 @output_option("OUT", "A name ending in .bvh for one clip, '-' for standard output, else a folder.")
 @set_option
 @run_options(keep_going=True)
-@not_supported_yet("--preview", "--skeleton")
+@preview_option
+@not_supported_yet("--skeleton")
 def command(
     clips: tuple[Path, ...],
     model: Path,

@@ -10,6 +10,7 @@ from motionedit.cli.options import (
     clips_argument,
     not_supported_yet,
     output_option,
+    preview_option,
     run_options,
     set_option,
     spec_option,
@@ -32,7 +33,8 @@ if TYPE_CHECKING:
 @output_option("OUT", "A name ending in .bvh for one clip, '-' for standard output, else a folder.")
 @set_option
 @run_options(keep_going=True)
-@not_supported_yet("--preview", "--skeleton")
+@preview_option
+@not_supported_yet("--skeleton")
 def command(
     clips: tuple[Path, ...], spec_path: Path, output: str, overrides: tuple[str, ...], options: RunOptions
 ) -> int:

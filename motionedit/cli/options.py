@@ -88,6 +88,10 @@ overwrite_option = click.option(
 )
 dry_run_option = click.option("--dry-run", is_flag=True, help="Print what would be done; write nothing.")
 
+preview_option = click.option(
+    "--preview", is_flag=True, help="Write a page next to each clip: input, edit, goals and constraints (NAME.html)."
+)
+
 _BEFORE = (
     jobs_option,
     click.option(

@@ -8,8 +8,8 @@ import click
 
 from motionedit.cli.options import (
     clips_argument,
+    existing_file,
     lenient_option,
-    not_supported_yet,
     output_option,
     overwrite_option,
 )
@@ -19,20 +19,27 @@ from motionedit.cli.verbosity import verbosity_options
 @click.command(
     "preview",
     epilog="""\b
-    Example, a clip before and after an edit:
-      motionedit preview walk.bvh edited/walk.bvh -o walk.html""",
+    Example, a clip before and after an edit, and what was asked of it:
+      motionedit preview walk.bvh edited/walk.bvh -o walk.html --report walk.json""",
 )
 @clips_argument
 @output_option("FILE", "The page (.html, moves) or the picture (.png or .svg, stands) to write.")
 @overwrite_option
 @lenient_option
-@not_supported_yet("--report")
+@click.option(
+    "--report",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    callback=existing_file,
+    help="The JSON report of an edit: a page shows its goals, intervals, paths and errors.",
+)
 @verbosity_options
 def command(
     clips: tuple[Path, ...],
     output: str,
     overwrite: bool,  # noqa: FBT001  click passes its options by name
     lenient: bool,  # noqa: FBT001  as above
+    report: Path | None,
 ) -> int:
     """Draw clips, overlaid, as a page or a picture.
 
@@ -43,6 +50,6 @@ def command(
 
     if not overwrite:
         refuse_existing([Path(output)])
-    for path in preview.run(clips, Path(output), lenient=lenient):
+    for path in preview.run(clips, Path(output), report=report, lenient=lenient):
         click.echo(path)
     return 0

@@ -161,6 +161,7 @@ def _absolute(task: ClipTask) -> ClipTask:
         task,
         source=None if task.source is None else task.source.absolute(),
         output=None if task.output is None else task.output.absolute(),
+        page=None if task.page is None else task.page.absolute(),
     )
 
 
@@ -169,7 +170,7 @@ def _collect(waiting: Sequence[ClipTask], done: Sequence[Done], total: int, opti
     failures = [_named(error, task) for task, one in pairs for error in one.errors]
     return BatchResult(
         records=[_record(task, one) for task, one in pairs],
-        paths=[str(task.output) for task, one in pairs if one.written and task.output is not None],
+        paths=[str(path) for task, one in pairs if one.written for path in task.outputs],
         warnings=[_about(task, warning, alone=total == 1) for task, one in pairs for warning in one.outcome.warnings],
         failures=failures,
         exit_code=_exit_code(waiting, done, strict=options.strict),
@@ -200,7 +201,7 @@ def _about(task: ClipTask, warning: str, *, alone: bool) -> str:
 
 
 def _heading(task: ClipTask) -> str:
-    return f"{task.label} -> {task.output or 'standard output'}"
+    return f"{task.label} -> {', '.join(map(str, task.outputs)) or 'standard output'}"
 
 
 def _exit_code(waiting: Sequence[ClipTask], done: Sequence[Done], *, strict: bool) -> int:

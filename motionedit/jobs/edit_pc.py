@@ -21,6 +21,7 @@ from motionedit.jobs import resolve
 from motionedit.jobs.batch import Outcome, plan, run_batch
 from motionedit.jobs.clip_facts import facts_of
 from motionedit.jobs.edit_metrics import edit_metrics
+from motionedit.jobs.edit_page import WithPage
 from motionedit.jobs.model_events import events_for_model, refuse_unknown_events
 from motionedit.jobs.pc_goals import ClipGoal, clip_goal
 from motionedit.jobs.pc_record import edit_record, goal_line, largest_norm
@@ -58,7 +59,8 @@ def run(
     refuse_unknown_events(loaded, full)
     cut = full.truncated(_component_count(loaded, full))
     others = tuple(task.relative for task in tasks)
-    return run_batch(tasks, _Edit(loaded, cut, str(model), others), options)
+    work = _Edit(loaded, cut, str(model), others)
+    return run_batch(tasks, WithPage(work, loaded.data) if options.preview and not options.dry_run else work, options)
 
 
 def _component_count(loaded: LoadedSpec[EditPcSpec], model: MotionModel) -> int:

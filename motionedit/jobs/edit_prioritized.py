@@ -25,6 +25,7 @@ from motionedit.jobs.batch import Outcome, plan, run_batch
 from motionedit.jobs.clip_facts import facts_of
 from motionedit.jobs.collected import Faults
 from motionedit.jobs.edit_metrics import edit_metrics
+from motionedit.jobs.edit_page import WithPage
 from motionedit.jobs.events import event_frames
 from motionedit.jobs.pool import threads_within
 from motionedit.jobs.prioritized_body import sized_clip
@@ -61,7 +62,8 @@ def run(
     """
     tasks = plan(clips, output, options=options, depends=loaded.files)
     others = tuple(task.relative for task in tasks)
-    return run_batch(tasks, EditByPriorities(loaded, others, threads_within(len(tasks), options)), options)
+    work = EditByPriorities(loaded, others, threads_within(len(tasks), options))
+    return run_batch(tasks, WithPage(work, loaded.data) if options.preview and not options.dry_run else work, options)
 
 
 @dataclass(frozen=True)

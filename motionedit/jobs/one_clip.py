@@ -11,6 +11,8 @@ from motionedit.errors import ClipError, MotionEditError, MotionEditErrors
 from motionedit.jobs.files import atomic_write
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from motionedit.core.bvh import Clip
     from motionedit.core.motion import Motion
     from motionedit.jobs.plan import ClipTask, RunOptions
@@ -34,6 +36,8 @@ class Outcome:
         What the content should read back as, for `verify`; None is the clip's own.
     details : tuple of str
         Lines that --dry-run prints: layers, recruited joints, intervals, goals.
+    page : bytes or None
+        The preview page to write next to the clip.
     """
 
     content: bytes | None
@@ -42,6 +46,7 @@ class Outcome:
     warnings: tuple[str, ...] = ()
     motion: Motion | None = None
     details: tuple[str, ...] = ()
+    page: bytes | None = None
 
 
 class Work(Protocol):
@@ -90,17 +95,23 @@ class RunOne:
         warnings = (*clip.warnings, *outcome.warnings)
         content = outcome.content
         if content is None or self.options.dry_run:
-            return Done(replace(outcome, content=None, motion=None, warnings=warnings))
+            return Done(replace(outcome, content=None, page=None, motion=None, warnings=warnings))
         record = outcome.record
         if self.options.verify:
             record = {**record, "verify": _verify(clip, content, outcome.motion or clip.motion)}
         if task.output is not None:
-            try:
-                atomic_write(task.output, content)
-            except OSError as error:
-                raise ClipError(f"cannot be written: {error.strerror or error}", file=str(task.output)) from error
+            _write(task.output, content)
             content = None
+        if task.page is not None and outcome.page is not None:
+            _write(task.page, outcome.page)
         return Done(Outcome(content, record, outcome.status, warnings), written=True)
+
+
+def _write(path: Path, content: bytes) -> None:
+    try:
+        atomic_write(path, content)
+    except OSError as error:
+        raise ClipError(f"cannot be written: {error.strerror or error}", file=str(path)) from error
 
 
 def read_task(task: ClipTask, *, lenient: bool) -> Clip:

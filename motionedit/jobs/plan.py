@@ -44,6 +44,8 @@ class RunOptions:
         Accept clips with a wrong `Frames:`; read each output back with bvhio.
     strict : bool
         A goal out of tolerance gives exit code 3.
+    preview : bool
+        A page next to each clip that is written.
     dry_run : bool
         Write nothing.
     verbosity : int
@@ -61,6 +63,7 @@ class RunOptions:
     keep_going: bool = True
     lenient: bool = False
     strict: bool = False
+    preview: bool = False
     dry_run: bool = False
     verify: bool = False
     verbosity: int = 0
@@ -83,7 +86,9 @@ class ClipTask:
     relative : str
         Path below the given folder with forward slashes, or the file's name: what event files call the clip.
     current : bool
-        With `update`: the output is newer than all it depends on, and stays as it is.
+        With `update`: the output is newer than all it depends on, and stays as it is; and so is its page.
+    page : Path or None
+        With `preview`: the page next to the output.
     """
 
     source: Path | None
@@ -91,6 +96,12 @@ class ClipTask:
     output: Path | None
     relative: str
     current: bool = False
+    page: Path | None = None
+
+    @property
+    def outputs(self) -> list[Path]:
+        """The files that it writes."""
+        return [path for path in (self.output, self.page) if path is not None]
 
 
 def find_clips(clips: Sequence[Path], *, leave_out: Path | None = None) -> list[ClipTask]:
@@ -135,20 +146,24 @@ def plan(clips: Sequence[Path], output: str, *, options: RunOptions, depends: Se
     ------
     UsageError
         As `find_clips`; several clips for one output; an output that is an input; an output that exists where
-        `overwrite` is off; `update` with standard input or output.
+        `overwrite` is off; `update` with standard input or output; `preview` with standard output.
     """
     found = find_clips(clips, leave_out=None if output == "-" else Path(output))
     if options.update and (output == "-" or any(task.source is None for task in found)):
         raise UsageError("--update compares the times of files: it does not go with '-'")
+    if options.preview and output == "-":
+        raise UsageError("--preview writes a page next to each clip: it does not go with -o -")
     tasks = _with_outputs(found, output)
+    if options.preview:
+        tasks = [replace(task, page=task.output and task.output.with_suffix(".html")) for task in tasks]
     _refuse_shared_outputs(tasks, options.report)
-    outputs = [task.output for task in tasks if task.output is not None]
+    outputs = [path for task in tasks for path in task.outputs]
     inputs = [task.source for task in tasks if task.source is not None]
     refuse_overwriting([*outputs, *([options.report] if options.report else [])], [*inputs, *depends])
     if options.update:
         tasks = [replace(task, current=_is_current(task, depends)) for task in tasks]
     if not options.overwrite:
-        refuse_existing([task.output for task in tasks if task.output and not task.current])
+        refuse_existing([path for task in tasks if not task.current for path in task.outputs])
     return tasks
 
 
@@ -225,17 +240,16 @@ def _with_outputs(tasks: list[ClipTask], output: str) -> list[ClipTask]:
 def _refuse_shared_outputs(tasks: list[ClipTask], report: Path | None) -> None:
     first = {} if report is None else {os.path.realpath(report): "the report"}
     for task in tasks:
-        if task.output is None:
-            continue
-        name = os.path.realpath(task.output)
-        if name in first:
-            raise UsageError(f"{first[name]} and {task.label} would both be written to {task.output}")
-        first[name] = task.label
+        for output in task.outputs:
+            name = os.path.realpath(output)
+            if name in first:
+                raise UsageError(f"{first[name]} and {task.label} would both be written to {output}")
+            first[name] = task.label
 
 
 def _is_current(task: ClipTask, depends: Sequence[Path]) -> bool:
     """Tell, by make's rule, whether no file that the output is made from is newer than it."""
-    if task.output is None or task.source is None or not task.output.exists():
+    if task.output is None or task.source is None or not all(path.exists() for path in task.outputs):
         return False
-    made = task.output.stat().st_mtime_ns
+    made = min(path.stat().st_mtime_ns for path in task.outputs)
     return all(made >= path.stat().st_mtime_ns for path in (task.source, *depends) if path.exists())

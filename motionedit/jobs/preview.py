@@ -5,19 +5,24 @@ from __future__ import annotations
 import os
 from dataclasses import replace
 from pathlib import PurePath
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from motionedit.errors import MotionEditError, MotionEditErrors, UsageError
 from motionedit.jobs.batch import read_task
 from motionedit.jobs.files import atomic_write
 from motionedit.jobs.plan import find_clips, refuse_overwriting
+from motionedit.jobs.report_file import matches, read_report
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
+    from motionedit.core.bvh import Clip
+    from motionedit.jobs.marks import Figure
     from motionedit.jobs.plan import ClipTask
+    from motionedit.jobs.report_file import EditReport, Match
     from motionedit.report.preview.body import Body
+    from motionedit.report.preview.marks import Edit
 
 _PAGES = (".html",)
 _SHEETS = (".png", ".svg")
@@ -25,7 +30,7 @@ _SHEETS = (".png", ".svg")
 _LIKE_SIZE = 2.0
 
 
-def run(clips: Sequence[Path], output: Path, *, lenient: bool = False) -> list[Path]:
+def run(clips: Sequence[Path], output: Path, *, report: Path | None = None, lenient: bool = False) -> list[Path]:
     """Write the picture of the clips and return the paths written, which is `output`.
 
     Parameters
@@ -34,57 +39,109 @@ def run(clips: Sequence[Path], output: Path, *, lenient: bool = False) -> list[P
         Files, folders, or ``-``.
     output
         A name ending in ``.html`` (the page), ``.png`` or ``.svg`` (a contact sheet).
+    report
+        The JSON report of the edit that wrote some of the clips: the page shows its goals and constraints.
 
     Raises
     ------
     UsageError
-        Another ending, a clip that does not exist, an output that is an input; a sheet without matplotlib.
+        Another ending, a clip that does not exist, an output that is an input; a sheet without matplotlib, or with a
+        report; a report that cannot be read, or that fits none of the clips.
     ClipError, MotionEditErrors
         Clips that cannot be read: nothing is written.
     """
     kind = output.suffix.lower()
     if kind not in _PAGES + _SHEETS:
         raise UsageError("a preview is a .html page, or a .png or .svg sheet; give such a name", file=str(output))
+    if report is not None and kind in _SHEETS:
+        raise UsageError("--report is shown on a page; give a name ending in .html", file=str(output))
     tasks = find_clips(clips)
-    refuse_overwriting([output], [task.source for task in tasks if task.source is not None])
+    sources = [task.source for task in tasks if task.source is not None]
+    refuse_overwriting([output], sources if report is None else [*sources, report])
     if kind in _SHEETS:
         from motionedit.report.sheet import need_matplotlib
 
         need_matplotlib()
-    bodies = _bodies(tasks, lenient=lenient)
+    content = _page(tasks, report, lenient=lenient) if kind in _PAGES else _sheet(tasks, kind, lenient=lenient)
     try:
-        atomic_write(output, _drawn(bodies, kind))
+        atomic_write(output, content)
     except OSError as error:
         raise UsageError(f"cannot be written: {error.strerror or error}", file=str(output)) from error
     return [output]
 
 
-def _drawn(bodies: Sequence[Body], kind: str) -> bytes:
-    if kind in _PAGES:
-        from motionedit.report.preview.page import page
+def edit_page(clip: Clip, content: bytes, task: ClipTask, record: Mapping[str, Any], spec: Mapping[str, Any]) -> bytes:
+    """Return the page of one edit: the input, what is to be written, and the report's `record` of it.
 
-        return page(bodies, title=_title([body.label for body in bodies]))
+    The same bytes as those that `run` would write of the two files and the report.
+    """
+    from motionedit.core.bvh import parse_clip
+    from motionedit.jobs.marks import edit_of
+    from motionedit.report.preview.page import page
+    from motionedit.report.record import plain
+
+    output = str(task.output)
+    edited = parse_clip(content, label=output, lenient=True)
+    figures = _figures([clip, edited], short_labels([task.label, output]))
+    edit = edit_of(plain(record), figures, edited=1, before=0, masses=spec.get("masses") or {}, report="--preview")
+    bodies = [figure.body for figure in figures]
+    return page(bodies, title=_title([body.label for body in bodies]), edits=[edit])
+
+
+def _page(tasks: Sequence[ClipTask], report: Path | None, *, lenient: bool) -> bytes:
+    from motionedit.report.preview.page import page
+
+    read = None if report is None else read_report(report)
+    found = [] if read is None else matches(read, tasks)
+    figures = _figures(_clips(tasks, lenient=lenient), _labels(tasks))
+    edits = [] if read is None else _edits(read, found, figures)
+    return page([figure.body for figure in figures], title=_title([f.body.label for f in figures]), edits=edits)
+
+
+def _edits(report: EditReport, found: Sequence[Match], figures: Sequence[Figure]) -> list[Edit]:
+    from motionedit.jobs.marks import edit_of
+
+    name, masses = report.name, report.masses
+    return [
+        edit_of(one.record, figures, edited=one.edited, before=one.before, masses=masses, report=name) for one in found
+    ]
+
+
+def _sheet(tasks: Sequence[ClipTask], kind: str, *, lenient: bool) -> bytes:
     from motionedit.report.sheet import sheet
 
-    return sheet(bodies, "png" if kind == ".png" else "svg")
+    figures = _figures(_clips(tasks, lenient=lenient), _labels(tasks))
+    return sheet([figure.body for figure in figures], "png" if kind == ".png" else "svg")
 
 
-def _bodies(tasks: Sequence[ClipTask], *, lenient: bool) -> list[Body]:
-    from motionedit.jobs.bodies import body_of
-    from motionedit.jobs.clip_facts import facts_of
+def _labels(tasks: Sequence[ClipTask]) -> list[str]:
+    return short_labels([task.label for task in tasks])
 
-    bodies: list[Body] = []
+
+def _clips(tasks: Sequence[ClipTask], *, lenient: bool) -> list[Clip]:
+    clips: list[Clip] = []
     errors: list[MotionEditError] = []
-    for task, label in zip(tasks, short_labels([task.label for task in tasks]), strict=True):
+    for task in tasks:
         try:
-            bodies.append(body_of(facts_of(read_task(task, lenient=lenient)), label=label))
+            clips.append(read_task(task, lenient=lenient))
         except MotionEditError as error:
             errors.append(error)
     if len(errors) == 1:
         raise errors[0]
     if errors:
         raise MotionEditErrors("clips that cannot be shown", errors)
-    return [_like(bodies[0], body) for body in bodies]
+    return clips
+
+
+def _figures(clips: Sequence[Clip], labels: Sequence[str]) -> list[Figure]:
+    """Return the clips with their bodies, all at the size of the first."""
+    from motionedit.jobs.bodies import body_of
+    from motionedit.jobs.clip_facts import facts_of
+    from motionedit.jobs.marks import Figure
+
+    found = [facts_of(clip) for clip in clips]
+    bodies = [body_of(facts, label=label) for facts, label in zip(found, labels, strict=True)]
+    return [Figure(facts, _like(bodies[0], body)) for facts, body in zip(found, bodies, strict=True)]
 
 
 def _like(first: Body, body: Body) -> Body:

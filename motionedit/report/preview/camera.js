@@ -23,7 +23,9 @@ function center(list) {
 // Where a view of these clips looks, before panning.
 function baseTarget(list, time) {
   if (!camera.follow) return center(list);
-  return mixFrames(list[0].centers, 3, frameAt(list[0], time), [0, 0, 0]);
+  // The middle of all: an edited clip may go another way than its input.
+  const ways = list.map((clip) => mixFrames(clip.centers, 3, frameAt(clip, time), [0, 0, 0]));
+  return [0, 1, 2].map((a) => ways.reduce((sum, way) => sum + way[a], 0) / ways.length);
 }
 
 function axesOf(az, el) {
@@ -36,18 +38,22 @@ function fitDistance(list, az, el, width, height) {
   const { right, up, back } = axesOf(az, el);
   const tanX = (0.44 * width) / (FOCAL * height), tanY = 0.42 / FOCAL;
   let dist = 0;
+  const take = (point, t) => {
+    const d = [0, 1, 2].map((a) => point[a] - t[a]);
+    const x = Math.abs(dot(right, d)), y = Math.abs(dot(up, d)), z = dot(back, d);
+    dist = Math.max(dist, z + x / tanX, z + y / tanY);
+  };
+  const still = center(list);
   for (const clip of list) {
-    const still = center(list);
     const stride = Math.max(1, Math.floor(clip.frames / 200));
     for (let f = clip.first; f < clip.frames; f += stride) {
-      const t = camera.follow ? clip.centers.subarray(3 * f, 3 * f + 3) : still;
+      const t = camera.follow ? baseTarget(list, f * clip.frameTime) : still;
       for (let p = 0; p < clip.points; p++) {
         const i = 3 * (f * clip.points + p);
-        const d = [0, 1, 2].map((a) => clip.positions[i + a] - t[a]);
-        const x = Math.abs(dot(right, d)), y = Math.abs(dot(up, d)), z = dot(back, d);
-        dist = Math.max(dist, z + x / tanX, z + y / tanY);
+        take(clip.positions.subarray(i, i + 3), t);
       }
     }
+    if (!camera.follow) for (const goal of clip.goals) take(goal, still);
   }
   return dist + 0.1 * unitSize;
 }

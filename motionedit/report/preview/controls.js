@@ -95,7 +95,7 @@ function buildLegend() {
 function buildTrails() {
   const names = [...new Set(clips.flatMap((clip) => clip.names))].filter((name) => name);
   const autos = [...new Set(clips.flatMap((clip) => clip.trails.map((p) => clip.names[p])))];
-  const options = [["auto", autos.join(", ") || "none"], ["", "none"], ...names.map((name) => [name, name])];
+  const options = [["auto", marks.length ? "goals' effectors" : autos.join(", ") || "none"], ["", "none"], ...names.map((name) => [name, name])];
   for (const [value, text] of options) byId("trail").append(new Option(text, value));
 }
 
@@ -120,7 +120,7 @@ function whereText(clip) {
     file[name.slice(-1)] = ((name[0] === "-" ? -1 : 1) * clip.pose[3 * point + a]) / clip.scale;
   });
   const values = [file.x, file.y, file.z].map((v) => v.toFixed(digits).replace(/^-(?=[0.]*$)/, "").replace("-", "\u2212"));
-  return `frame ${frame}${ended} · ${clip.names[point]} ${values.join(", ")}`;
+  return `frame ${frame}${ended} · ${pointName(clip, point)} ${values.join(", ")}`;
 }
 
 function drawTexts() {
@@ -137,11 +137,22 @@ function drawTexts() {
   byId("scale").textContent = lines.join("\n");
 }
 
+// Where a time is on a time line of that width, and the other way.
+const KNOB = 8;
+
+function timeX(time, width) {
+  return KNOB + ((width - 2 * KNOB) * time) / (duration || 1);
+}
+
+function timeAt(x, width) {
+  return ((x - KNOB) / Math.max(1, width - 2 * KNOB)) * duration;
+}
+
 // Seconds above, a bar for each clip, the head of time through all.
 function drawRuler() {
   const element = byId("ruler"), ctx = prepare(element);
   const width = element.clientWidth, height = element.clientHeight;
-  const knob = 8, x = (time) => knob + ((width - 2 * knob) * time) / (duration || 1);
+  const x = (time) => timeX(time, width);
   const tick = niceStep(Math.max(duration / Math.max(2, width / 70), 1e-3));
   ctx.font = "11px system-ui, sans-serif";
   ctx.textBaseline = "top";
@@ -178,6 +189,7 @@ function listen() {
   press("back", () => step(-1));
   press("next", () => step(1));
   press("loop", () => setLoop(!state.loop));
+  press("goals", () => setGoals(!state.goals));
   press("layout", () => setApart(!state.apart));
   press("help", () => byId("keys").showModal());
   for (const preset of Object.keys(ANGLES)) press(preset, () => setView(preset));
@@ -216,6 +228,8 @@ function onKey(e) {
     1: () => setView("front"), 2: () => setView("side"), 3: () => setView("top"), 4: () => setView("follow"), 0: () => setView("fit"),
     a: () => move(-1, 0), d: () => move(1, 0), w: () => move(0, 1), s: () => move(0, -1),
     l: () => setLoop(!state.loop), o: () => setApart(!state.apart), t: () => setTrail(state.trail === "" ? "auto" : ""),
+    g: () => setGoals(!state.goals), n: () => toGoal(1), p: () => toGoal(-1),
+    arrowup: () => chooseNext(-1), arrowdown: () => chooseNext(1), escape: () => choose(null),
     "?": () => byId("keys").showModal(),
   };
   const action = actions[e.key.toLowerCase()];
@@ -256,7 +270,7 @@ function onPointer(e) {
   for (const [name, handler] of Object.entries(handlers)) canvas.addEventListener(name, handler);
 }
 
-// #frame=58&view=side&layout=side&trail=RightHand&speed=0.5&play=1 opens the page in that state.
+// #frame=58&view=side&layout=side&trail=RightHand&speed=0.5&goal=hand&play=1 opens the page in that state.
 function applyAddress() {
   const given = new URLSearchParams(location.hash.slice(1));
   const speed = Number(given.get("speed"));
@@ -266,6 +280,7 @@ function applyAddress() {
   if (Object.hasOwn(ANGLES, given.get("view"))) setView(given.get("view"), true);
   const frame = Number(given.get("frame"));
   if (given.has("frame") && Number.isFinite(frame)) step(frame - frameNow());
+  if (given.has("goal")) choose(marks.find((mark) => mark.name === given.get("goal")) || null);
   if (given.has("play")) play(given.get("play") === "1");
 }
 
@@ -287,12 +302,15 @@ function tick(now) {
     dirty = false;
     drawScene();
     drawRuler();
+    drawLanes();
     drawTexts();
   }
   requestAnimationFrame(tick);
 }
 
 buildLegend();
+buildLanes();
+setGoals(state.goals);
 buildTrails();
 scrub.max = String(lastFrame);
 byId("layout").hidden = clips.length < 2;

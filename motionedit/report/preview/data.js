@@ -27,7 +27,7 @@ function readClip(record, index) {
     centers: smoothed(centers, record.first, record.frames, Math.round(0.25 / record.frameTime)),
     duration: (record.frames - 1) * record.frameTime,
     pose: new Float32Array(3 * points),
-    show: "solid",
+    show: "solid", goals: [],
   };
 }
 
@@ -58,9 +58,40 @@ function mixFrames(track, width, at, out) {
   return out;
 }
 
+// An edit: what was asked of a clip, mark by mark.
+function readEdit(record) {
+  const clip = clips[record.clip];
+  const curve = (found) => {
+    if (!found) return null;
+    const values = unpack(found.values, Float32Array);
+    return { values, tolerance: found.tolerance, max: values.reduce((most, value) => Math.max(most, value), 0) };
+  };
+  const list = record.marks.map((mark) => ({
+    ...mark, clip,
+    places: mark.places && unpack(mark.places, Float32Array),
+    lengths: curve(mark.lengths), angles: curve(mark.angles),
+    missed: mark.status !== "ok",
+    seenWith: new Set([record.clip, ...mark.points.map(([c]) => c)]),
+  }));
+  for (const mark of list) keepInView(mark);
+  return { ...record, marks: list, missed: !["ok", "far"].includes(record.status) };
+}
+
+// A goal that is not too far from its clip belongs into the picture of the whole.
+function keepInView(mark) {
+  if (!mark.places || mark.kind === "aim") return;
+  for (const [, first] of mark.spans) {
+    const place = mark.places.subarray(3 * (first - mark.first), 3 * (first - mark.first) + 3);
+    const gap = Math.max(...[0, 1, 2].map((a) => Math.max(mark.clip.low[a] - place[a], place[a] - mark.clip.high[a])));
+    if (gap < 1.5 * mark.clip.size) mark.clip.goals.push([...place]);
+  }
+}
+
 const clips = JSON.parse(document.getElementById("clips").textContent).map(readClip);
 const reference = clips[0];
 const duration = Math.max(...clips.map((clip) => clip.duration));
 const lastFrame = Math.round(duration / reference.frameTime);
 const unitSize = reference.size;
+const edits = JSON.parse(document.getElementById("edits").textContent).map(readEdit);
+const marks = edits.flatMap((edit) => edit.marks);
 const floorHeight = Math.min(...clips.map((clip) => clip.floor));

@@ -25,6 +25,7 @@ function readColors(dark) {
   colors = {
     dark, paper: rgb(value("--paper")), sky: value("--sky"), grid: value("--grid"), quiet: value("--quiet"),
     ink: value("--ink"), accent: value("--accent"), line: value("--line"),
+    goal: value("--goal"), miss: value("--miss"),
   };
   const white = [255, 255, 255], black = [8, 12, 18];
   clips.forEach((clip, i) => {

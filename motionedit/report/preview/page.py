@@ -15,20 +15,22 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from motionedit.report.preview.body import Body
+    from motionedit.report.preview.marks import Curve, Edit, Mark
 
 # In the order of the page's script: each file uses what stands before it.
-_SCRIPTS = ("data.js", "camera.js", "floor.js", "figure.js", "scene.js", "controls.js")
+_SCRIPTS = ("data.js", "camera.js", "floor.js", "figure.js", "goals.js", "scene.js", "lanes.js", "controls.js")
 _INT16_MAX = 32767
 
 
-def page(bodies: Sequence[Body], *, title: str) -> bytes:
-    """Return the whole HTML page, UTF-8; the same bytes for the same bodies."""
+def page(bodies: Sequence[Body], *, title: str, edits: Sequence[Edit] = ()) -> bytes:
+    """Return the whole HTML page, UTF-8; the same bytes for the same bodies and edits."""
     folder = files(__package__ or "motionedit.report.preview")
     read = {name: (folder / name).read_text("utf-8") for name in ("page.html", "style.css", *_SCRIPTS)}
     parts = {
         "{{title}}": _escaped(title),
         "{{style}}": read["style.css"],
         "{{data}}": _json([_record(body) for body in bodies]),
+        "{{edits}}": _json([_edit(edit) for edit in edits]),
         "{{script}}": "".join(read[name] for name in _SCRIPTS),
     }
     # Cut at the marks of the template itself, so that a mark inside a clip's name is never filled in.
@@ -89,6 +91,40 @@ def _record(body: Body) -> dict[str, Any]:
         "steps": steps,
         "step": step,
     }
+
+
+def _edit(edit: Edit) -> dict[str, Any]:
+    return {
+        "clip": edit.body,
+        "status": edit.status,
+        "message": edit.message or "",
+        "unit": edit.unit or "",
+        "marks": [_mark(mark) for mark in edit.marks],
+    }
+
+
+def _mark(mark: Mark) -> dict[str, Any]:
+    return {
+        "name": mark.name,
+        "kind": mark.kind,
+        "priority": mark.priority,
+        "status": mark.status,
+        "gaveWayTo": mark.gave_way_to,
+        "first": mark.first,
+        "last": mark.last,
+        "spans": [(span.mode, span.first, span.last) for span in mark.spans],
+        "places": None if mark.places is None else _base64(mark.places.astype("<f4")),
+        "lengths": _curve(mark.lengths),
+        "angles": _curve(mark.angles),
+        "points": mark.points,
+    }
+
+
+def _curve(curve: Curve | None) -> dict[str, Any] | None:
+    if curve is None:
+        return None
+    tolerance = None if curve.tolerance is None else _short(curve.tolerance)
+    return {"values": _base64(curve.values.astype("<f4")), "tolerance": tolerance}
 
 
 def _short(value: float) -> float:

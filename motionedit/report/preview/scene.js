@@ -1,7 +1,7 @@
 // One picture: the floor, shadows, trails and bodies of every view.
 
 const canvas = document.getElementById("scene");
-const state = { time: 0, playing: false, speed: 1, loop: true, apart: false, trail: "auto" };
+const state = { time: 0, playing: false, speed: 1, loop: true, apart: false, trail: "auto", goals: marks.length > 0, chosen: null };
 
 function shown() {
   return clips.filter((clip) => clip.show !== "hidden");
@@ -25,7 +25,10 @@ function views() {
 }
 
 function trailPoints(clip) {
-  if (state.trail === "auto") return clip.trails;
+  if (state.trail === "auto") {
+    const points = markPoints(clip);
+    return points.length ? points : clip.trails;
+  }
   const point = clip.names.indexOf(state.trail);
   return point < 0 || state.trail === "" ? [] : [point];
 }
@@ -76,6 +79,7 @@ function drawView(ctx, view, named) {
   for (const clip of list) if (clip.show === "ghost") drawGhost(ctx, eye, clip);
   const parts = list.filter((clip) => clip.show === "solid").flatMap((clip) => figureParts(ctx, clip, eye));
   parts.sort((a, b) => b.depth - a.depth).forEach((part) => part.draw());
+  drawGoals(ctx, eye, view);
   if (named) {
     ctx.font = "600 13px system-ui, sans-serif";
     ctx.textAlign = "left";

@@ -17,6 +17,11 @@ def clip(tmp_path):
     return path
 
 
+def bodies_of(*paths):
+    clips = preview._clips(find_clips(paths), lenient=False)
+    return [figure.body for figure in preview._figures(clips, [path.stem for path in paths])]
+
+
 def test_a_page_is_written_and_named(clip, tmp_path):
     target = tmp_path / "new" / "swing.html"
     assert preview.run([clip], target) == [target]
@@ -57,7 +62,7 @@ def test_a_place_that_cannot_be_written_is_a_usage_error(clip, tmp_path):
 def test_a_clip_in_metres_is_shown_at_the_size_of_one_in_centimetres(clip, tmp_path):
     metres = tmp_path / "metres.bvh"
     metres.write_text(bvh_text(scale=0.01))
-    first, second = preview._bodies(find_clips([clip, metres]), lenient=False)
+    first, second = bodies_of(clip, metres)
     assert first.scale == 1.0
     assert second.scale == pytest.approx(100.0)
     np.testing.assert_allclose(second.positions, first.positions, atol=0.01)
@@ -68,7 +73,7 @@ def test_a_clip_in_metres_is_shown_at_the_size_of_one_in_centimetres(clip, tmp_p
 def test_another_person_is_not_resized(clip, tmp_path):
     child = tmp_path / "child.bvh"
     child.write_text(bvh_text(scale=0.7))
-    assert [body.scale for body in preview._bodies(find_clips([clip, child]), lenient=False)] == [1.0, 1.0]
+    assert [body.scale for body in bodies_of(clip, child)] == [1.0, 1.0]
 
 
 @pytest.mark.parametrize(

@@ -67,7 +67,7 @@ def test_the_page_names_no_address_and_loads_nothing():
 def test_a_clip_name_cannot_leave_the_data_nor_fill_a_mark_of_the_template():
     label = "</script><img src=x>{{script}}{{title}}"
     text = page([made_body(label=label)], title='<&">{{data}}').decode()
-    assert text.count("</script>") == 2
+    assert text.count("</script>") == 3
     assert "<title>&lt;&amp;&quot;&gt;{{data}}</title>" in text
     data = re.search(r'<script id="clips" type="application/json">(.*?)</script>', text, re.DOTALL)
     assert json.loads(data.group(1))[0]["label"] == label

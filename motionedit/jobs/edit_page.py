@@ -1,0 +1,31 @@
+"""The page of an edit: what `--preview` has written next to each clip."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from motionedit.core.bvh import Clip
+    from motionedit.jobs.one_clip import Outcome, Work
+    from motionedit.jobs.plan import ClipTask
+
+
+@dataclass(frozen=True)
+class WithPage:
+    """Another work, whose outcomes get a page; `spec` is the spec with `--set` applied."""
+
+    work: Work
+    spec: Mapping[str, Any]
+
+    def __call__(self, clip: Clip, task: ClipTask) -> Outcome:
+        """Return the work's outcome with the page of the input, the clip to write, and what was asked for."""
+        from motionedit.jobs.preview import edit_page
+
+        outcome = self.work(clip, task)
+        if outcome.content is None:
+            return outcome
+        record = {"status": outcome.status, **outcome.record}
+        return replace(outcome, page=edit_page(clip, outcome.content, task, record, self.spec))
