@@ -114,6 +114,9 @@ def test_of_two_outputs_of_one_name_none_is_found_by_its_stem(run, clip, spec):
     assert [edit["marks"][0]["points"][1][0] for edit in edits_of(Path("p.html"))] == [0, 1]
 
 
+HEAD = '{"schema": "motionedit/report/v1", "command": "edit-pc", "clips": ['
+
+
 @pytest.mark.parametrize(
     ("content", "line"),
     [
@@ -128,12 +131,11 @@ def test_of_two_outputs_of_one_name_none_is_found_by_its_stem(run, clip, spec):
         ),
         ('{"schema": "motionedit/report/v1", "clips": [], "command": "edit-pc"}', "the clips given: it wrote none"),
         (
-            '{"schema": "motionedit/report/v1", "command": "edit-pc", "clips": [{"output": "x/1.bvh"}, 3,'
-            ' {"output": "x/2.bvh"}, {"output": null}]}',
+            f'{HEAD}{{"output": "x/1.bvh"}}, 3, {{"output": "x/2.bvh"}}, {{"output": null}}]}}',
             "r.json: fits none of the clips given: it wrote x/1.bvh and 1 more; give that too",
         ),
         (
-            '{"schema": "motionedit/report/v1", "command": "edit-pc", "clips": [{"output": "walk.bvh"}]}',
+            f'{HEAD}{{"output": "walk.bvh"}}]}}',
             "r.json: does not fit walk.bvh: another clip's, or not as an edit writes it",
         ),
     ],
