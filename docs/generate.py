@@ -1,12 +1,13 @@
 """Write the pages of docs/ that come from the program itself, and the outputs that other pages show.
 
-`python docs/generate.py` writes cli.md (every command's help), spec.md (every key of every spec), and puts the
-outputs of the commands in README.md and docs/ right. With `--check` nothing is written: what is out of date is named,
-and the exit code is 1.
+`python docs/generate.py` writes cli.md (every command's help), spec.md (every key of every spec), report.schema.json
+(every key of every report), and puts the outputs of the commands in README.md and docs/ right. With `--check` nothing
+is written: what is out of date is named, and the exit code is 1.
 """
 
 from __future__ import annotations
 
+import json
 import sys
 import tempfile
 from pathlib import Path
@@ -20,6 +21,7 @@ from sessions import refreshed, working_copy  # noqa: E402
 from spec_page import spec_page  # noqa: E402
 
 from motionedit.cli import main as program  # noqa: E402
+from motionedit.report.schema.report import report_schema  # noqa: E402
 
 WIDTH = 80
 CLI_HEAD = """\
@@ -57,7 +59,12 @@ def pages_with_sessions() -> list[Path]:
 
 def generated_pages() -> dict[Path, str]:
     """Return every page that this script has a say in, as it should be."""
-    pages = {DOCS / "cli.md": cli_page(), DOCS / "spec.md": spec_page()}
+    schema = json.dumps(report_schema(), indent=1)
+    pages = {
+        DOCS / "cli.md": cli_page(),
+        DOCS / "spec.md": spec_page(),
+        DOCS / "report.schema.json": f"{schema}\n",
+    }
     for page in pages_with_sessions():
         with tempfile.TemporaryDirectory() as scratch:
             pages[page] = refreshed(page.read_text(encoding="utf-8"), working_copy(ROOT, Path(scratch)))

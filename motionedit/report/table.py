@@ -48,7 +48,11 @@ def results_table(records: Sequence[dict[str, Any]], seconds: Sequence[float], *
     ]
     blocks = []
     if shown:
-        headings = ("clip", "status", "worst error", "of", "frame", "iterations", "foot slide", "jerk", "seconds")
+        error = "error" + _unit([record for record, _ in shown])
+        headings = (
+            *("clip", "status", "worst goal", error, "tolerance", "frame"),
+            *("iterations", "foot slide", "jerk", "seconds"),
+        )
         blocks.append(text_table(headings, [_row(record, time) for record, time in shown]))
     if verbosity > 0:
         blocks += [_goals_table(record) for record, _ in shown if _goals(record)]
@@ -58,14 +62,22 @@ def results_table(records: Sequence[dict[str, Any]], seconds: Sequence[float], *
     return "\n".join(blocks)
 
 
+def _unit(records: Sequence[dict[str, Any]]) -> str:
+    """Return the unit of the errors where all clips have one."""
+    units = {record.get("unit") for record in records if record["status"] != "failed"}
+    unit = units.pop() if len(units) == 1 else None
+    return f" ({unit})" if unit else ""
+
+
 def _row(record: dict[str, Any], seconds: float) -> tuple[object, ...]:
-    measured = [goal for goal in _goals(record) if goal.get("error_max") is not None]
-    worst = max(measured, key=_weight, default={})
+    worst: dict[str, Any] = max(_goals(record), key=_weight, default={})
+    error, tolerance = _worst_error(worst)
     return (
         record["clip"],
         record["status"],
-        worst.get("error_max"),
         worst.get("name"),
+        error,
+        tolerance,
         worst.get("frame"),
         _iterations(record),
         _change(record, "foot_slide_max"),
@@ -74,14 +86,40 @@ def _row(record: dict[str, Any], seconds: float) -> tuple[object, ...]:
     )
 
 
+def _worst_error(goal: dict[str, Any]) -> tuple[str | None, str | None]:
+    """Return a goal's error and tolerance: the length, or the angle where that is the larger part of its tolerance."""
+    length, angle = ((goal.get(f"error{kind}_max"), goal.get(f"tolerance{kind}")) for kind in ("", "_angle"))
+    if length[0] is not None and (angle[0] is None or _share(*length) >= _share(*angle)):
+        return number(length[0]), number(length[1]) or "off"
+    if angle[0] is None:
+        return None, None
+    return f"{number(angle[0])}°", f"{number(angle[1])}°" if angle[1] is not None else "off"
+
+
+def _share(error: float | None, tolerance: float | None) -> float:
+    """Return an error as a share of its tolerance; 0 where it may be anything."""
+    return error / tolerance if error is not None and tolerance else 0.0
+
+
 def _goals(record: dict[str, Any]) -> list[dict[str, Any]]:
     goals: list[dict[str, Any]] = record.get("goals") or record.get("constraints") or []
     return goals
 
 
 def _goals_table(record: dict[str, Any]) -> str:
-    headings = (record["clip"], "priority", "worst error", "degrees", "frame", "status", "gave way to")
-    keys = ("name", "priority", "error_max", "error_angle_max", "frame", "status")
+    error = "error" + _unit([record])
+    headings = (
+        record["clip"],
+        "priority",
+        error,
+        "tolerance",
+        "degrees",
+        "tolerance",
+        "frame",
+        "status",
+        "gave way to",
+    )
+    keys = ("name", "priority", "error_max", "tolerance", "error_angle_max", "tolerance_angle", "frame", "status")
     rows = [
         (*(goal.get(key) for key in keys), ", ".join(goal.get("gave_way_to") or ()) or None) for goal in _goals(record)
     ]
@@ -95,9 +133,11 @@ def _measures(record: dict[str, Any], key: str) -> tuple[float, float] | None:
     return None if before is None or after is None else (before, after)
 
 
-def _weight(goal: dict[str, Any]) -> tuple[bool, bool, float]:
-    """Return what tells the worst goal: what is missed, then what --strict counts, then how far it is off."""
-    return goal.get("status") != "ok", bool(goal.get("strict", True)), float(goal["error_max"])
+def _weight(goal: dict[str, Any]) -> tuple[bool, bool, float, float]:
+    """Return what tells the worst goal: what is missed, what --strict counts, the share of its tolerance, how far."""
+    length, angle = (goal.get(f"error{kind}_max") for kind in ("", "_angle"))
+    share = max(_share(length, goal.get("tolerance")), _share(angle, goal.get("tolerance_angle")))
+    return goal.get("status") != "ok", bool(goal.get("strict", True)), share, float(length or angle or 0.0)
 
 
 def _iterations(record: dict[str, Any]) -> str | None:
@@ -121,4 +161,7 @@ def _ratio(record: dict[str, Any], key: str) -> str | None:
 
 
 def _is_number(text: str) -> bool:
-    return not text or text.replace(".", "").replace("e-", "").removeprefix("-").removesuffix(" x").isdecimal()
+    return (
+        not text
+        or text.replace(".", "").replace("e-", "").removeprefix("-").removesuffix(" x").removesuffix("°").isdecimal()
+    )

@@ -51,21 +51,53 @@ def record(name, status="ok", **more):
     return {"clip": name, "output": None, "status": status, "message": None, **more}
 
 
-def test_the_results_show_the_worst_goal_and_the_side_effects():
+def goal(name, **more):
+    return {"name": name, "priority": 1, "error_max": 0.5, "frame": 3, "status": "ok", "gave_way_to": [], **more}
+
+
+def test_the_results_show_the_worst_goal_against_its_tolerance_and_the_side_effects():
     goals = [
-        {"name": "left", "priority": 2, "error_max": 0.5, "frame": 3, "status": "ok", "gave_way_to": []},
-        {"name": "right", "priority": 1, "error_max": 1.8, "frame": 58, "status": "far", "gave_way_to": ["left"]},
+        goal("left", priority=2, tolerance=0.1),
+        goal("right", error_max=1.8, tolerance=1.0, frame=58, status="out_of_tolerance", gave_way_to=["left"]),
     ]
     metrics = {
         "before": {"foot_slide_max": 1.25, "jerk_rms": 100.0},
         "after": {"foot_slide_max": 1.5, "jerk_rms": 104.0},
     }
-    records = [record("a.bvh", constraints=goals, metrics=metrics)]
+    records = [record("a.bvh", constraints=goals, metrics=metrics, unit="cm")]
     assert results_table(records, [0.123]).splitlines() == [
-        "clip   status  worst error  of     frame  foot slide     jerk  seconds",
-        "a.bvh  ok              1.8  right     58  1.25 -> 1.5  1.04 x     0.12",
+        "clip   status  worst goal  error (cm)  tolerance  frame  foot slide     jerk  seconds",
+        "a.bvh  ok      right              1.8          1     58  1.25 -> 1.5  1.04 x     0.12",
     ]
-    assert "right         1          1.8     58  far     left" in results_table(records, [0.1], verbosity=1)
+    assert results_table(records, [0.1], verbosity=1).splitlines()[-3:] == [
+        "a.bvh  priority  error (cm)  tolerance  frame  status            gave way to",
+        "left          2         0.5        0.1      3  ok",
+        "right         1         1.8          1     58  out_of_tolerance  left",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("goals", "shown"),
+    [
+        # The larger share of its tolerance is the worse, whichever number is larger.
+        ([goal("a", error_max=0.5, tolerance=1.0), goal("b", error_max=0.4, tolerance=0.1)], ["b", "0.4", "0.1"]),
+        ([goal("a", tolerance=1.0), goal("b", error_max=9.0, tolerance=None, strict=False)], ["a", "0.5", "1"]),
+        ([goal("b", error_max=9.0, tolerance=None, strict=False)], ["b", "9", "off"]),
+        ([goal("a", error_max=None, error_angle_max=2.5, tolerance_angle=0.1)], ["a", "2.5°", "0.1°"]),
+        ([goal("a", error_max=None, error_angle_max=2.5, tolerance_angle=None)], ["a", "2.5°", "off"]),
+        ([goal("a", tolerance=1.0, error_angle_max=2.5, tolerance_angle=0.1)], ["a", "2.5°", "0.1°"]),
+        ([goal("a", tolerance=1.0, error_angle_max=0.01, tolerance_angle=0.1)], ["a", "0.5", "1"]),
+    ],
+)
+def test_the_worst_goal_is_that_with_the_largest_share_of_its_tolerance(goals, shown):
+    assert results_table([record("a.bvh", constraints=goals)], [0.1]).splitlines()[1].split()[2:5] == shown
+
+
+def test_the_unit_is_told_where_all_clips_have_the_same():
+    records = [record("a.bvh", goals=[goal("x")], unit="cm"), record("b.bvh", goals=[goal("x")], unit="m")]
+    assert "error (cm)" in results_table(records[:1], [0.1])
+    assert "error (" not in results_table(records, [0.1, 0.1])
+    assert "error (cm)" in results_table([records[0], record("c.bvh", "failed")], [0.1, 0.1])
 
 
 def test_of_many_clips_only_those_that_are_not_ok_get_a_row():

@@ -33,7 +33,7 @@ def test_check_writes_nothing_and_without_it_the_page_is_written(monkeypatch, tm
     assert generate.main(["--check"]) == 1
     assert list(tmp_path.iterdir()) == []
     assert generate.main([]) == 0
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["cli.md", "spec.md"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["cli.md", "report.schema.json", "spec.md"]
     assert generate.main(["--check"]) == 0
     assert "cli.md written" in capsys.readouterr().out
 
