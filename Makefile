@@ -29,11 +29,10 @@ $(STAMP): pyproject.toml $(wildcard motionedit/core/csrc/*)
 demo: $(STAMP)  ## normalize ten golf swings, fit the motion PCA, move the ball, and say what to open
 	$(BIN)/motionedit normalize data/golf -s configs/golf-normalize.yaml -o $(OUT)/golf-normalized
 	$(BIN)/motionedit fit-pca $(OUT)/golf-normalized -s configs/golf-fit.yaml -o $(OUT)/golf.npz
-	$(BIN)/motionedit edit-pc data/golf/swing04.bvh -m $(OUT)/golf.npz -s configs/golf-edit.yaml -o $(OUT)/swing04-edited.bvh
-	$(BIN)/motionedit preview data/golf/swing04.bvh $(OUT)/swing04-edited.bvh -o $(OUT)/swing04.html
+	$(BIN)/motionedit edit-pc data/golf/swing04.bvh -m $(OUT)/golf.npz -s configs/golf-edit.yaml -o $(OUT)/swing04-edited.bvh --preview
 	@echo
 	@echo "The edited swing is $(OUT)/swing04-edited.bvh, a file for any BVH viewer."
-	@echo "Open $(OUT)/swing04.html in a browser: the input and the edited swing, overlaid."
+	@echo "Open $(OUT)/swing04-edited.html in a browser: the input and the edited swing, overlaid, and the goal."
 
 test: $(STAMP)  ## run the tests that take less than two minutes, and the linters
 	$(BIN)/ruff check .

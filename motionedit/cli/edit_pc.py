@@ -34,8 +34,8 @@ if TYPE_CHECKING:
 @spec_option()
 @output_option("OUT", "A name ending in .bvh for one clip, '-' for standard output, else a folder.")
 @set_option
-@run_options(keep_going=True)
 @preview_option
+@run_options(keep_going=True)
 @not_supported_yet("--skeleton")
 def command(
     clips: tuple[Path, ...],

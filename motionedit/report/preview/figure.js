@@ -167,9 +167,14 @@ function ball(ctx, fill, x, y, r) {
   return gradient;
 }
 
+// How many frames before and after this one a path is drawn.
+function trailReach(clip) {
+  return clip.frames > 700 ? Math.round(2 / clip.frameTime) : clip.frames;
+}
+
 // The path of a point: what has been in full, what comes thin; long clips show four seconds.
 function drawTrail(ctx, eye, clip, point, at) {
-  const reach = clip.frames > 700 ? Math.round(2 / clip.frameTime) : clip.frames;
+  const reach = trailReach(clip);
   const from = Math.max(clip.first, Math.floor(at) - reach), to = Math.min(clip.frames - 1, Math.ceil(at) + reach);
   const out = [0, 0, 0, 0], now = Math.floor(at);
   const P = clip.positions, width = 3 * clip.points;

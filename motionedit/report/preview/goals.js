@@ -30,11 +30,13 @@ function chosenMarks() {
   return state.chosen ? [state.chosen] : marks;
 }
 
+const TRAILS = 4; // more paths at once tell nothing
+
 // The marks whose effectors' paths tell most: the chosen one, else those that ask for something else than the input.
 function markPoints(clip) {
   const chosen = chosenMarks();
   const asking = state.chosen ? chosen : chosen.filter((mark) => mark.spans.length && mark.places);
-  const list = asking.length ? asking : chosen;
+  const list = (asking.length ? asking : chosen).slice(0, TRAILS);
   return [...new Set(list.flatMap((mark) => mark.points.filter(([c]) => c === clip.index).map(([, p]) => p)))];
 }
 
@@ -67,12 +69,14 @@ function drawGoals(ctx, eye, view) {
   ctx.globalAlpha = 1;
 }
 
-// The way of the goal over the whole interval, dotted.
+// The way of the goal over the whole interval, dotted; of long clips as much as their trails show.
 function drawWay(ctx, eye, mark) {
   const out = [0, 0, 0, 0];
+  const now = Math.round(state.time / mark.clip.frameTime) - mark.first, reach = trailReach(mark.clip);
+  const to = Math.min(mark.last - mark.first, now + reach);
   ctx.beginPath();
   let begun = false;
-  for (let i = 0; i <= mark.last - mark.first; i++) {
+  for (let i = Math.max(0, now - reach); i <= to; i++) {
     if (!eye.project(mark.places[3 * i], mark.places[3 * i + 1], mark.places[3 * i + 2], out)) { begun = false; continue; }
     if (begun) ctx.lineTo(out[0], out[1]); else ctx.moveTo(out[0], out[1]);
     begun = true;

@@ -110,17 +110,34 @@ function drawLanes() {
 
 function drawLane(mark) {
   const ctx = prepare(mark.canvas), width = mark.canvas.clientWidth, height = mark.canvas.clientHeight;
+  // All but the head of time is drawn once for a size and a colour scheme.
+  const look = [mark.canvas.width, mark.canvas.height, colors.dark, state.chosen === mark].join();
+  if (mark.look !== look) {
+    mark.look = look;
+    mark.layer = mark.layer || document.createElement("canvas");
+    mark.layer.width = mark.canvas.width;
+    mark.layer.height = mark.canvas.height;
+    const own = mark.layer.getContext("2d");
+    own.setTransform(ctx.getTransform());
+    drawStill(own, mark, width, height);
+  }
+  ctx.save();
+  ctx.setTransform(1, 0, 0, 1, 0, 0);
+  if (mark.layer.width && mark.layer.height) ctx.drawImage(mark.layer, 0, 0);
+  ctx.restore();
+  ctx.globalAlpha = 0.8;
+  ctx.fillStyle = colors.ink;
+  ctx.fillRect(Math.round(timeX(state.time, width)) - 0.5, 0, 1, height);
+  ctx.globalAlpha = 1;
+}
+
+function drawStill(ctx, mark, width, height) {
   const dt = mark.clip.frameTime, x = (frame) => timeX(frame * dt, width);
   const color = markColor(mark), base = height - BAR - 5;
   ctx.fillStyle = colors.line;
   ctx.fillRect(0, height - 1, width, 1);
   drawBar(ctx, mark, x, height, color);
   [mark.lengths, mark.angles].forEach((curve, k) => { if (curve) drawCurve(ctx, mark, curve, k, x, base); });
-  const head = Math.round(timeX(state.time, width));
-  ctx.globalAlpha = 0.8;
-  ctx.fillStyle = colors.ink;
-  ctx.fillRect(head - 0.5, 0, 1, height);
-  ctx.globalAlpha = 1;
 }
 
 // Thin where it eases in and out; solid where it stands still, striped where it rides, a diamond for an instant.
