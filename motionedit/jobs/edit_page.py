@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -21,11 +22,9 @@ class WithPage:
     spec: Mapping[str, Any]
 
     def __call__(self, clip: Clip, task: ClipTask) -> Outcome:
-        """Return the work's outcome with the page of the input, the clip to write, and what was asked for."""
+        """Return the work's outcome with the page of the input, the clip written, and what was asked for."""
         from motionedit.jobs.preview import edit_page
 
         outcome = self.work(clip, task)
-        if outcome.content is None:
-            return outcome
         record = {"status": outcome.status, **outcome.record}
-        return replace(outcome, page=edit_page(clip, outcome.content, task, record, self.spec))
+        return replace(outcome, page=partial(edit_page, clip, task, record, self.spec))

@@ -11,6 +11,7 @@ from motionedit.errors import ClipError, MotionEditError, MotionEditErrors
 from motionedit.jobs.files import atomic_write
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
     from motionedit.core.bvh import Clip
@@ -36,8 +37,8 @@ class Outcome:
         What the content should read back as, for `verify`; None is the clip's own.
     details : tuple of str
         Lines that --dry-run prints: layers, recruited joints, intervals, goals.
-    page : bytes or None
-        The preview page to write next to the clip.
+    page : callable or None
+        Makes the preview page that is written next to the clip, once the clip is.
     """
 
     content: bytes | None
@@ -46,7 +47,7 @@ class Outcome:
     warnings: tuple[str, ...] = ()
     motion: Motion | None = None
     details: tuple[str, ...] = ()
-    page: bytes | None = None
+    page: Callable[[], bytes] | None = None
 
 
 class Work(Protocol):
@@ -103,7 +104,7 @@ class RunOne:
             _write(task.output, content)
             content = None
         if task.page is not None and outcome.page is not None:
-            _write(task.page, outcome.page)
+            _write(task.page, outcome.page())
         return Done(Outcome(content, record, outcome.status, warnings), written=True)
 
 

@@ -70,19 +70,18 @@ def run(clips: Sequence[Path], output: Path, *, report: Path | None = None, leni
     return [output]
 
 
-def edit_page(clip: Clip, content: bytes, task: ClipTask, record: Mapping[str, Any], spec: Mapping[str, Any]) -> bytes:
-    """Return the page of one edit: the input, what is to be written, and the report's `record` of it.
+def edit_page(clip: Clip, task: ClipTask, record: Mapping[str, Any], spec: Mapping[str, Any]) -> bytes:
+    """Return the page of one edit: the input, the clip that the task has written, and the report's `record` of it.
 
     The same bytes as those that `run` would write of the two files and the report.
     """
-    from motionedit.core.bvh import parse_clip
     from motionedit.jobs.marks import edit_of
     from motionedit.report.preview.page import page
     from motionedit.report.record import plain
 
     output = str(task.output)
-    edited = parse_clip(content, label=output, lenient=True)
-    figures = _figures([clip, edited], short_labels([task.label, output]))
+    written = replace(task, source=task.output, label=output)
+    figures = _figures([clip, read_task(written, lenient=True)], short_labels([task.label, output]))
     edit = edit_of(plain(record), figures, edited=1, before=0, masses=spec.get("masses") or {}, report="--preview")
     bodies = [figure.body for figure in figures]
     return page(bodies, title=_title([body.label for body in bodies]), edits=[edit])
