@@ -2,6 +2,7 @@
 
 import base64
 import json
+import os
 import re
 import subprocess
 import sys
@@ -9,6 +10,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
+from motionedit.jobs import batch
+from motionedit.jobs.plan import ClipTask
 
 ROOT = Path(__file__).resolve().parents[2]
 WALK = ROOT / "data" / "walk.bvh"
@@ -94,6 +98,18 @@ def test_clips_that_were_moved_are_found_by_their_stem_the_edited_one_after_its_
     (edit,) = edits_of(tmp_path / "p.html")
     assert edit["clip"] == 1
     assert [body for body, _ in edit["marks"][0]["points"]] == [1, 0]
+
+
+def test_the_input_is_not_taken_for_the_edited_clip_of_its_name(run, reached):
+    result = run("preview", WALK, "-o", "p.html", "--report", reached)
+    assert result.exit_code == 2
+    assert "fits none of the clips given: it wrote out/walk.bvh; give that too" in result.stderr
+
+
+def test_of_two_clips_the_other_one_is_the_input_whatever_its_name(run, reached, tmp_path):
+    (tmp_path / "before.bvh").write_bytes(WALK.read_bytes())
+    run("preview", "out/walk.bvh", "before.bvh", "-o", "p.html", "--report", reached)
+    assert [body for body, _ in edits_of(tmp_path / "p.html")[0]["marks"][0]["points"]] == [0, 1]
 
 
 def test_the_path_of_the_output_counts_before_any_stem(run, reached, tmp_path):
@@ -224,6 +240,19 @@ def test_update_makes_a_page_that_is_missing_and_leaves_one_that_is_there(run, c
     (tmp_path / "out" / "walk.html").unlink()
     assert run(*arguments).stdout == ""
     assert len(run(*arguments, "--preview").stdout.splitlines()) == 2
+
+
+def test_update_makes_a_page_anew_that_is_older_than_the_spec(run, clip, spec, tmp_path):
+    arguments = ("edit-prioritized", clip(), "-s", spec, "-o", "out", "--update", "--preview")
+    run(*arguments)
+    older = spec.stat().st_mtime_ns - 10**9
+    os.utime(tmp_path / "out" / "walk.html", ns=(older, older))
+    assert len(run(*arguments).stdout.splitlines()) == 2
+
+
+def test_a_worker_elsewhere_gets_the_page_s_whole_path():
+    task = ClipTask(Path("a.bvh"), "a.bvh", Path("out/a.bvh"), "a.bvh", page=Path("out/a.html"))
+    assert all(path.is_absolute() for path in batch._absolute(task).outputs)
 
 
 def test_clips_that_would_share_a_page_are_refused(run, clip, spec):

@@ -7,7 +7,9 @@ import pytest
 from lab import Lab
 
 from motionedit.core.bvh import read_clip
+from motionedit.core.center_of_mass import center_of_mass, find_masses
 from motionedit.core.kinematics import Effector, effector_positions, forward
+from motionedit.jobs.clip_facts import facts_of
 from motionedit.report.record import plain
 
 DATA = Path(__file__).resolve().parents[2] / "data"
@@ -64,6 +66,24 @@ def test_a_hold_is_wanted_where_the_spec_says_and_its_frames_are_told(edit):
     assert record["effector"] == {"joint": "LeftHand", "offset": [0.0, 0.0, 0.0]}
     held = record["frames"]["target"][66 - record["first_frame"] : 73 - record["first_frame"]]
     np.testing.assert_allclose(held, [[58, 150, 322]] * 7, atol=1e-6)
+
+
+def test_along_axes_that_are_free_the_target_is_where_the_effector_is(edit):
+    clip, (record,) = edit({**LIFT, "points": [{"at": 60, "shift": [0, 30, 500]}], "axes": ["y"]})
+    span = slice(record["first_frame"], record["last_frame"] + 1)
+    path, target = path_of(clip, record["effector"])[span], np.array(record["frames"]["target"])
+    np.testing.assert_allclose(target[:, [0, 2]], path[:, [0, 2]], atol=1e-5)
+    np.testing.assert_allclose(np.abs(target[:, 1] - path[:, 1]), record["frames"]["error"], atol=1e-5)
+
+
+@pytest.mark.parametrize("frame", ["world", "heading"])
+def test_balance_that_is_met_is_wanted_where_the_center_of_mass_is(edit, frame):
+    clip, (record,) = edit({"type": "com", "priority": 3, "frame": frame, "points": [{"at": 60, "shift": [3, 0, 1]}]})
+    facts = facts_of(clip)
+    path = center_of_mass(facts.poses, find_masses(clip.motion.skeleton, facts.anatomy))
+    assert record["error_max"] < 0.01
+    span = slice(record["first_frame"], record["last_frame"] + 1)
+    np.testing.assert_allclose(record["frames"]["target"], path[span], atol=0.011)
 
 
 def test_what_has_no_place_has_no_target(edit):

@@ -117,6 +117,7 @@ def test_a_clip_without_its_input_shows_the_edited_path_alone():
     "wrong",
     [
         {"last_frame": 12},
+        {"first_frame": 10, "last_frame": 12},
         {"first_frame": -1},
         {"frames": {}},
         {"frames": None},
