@@ -103,6 +103,7 @@ _SOLVED = {
         },
     ),
     "passes": count("smoothing passes"),
+    "solver": word("what solved the layers: C, or numpy where that could not be compiled", "compiled", "numpy"),
 }
 
 _PRIORITIZED_CLIP = {
