@@ -6,7 +6,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from motionedit.spec.faults import Fault, FaultyValueError, did_you_mean, dotted, faulty, listed
-from motionedit.spec.yaml_tree import DEEPEST, Node, read_tree
+from motionedit.spec.syntax import DEEPEST
+from motionedit.spec.yaml_tree import Node, read_tree
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

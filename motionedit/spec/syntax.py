@@ -9,6 +9,10 @@ from motionedit.spec.faults import Fault
 if TYPE_CHECKING:
     import yaml
 
+# A spec has no use for more levels; libyaml refuses far more of them by itself, before it gives the first of them.
+DEEPEST = 50
+_TOO_DEEP = "maximum nesting depth"
+
 # Parts of the parsers' messages (libyaml's and PyYAML's own) and what they mean to a person.
 _SYNTAX = (
     (
@@ -44,6 +48,8 @@ def syntax_fault(error: yaml.YAMLError, text: str) -> Fault:
     problem = f"{getattr(error, 'context', '')} {getattr(error, 'problem', '')}"
     if "\t" in here[: len(here) - len(here.lstrip())] or here[mark.column : mark.column + 1] == "\t":
         return Fault("not valid YAML: a tab; indent with blanks", line=line)
+    if _TOO_DEEP in problem:
+        return Fault(f"nested more than {DEEPEST} deep", line=line)
     context = getattr(error, "context_mark", None)
     opened = f" (opened on line {context.line + 1})" if context is not None and context.line + 1 < line else ""
     for part, meaning in _SYNTAX:

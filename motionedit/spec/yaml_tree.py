@@ -13,14 +13,13 @@ from typing import TYPE_CHECKING, Any
 import yaml
 
 from motionedit.spec.faults import Fault, FaultyValueError, Keys, show
-from motionedit.spec.syntax import syntax_fault
+from motionedit.spec.syntax import DEEPEST, syntax_fault
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-# A spec is a page of text; these bounds are far above any real one and keep a hostile one from taking long.
+# A spec is a page of text; this bound, and DEEPEST, are far above any real one and keep a hostile one from taking long.
 MOST_NODES = 200_000
-DEEPEST = 50
 
 _INTEGER = re.compile(r"[-+]?[0-9]+")
 _FLOAT = re.compile(r"[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?")

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from motionedit.spec import yaml_tree
 from motionedit.spec.faults import FaultyValueError
-from motionedit.spec.yaml_tree import DEEPEST, read_tree, scalar, value_from_text
+from motionedit.spec.syntax import DEEPEST
+from motionedit.spec.yaml_tree import read_tree, scalar, value_from_text
 
 
 @pytest.mark.parametrize(
