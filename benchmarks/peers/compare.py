@@ -35,11 +35,11 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)
         alone = jobs.reach_alone(whole)
-        for title, job in (
-            (f"Whole-body inverse kinematics: the reaching clip, {len(whole.motion)} frames", whole),
-            (f"The same, the {len(alone.motion)} frames of the reach alone", alone),
+        for title, job, ways in (
+            (f"Whole-body inverse kinematics: the reaching clip, {len(whole.motion)} frames", whole, whole_body.WAYS),
+            (f"The same, the {len(alone.motion)} frames of the reach alone", alone, whole_body.QUICK_WAYS),
         ):
-            rows, versions = whole_body.speed(job, folder)
+            rows, versions = whole_body.speed(job, folder, ways)
             parts.append((title, rows))
             found |= versions
         parts += [

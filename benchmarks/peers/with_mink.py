@@ -7,8 +7,8 @@ import mujoco
 import numpy as np
 import protocol
 
-# The posture is to decide only what is left over; the damping is that of the examples.
-POSTURE_COST, DAMPING = 1e-3, 1e-4
+# It decides what is left over. A posture task would do so too, but weighs against the lowest level.
+DAMPING = 1e-8
 
 
 class PointTask(mink.Task):
@@ -37,7 +37,6 @@ class Mink:
         self.model = mujoco.MjModel.from_xml_path(job.robot)
         self.configuration = mink.Configuration(self.model)
         self.tasks = [self._task(i) for i in range(len(job.joints))]
-        self.posture = mink.PostureTask(self.model, cost=POSTURE_COST)
         self.bodies = [j if j == protocol.COM else self.model.body(job.names[j]).id for j in job.joints]
         self.soft, self.hard = [], []
 
@@ -53,8 +52,7 @@ class Mink:
     def begin(self, frame: int) -> None:
         """Take the frame's start and targets."""
         self.configuration.update(self.starts[frame])
-        self.posture.set_target(self.starts[frame])
-        self.soft, self.hard = [self.posture], []
+        self.soft, self.hard = [], []
         for i in np.flatnonzero(self.job.active[frame]):
             task, target = self.tasks[i], self.job.targets[frame, i]
             if isinstance(task, PointTask):

@@ -7,10 +7,10 @@ import pink
 import pinocchio as pin
 import protocol
 from pink.exceptions import NoSolutionFound
-from pink.tasks import ComTask, FrameTask, PostureTask, Task
+from pink.tasks import ComTask, FrameTask, Task
 
-# The posture is to decide only what is left over; the damping is that of the examples.
-POSTURE_COST, DAMPING = 1e-3, 1e-4
+# It decides what is left over. A posture task would do so too, but weighs against the lowest level.
+DAMPING = 1e-8
 
 
 class PointTask(Task):
@@ -45,7 +45,6 @@ class Pink:
         self.configuration = pink.Configuration(self.model, self.model.createData(), self.starts[0])
         self.frames = [j if j == protocol.COM else self.model.getFrameId(job.names[j], pin.BODY) for j in job.joints]
         self.tasks = [self._task(i) for i in range(len(job.joints))]
-        self.posture = PostureTask(cost=POSTURE_COST)
         self.soft: list[Task] = []
         self.hard: list[Task] = []
 
@@ -61,8 +60,7 @@ class Pink:
     def begin(self, frame: int) -> None:
         """Take the frame's start and targets."""
         self.configuration.update(self.starts[frame])
-        self.posture.set_target(self.starts[frame])
-        self.soft, self.hard = [self.posture], []
+        self.soft, self.hard = [], []
         for i in np.flatnonzero(self.job.active[frame]):
             task, target = self.tasks[i], self.job.targets[frame, i]
             if isinstance(task, PointTask):

@@ -141,7 +141,7 @@ def test_the_table_of_rates_says_what_is_missed(reach):
         ("placo", jobs.Way("no", 0.1, 1e-6)): whole_body.Measured(1e-9, bad, once, 2),
         ("mink", WAY): "cannot be installed here",
     }
-    rows = whole_body._speed_table(reach, {"hinges": 0.1, "balls": 0.1}, theirs)
+    rows = whole_body._speed_table(reach, {"motionedit, hinges": 0.1, "motionedit": 0.2}, theirs)
     assert {len(row) for row in rows} == {len(whole_body.SPEED)}
     assert rows[3][2:7] == ("14", "100.00 x", ">= 15 x", "met", "0")
     assert rows[4][2:7] == ("-", "-", "", "", "145, 2 without a step")
