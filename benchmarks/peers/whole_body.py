@@ -12,7 +12,7 @@ from clock import best_of
 from jobs import Job, Way
 from others import PeerError, ask, versions
 
-from motionedit.core.ik import kernel
+from motionedit.core.compiled import CHOICE, solver_name
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -104,23 +104,23 @@ def _contenders(job: Job) -> dict[str, Callable[[], object]]:
     """Return our own solves by name: as by default, with free knees and elbows, and without the compiled solver."""
     free = replace(job.body, hinges=())
     found: dict[str, Callable[[], object]] = {
-        f"motionedit, {kernel.name()}, knees and elbows as hinges": job.solve,
-        f"motionedit, {kernel.name()}, ball joints alone": lambda: job.solve(free),
+        f"motionedit, {solver_name()}, knees and elbows as hinges": job.solve,
+        f"motionedit, {solver_name()}, ball joints alone": lambda: job.solve(free),
     }
-    if kernel.is_used():
+    if solver_name() == "compiled":
         found["motionedit, numpy, knees and elbows as hinges"] = lambda: _without_compiled(job)
     return found
 
 
 def _without_compiled(job: Job) -> PrioritizedEdit:
-    before = os.environ.get(kernel.CHOICE)
-    os.environ[kernel.CHOICE] = "numpy"
+    before = os.environ.get(CHOICE)
+    os.environ[CHOICE] = "numpy"
     try:
         return job.solve()
     finally:
-        del os.environ[kernel.CHOICE]
+        del os.environ[CHOICE]
         if before is not None:
-            os.environ[kernel.CHOICE] = before
+            os.environ[CHOICE] = before
 
 
 def _speed_table(job: Job, ours: Mapping[str, float], theirs: Mapping[tuple[str, Way], Measured | str]) -> Table:
@@ -174,7 +174,9 @@ def conflict(job: Job, folder: Path) -> Table:
 def _worst(job: Job, measured: Measured) -> tuple[str, ...]:
     worst = 1e3 * np.nanmax(measured.errors, axis=0)
     levels = np.array(job.levels)
-    return f"{worst[levels == 0].max():.3f}", f"{worst[levels == levels.max()].max():.3f}"
+    found = worst[levels == 0].max(), worst[levels == levels.max()].max()
+    # A program near to singular may send the body far away before it has no step.
+    return tuple(f"{off:.3f}" if off < 1e4 else f"{off:.0e}" for off in found)
 
 
 def far(job: Job, folder: Path) -> Table:
