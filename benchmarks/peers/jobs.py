@@ -4,29 +4,36 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict, dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from prioritized import reaching
 from robot import mjcf
 
 from motionedit.core import rotations as rot
-from motionedit.core.center_of_mass import center_of_mass
+from motionedit.core.anatomy import find_anatomy
+from motionedit.core.bvh import read_clip
+from motionedit.core.center_of_mass import center_of_mass, find_masses
+from motionedit.core.editing.constraints import Constraint
 from motionedit.core.editing.prioritized_edit import Body, LayeredSettings, Passes, PrioritizedEdit, edit_by_priorities
 from motionedit.core.editing.trajectories import ControlPoint, position_targets
+from motionedit.core.ground import travel_joint
+from motionedit.core.hinges import find_hinges
 from motionedit.core.kinematics import Effector, WorldPoses, forward
-from motionedit.core.motion import Motion
+from motionedit.core.motion import Motion, scaled
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.center_of_mass import Masses
-    from motionedit.core.editing.constraints import Constraint
 
 # Stands for a joint where a task is the center of mass, as in protocol.py.
 COM = -1
+WALK = Path(__file__).resolve().parents[2] / "data" / "walk.bvh"
+LEG = 0.85
+# The reach: metres from where the wrist is, the frames in which it stands still there, and frames to either side.
+SHIFT, HELD, EASE = (0.3, 0.6, 0.2), (66, 72), 16.0
 # Metres: a task is met when it is as near.
 TOLERANCE = 1e-3
 CAP = 40
@@ -86,8 +93,18 @@ def places(poses: WorldPoses, masses: Masses, joints: Sequence[int]) -> FloatArr
 
 def reach() -> Job:
     """Return the reaching clip: four foot points over the left wrist over the center of mass."""
-    motion, body, constraints = reaching()
-    return _job(motion, body, constraints)
+    clip = read_clip(WALK)
+    anatomy = find_anatomy(clip.motion.skeleton)
+    motion = scaled(clip.motion, LEG / anatomy.leg_length)
+    # To an anatomy of another size no table of segments fits: each bone weighs as much as it is long, with all solvers.
+    masses = find_masses(motion.skeleton, anatomy)
+    body = Body(masses, tuple(find_hinges(motion, anatomy, first=0)), travel_joint(motion), 0)
+    here = np.zeros(3)
+    feet = [Constraint("position", name, 10, 1.0, Effector(j, here)) for name, j in anatomy.foot_points]
+    wrist = Effector(motion.skeleton.names.index("LeftHand"), here)
+    point = ControlPoint("hold", *HELD, shift=np.array(SHIFT))
+    hand = Constraint("position", "hand", 4, 1.0, wrist, points=(point,), ease_in=EASE, ease_out=EASE)
+    return _job(motion, body, [*feet, hand, Constraint("com", "balance", 2, 1.0, Effector(0, here))])
 
 
 def reach_alone(whole: Job) -> Job:
