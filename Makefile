@@ -12,7 +12,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 export OMP_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install demo test test-numpy sanitize test-all lint types docs docs-check golden bench figures data clean
+.PHONY: help install demo test test-numpy sanitize test-all lint types docs docs-check golden bench bench-peers figures data clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -67,6 +67,17 @@ golden: $(STAMP)  ## write the golden files anew; look at the difference before 
 
 bench: $(STAMP)  ## measure speed, as ratios inside one run
 	$(BIN)/python benchmarks/run.py
+
+PEERS := pink mink placo bpy pybvh
+# What cannot be installed is left out; its rows say so. Its log is .venv-peers/NAME.log.
+.venv-peers/%/.installed: benchmarks/peers/requirements/%.txt
+	@echo "setting up .venv-peers/$*"
+	@mkdir -p .venv-peers
+	@($(PYTHON) -m venv $(@D) && $(@D)/bin/python -m pip install --requirement $< && touch $@) > .venv-peers/$*.log 2>&1 \
+		|| echo "$* cannot be installed, see .venv-peers/$*.log"
+
+bench-peers: $(STAMP) $(PEERS:%=.venv-peers/%/.installed)  ## measure beside pink, mink, placo, Blender and pybvh, each in a .venv-peers/NAME
+	$(BIN)/python benchmarks/peers/compare.py
 
 figures: $(STAMP)  ## print the accuracy figures that the documentation quotes
 	$(BIN)/python benchmarks/figures.py

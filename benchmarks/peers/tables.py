@@ -1,0 +1,24 @@
+"""The page of results as text: the introduction, the machine, a table under each title."""
+
+from __future__ import annotations
+
+INTRODUCTION = """\
+# Beside other tools
+
+Written by `make bench-peers`; what it means is in [docs/comparison.md](../docs/comparison.md). Times are the best of
+several rounds in which all that is compared takes a turn, so ratios hold on other machines, times do not. One thread
+each. Errors are for a body with legs of 0.85 m.
+"""
+
+Table = list[tuple[str, ...]]
+
+
+def page(described: str, parts: list[tuple[str, Table]]) -> str:
+    """Return the page of results: the introduction, the machine, a table under each title."""
+    return "\n".join([INTRODUCTION, described, *(markdown(title, rows) for title, rows in parts)]) + "\n"
+
+
+def markdown(title: str, rows: Table) -> str:
+    """Return a table under its title, the first row being its heads."""
+    lines = [f"| {' | '.join(row)} |" for row in rows]
+    return "\n".join([f"\n## {title}\n", lines[0], "|" + "---|" * len(rows[0]), *lines[1:]])
