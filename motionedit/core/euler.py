@@ -217,7 +217,7 @@ def _changed_over(first: FloatArray, seed: FloatArray, distance: FloatArray) -> 
 
 
 def _distances(before: FloatArray, after: FloatArray, seed: FloatArray) -> FloatArray:
-    """Return the sum over the angles of the steps from each frame of `before` to the next of `after`, shape (F, ...)."""
+    """Return the sum over the angles of the steps from each frame of `before` to the next of `after`, (F, ...)."""
     d = np.empty_like(after)
     np.subtract(after[:, 1:], before[:, :-1], out=d[:, 1:])
     np.subtract(after[:, 0], seed, out=d[:, 0])
