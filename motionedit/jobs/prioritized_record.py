@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from motionedit.core.arrays import median
 from motionedit.core.editing.constraints import order_of_layers
 from motionedit.core.editing.prioritized_edit import LayeredSettings, PaperFilter
 from motionedit.jobs.prioritized_recruits import recruited_names
@@ -106,7 +107,7 @@ def edit_record(
         "constraints": records,
         "layers": _layers(edit, measured),
         "iterations": {
-            "median": float(np.median(solved)) if len(solved) else 0.0,
+            "median": float(median(solved.astype(np.float64))) if len(solved) else 0.0,
             "max": int(solved.max(initial=0)),
         },
         "frames_solved": len(solved),
