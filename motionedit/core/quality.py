@@ -53,10 +53,36 @@ def jerk_rms(positions: FloatArray, *, frame_time: float, first: int = 0) -> flo
     first : int
         The first frame after a rest pose; earlier ones are left out.
     """
-    third = np.diff(positions[first:], n=3, axis=0)
-    if not third.size:
-        return 0.0
-    return float(np.sqrt(np.mean(np.sum(third * third, axis=-1)))) / frame_time**3
+    meter = JerkMeter(first)
+    meter.add(positions)
+    return meter.rms(frame_time=frame_time)
+
+
+class JerkMeter:
+    """The jerk of positions that come in blocks of frames, in order; see `jerk_rms`."""
+
+    def __init__(self, first: int) -> None:
+        self._skip = first
+        self._last: FloatArray | None = None
+        self._sum, self._count = 0.0, 0
+
+    def add(self, positions: FloatArray) -> None:
+        """Take the positions, shape (F, J, 3), of the frames that follow those before."""
+        skipped = min(self._skip, len(positions))
+        self._skip -= skipped
+        positions = positions[skipped:]
+        if self._last is not None:
+            positions = np.concatenate((self._last, positions))
+        third = np.diff(positions, n=3, axis=0)
+        if third.size:
+            third *= third
+            self._sum += float(np.sum(np.sum(third, axis=-1)))
+            self._count += third.shape[0] * third.shape[1]
+        self._last = positions[-3:].copy()
+
+    def rms(self, *, frame_time: float) -> float:
+        """Return the root mean square third difference over time, clip units / s^3; 0 below four frames."""
+        return float(np.sqrt(self._sum / self._count)) / frame_time**3 if self._count else 0.0
 
 
 def foot_slide_max(positions: FloatArray, plants: Sequence[Plant], *, up: FloatArray, frame_time: float) -> float:
@@ -64,12 +90,14 @@ def foot_slide_max(positions: FloatArray, plants: Sequence[Plant], *, up: FloatA
 
     `positions` has shape (F, J, 3). For an edit the plants are those of its input.
     """
-    speeds = [0.0]
-    for plant in plants:
-        step = np.diff(positions[plant.start : plant.stop + 1, plant.joint], axis=0)
+    fastest = 0.0
+    for joint in {plant.joint for plant in plants}:
+        step = np.diff(positions[:, joint], axis=0)
         level = step - (step @ up)[:, None] * up
-        speeds.append(float(np.linalg.norm(level, axis=-1).max(initial=0.0)) / frame_time)
-    return max(speeds)
+        way = np.linalg.norm(level, axis=-1)
+        here = [plant for plant in plants if plant.joint == joint]
+        fastest = max(fastest, *(float(way[plant.start : plant.stop].max(initial=0.0)) for plant in here))
+    return fastest / frame_time
 
 
 def foot_drift(before: FloatArray, after: FloatArray, plants: Sequence[Plant]) -> float:
