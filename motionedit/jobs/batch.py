@@ -181,7 +181,7 @@ def _collect(waiting: Sequence[ClipTask], done: Sequence[Done], total: int, opti
         exit_code=_exit_code(waiting, done, strict=options.strict),
         seconds=[one.seconds for _, one in pairs],
         details=[(_heading(task), one.outcome.details) for task, one in pairs if not one.errors],
-        content=next((one.outcome.content for _, one in pairs if one.outcome.content is not None), None),
+        content=next((one.outcome.content for _, one in pairs if isinstance(one.outcome.content, bytes)), None),
         current=total - len(waiting),
     )
 

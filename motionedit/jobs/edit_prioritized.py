@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from motionedit.core.bvh import edited_bytes, unedited_bytes
+from motionedit.core.bvh import edited_pieces, unedited_bytes
 from motionedit.core.compiled import solver_name
 from motionedit.core.editing.prioritized_edit import (
     LayeredSettings,
@@ -32,7 +32,7 @@ from motionedit.jobs.prioritized_record import edit_record
 from motionedit.jobs.prioritized_recruits import breach_error, breach_warnings, layer_lines
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
     from motionedit.core.arrays import BoolArray
@@ -206,8 +206,8 @@ def _moved(edit: PrioritizedEdit, sized: SizedClip) -> BoolArray:
     return moved
 
 
-def _content(clip: Clip, edit: PrioritizedEdit, sized: SizedClip) -> bytes:
+def _content(clip: Clip, edit: PrioritizedEdit, sized: SizedClip) -> Iterator[bytes | memoryview]:
     # Only what was touched is read of it, so nothing needs to be put back.
     translations = edit.motion.translations / sized.scale
     motion = Motion(clip.motion.skeleton, edit.motion.rotations, translations, clip.motion.frame_time)
-    return edited_bytes(clip, motion, touched=edit.touched, moved=_moved(edit, sized))
+    return edited_pieces(clip, motion, touched=edit.touched, moved=_moved(edit, sized))

@@ -11,6 +11,8 @@ from motionedit.errors import ClipError, MotionEditError, MotionEditErrors
 from motionedit.jobs.files import atomic_write
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from motionedit.core.bvh import Clip
     from motionedit.core.motion import Motion
     from motionedit.jobs.plan import ClipTask, RunOptions
@@ -22,8 +24,8 @@ class Outcome:
 
     Attributes
     ----------
-    content : bytes or None
-        The file to write; None writes none.
+    content : bytes, or an iterable of pieces of them, or None
+        The file to write; None writes none. Pieces are made as they are written, and once.
     record : dict
         The clip's entry in the report, from `message` on; plain values only.
     status : str
@@ -36,7 +38,7 @@ class Outcome:
         Lines that --dry-run prints: layers, recruited joints, intervals, goals.
     """
 
-    content: bytes | None
+    content: bytes | Iterable[bytes | memoryview] | None
     record: dict[str, Any] = field(default_factory=dict)
     status: str = "ok"
     warnings: tuple[str, ...] = ()
@@ -92,7 +94,9 @@ class RunOne:
         if content is None or self.options.dry_run:
             return Done(replace(outcome, content=None, motion=None, warnings=warnings))
         record = outcome.record
-        if self.options.verify:
+        if not isinstance(content, bytes) and (self.options.verify or task.output is None):
+            content = b"".join(content)
+        if isinstance(content, bytes) and self.options.verify:
             record = {**record, "verify": _verify(clip, content, outcome.motion or clip.motion)}
         if task.output is not None:
             try:
