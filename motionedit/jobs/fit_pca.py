@@ -146,10 +146,9 @@ def _excluded(loaded: LoadedSpec[FitPcaSpec] | None, first: DatabaseMotion, fold
 
 
 def _too_few(loaded: LoadedSpec[FitPcaSpec] | None, spec: FitPcaSpec, clips: int, available: int) -> MotionEditError:
-    most = (
-        f"at most {available} components are kept" if available == MOST_COMPONENTS else f"have {available} components"
-    )
-    message = f"{clips} clips {most}, not {spec.components}"
+    message = f"{clips} clips have {available} components, not {spec.components}"
+    if available == MOST_COMPONENTS:
+        message = f"of {clips} clips at most {available} components are kept, not {spec.components}"
     return ModelError(message) if loaded is None else loaded.error(("components",), message)
 
 
