@@ -12,7 +12,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 export OMP_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install demo test test-numpy sanitize test-all lint types docs docs-check golden bench figures data clean
+.PHONY: help install demo test test-numpy sanitize test-all lint types docs docs-check golden bench bench-scale figures data clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -68,6 +68,9 @@ golden: $(STAMP)  ## write the golden files anew; look at the difference before 
 
 bench: $(STAMP)  ## measure speed, as ratios inside one run
 	$(BIN)/python benchmarks/run.py
+
+bench-scale: $(STAMP)  ## measure many and long clips: their time and peak memory
+	$(BIN)/python benchmarks/scale.py
 
 figures: $(STAMP)  ## print the accuracy figures that the documentation quotes
 	$(BIN)/python benchmarks/figures.py
