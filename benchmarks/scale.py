@@ -170,8 +170,8 @@ def main() -> None:
     print(machine())
     with tempfile.TemporaryDirectory() as scratch:
         parts: list[tuple[str, Callable[[], list[Row]]]] = [
-            ("Many clips", lambda: chain(Path(scratch))),
             ("Many motions, made in memory", lambda: fits([(10_000, "streaming", 20), (1_000, "gram", None)])),
+            ("Many clips", lambda: chain(Path(scratch))),
             ("The same, as many components as without a number", lambda: fits([(10_000, "streaming", None)])),
             ("A long clip", lambda: longest(Path(scratch))),
         ]
