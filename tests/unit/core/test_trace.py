@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 from human import skeleton_of, standing, with_rotation
 
+from motionedit.core import center_of_mass as center_of_mass_module
+from motionedit.core import rotations as rot
 from motionedit.core import trace
 from motionedit.core.anatomy import find_anatomy
 from motionedit.core.arrays import median
@@ -48,3 +50,12 @@ def test_without_masses_there_is_no_path_of_their_center(moving):
 def test_the_median_is_numpys(shape):
     values = np.random.default_rng(1).normal(size=shape)
     np.testing.assert_array_equal(median(values), np.median(values, axis=0))
+
+
+def test_the_center_of_mass_does_not_depend_on_the_frames_that_are_taken_together(moving, monkeypatch):
+    poses, masses = forward(moving), find_masses(moving.skeleton, find_anatomy(moving.skeleton))
+    whole = center_of_mass(poses, masses)
+    monkeypatch.setattr(center_of_mass_module, "_BLOCK_FRAMES", 4)
+    np.testing.assert_allclose(center_of_mass(poses, masses), whole, atol=1e-12)
+    weighed = masses.shares @ (poses.positions + rot.rotate(poses.rotations, masses.points))
+    np.testing.assert_allclose(whole, weighed, atol=1e-12)
