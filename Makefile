@@ -12,7 +12,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 export OMP_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install demo test test-numpy sanitize test-all lint types docs docs-check golden bench bench-peers figures data clean
+.PHONY: help install demo test test-numpy sanitize test-all lint types docs docs-check golden bench bench-peers bench-scale figures data clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -78,6 +78,9 @@ PEERS := pink mink placo bpy pybvh
 
 bench-peers: $(STAMP) $(PEERS:%=.venv-peers/%/.installed)  ## measure beside pink, mink, placo, Blender and pybvh, each in a .venv-peers/NAME
 	$(BIN)/python benchmarks/peers/compare.py
+
+bench-scale: $(STAMP)  ## measure many and long clips: their time and peak memory
+	$(BIN)/python benchmarks/scale.py
 
 figures: $(STAMP)  ## print the accuracy figures that the documentation quotes
 	$(BIN)/python benchmarks/figures.py

@@ -73,6 +73,18 @@ def process(command: Sequence[str | Path], folder: Path) -> Callable[[], object]
     return run
 
 
+def peak_of(command: Sequence[str | Path], folder: Path) -> tuple[float, int]:
+    """Return the seconds and the peak of resident bytes of a command that is run to its end."""
+    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
+    start = time.perf_counter()
+    child = subprocess.Popen(list(map(str, command)), cwd=folder, env=environment, stdout=subprocess.DEVNULL)
+    _, status, usage = os.wait4(child.pid, 0)
+    child.returncode = os.waitstatus_to_exitcode(status)
+    if child.returncode:
+        raise subprocess.CalledProcessError(child.returncode, list(map(str, command)))
+    return time.perf_counter() - start, usage.ru_maxrss * 1024
+
+
 def duration(seconds: float) -> str:
     """Return a time in the unit that suits it: ``48.1 us``, ``3.20 ms``, ``1.04 s``."""
     for unit, size in (("s", 1.0), ("ms", 1e-3)):

@@ -21,6 +21,7 @@ import batches  # noqa: E402
 import bvh_files  # noqa: E402
 import pc_edit  # noqa: E402
 import prioritized  # noqa: E402
+import scale  # noqa: E402
 from clock import HEADINGS, Row  # noqa: E402
 from lab import print_table  # noqa: E402
 
@@ -41,12 +42,17 @@ def main() -> None:
             ("BVH files", bvh_files.rows(Path(scratch))),
             ("The edit by coefficients, data/golf/swing04.bvh", pc_edit.rows(Path(scratch))),
             ("The edit by prioritized constraints", prioritized.rows(Path(scratch))),
+            ("The edit by prioritized constraints, file to file", scale.edits(Path(scratch))),
             ("Many clips, in one process", batches.rows(Path(scratch))),
+            (
+                "Many motions, made in memory",
+                scale.fits([(1_000, "gram", None), (1_000, "gram", 20), (1_000, "streaming", 20)]),
+            ),
         ]
     print(machine())
     for title, rows in parts:
         print_table(title, [HEADINGS, *(row.cells for row in rows)])
-    RESULTS.write_text("\n".join([INTRODUCTION, machine(), *(_markdown(title, rows) for title, rows in parts)]) + "\n")
+    RESULTS.write_text("\n".join([INTRODUCTION, machine(), *(table(title, rows) for title, rows in parts)]) + "\n")
 
 
 def machine() -> str:
@@ -63,7 +69,8 @@ def _processor() -> str:
     return models[0] if models else platform.processor() or platform.machine()
 
 
-def _markdown(title: str, rows: list[Row]) -> str:
+def table(title: str, rows: list[Row]) -> str:
+    """Return rows as a part of a page."""
     lines = [f"\n## {title}\n", f"| {' | '.join(HEADINGS)} |", "|---|---|---|---|---|---|"]
     return "\n".join([*lines, *(f"| {' | '.join(row.cells)} |" for row in rows)])
 

@@ -78,6 +78,8 @@ def command(
         for warning in fit.warnings:
             warn(warning)
         click.echo(text_table(*fit.table), err=True)
+        for note in fit.notes:
+            click.echo(f"motionedit: {note}", err=True)
     if str(report) != "-":
         click.echo(output)
     if report is not None:

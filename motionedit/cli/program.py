@@ -35,6 +35,7 @@ _BLAS_THREADS = (
     "BLIS_NUM_THREADS",
     "VECLIB_MAXIMUM_THREADS",
 )
+_OBJECTS_BETWEEN_COLLECTIONS = 50_000
 # Searching every installed package for plugins of pydantic takes time, and none is to change what a spec means.
 _PYDANTIC_PLUGINS = ("PYDANTIC_DISABLE_PLUGINS", "__all__")
 
@@ -47,6 +48,9 @@ class _Program(click.Group):
         for name in _BLAS_THREADS:
             os.environ[name] = "1"
         os.environ.setdefault(*_PYDANTIC_PLUGINS)
+        # Modules and specs make many objects and no garbage: to look for it every 700 of them takes a tenth of a short
+        # edit.
+        gc.set_threshold(_OBJECTS_BETWEEN_COLLECTIONS)
         # At the end the memory goes with the process: to search it for cycles once more takes a fifth of a short edit.
         atexit.register(gc.freeze)
         extra.update(standalone_mode=False, prog_name="motionedit")

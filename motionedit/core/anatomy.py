@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.arrays import median
 from motionedit.core.limbs import LimbPair, Tree, find_limb_pairs
 from motionedit.core.sides import leg_or_arm, side_of_chains, side_of_toes
 
@@ -202,7 +203,7 @@ def _left_first(
     def ordered(pair: LimbPair | None) -> LimbPair | None:
         if pair is None:
             return None
-        side = sides[id(pair)] or float(np.median(np.sum(_across(pair, positions) * left, axis=-1)))
+        side = sides[id(pair)] or float(median(np.sum(_across(pair, positions) * left, axis=-1)))
         return pair.swapped() if side < 0 else pair
 
     return ordered(legs), ordered(arms), True

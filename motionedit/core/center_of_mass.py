@@ -10,15 +10,16 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
 from motionedit.core.body_segments import lay_by_length, lay_given, lay_human
+from motionedit.core.kinematics import WorldPoses
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from motionedit.core.anatomy import Anatomy
     from motionedit.core.arrays import FloatArray, IntArray
-    from motionedit.core.kinematics import WorldPoses
     from motionedit.core.skeleton import Skeleton
 
+_BLOCK_FRAMES = 1 << 10
 _NOT_HUMAN = (
     "the skeleton is not a human's: for the center of mass each bone weighs as much as it is long; "
     "'masses' in the spec takes kilograms by joint"
@@ -87,7 +88,12 @@ def find_masses(skeleton: Skeleton, anatomy: Anatomy, *, given: Mapping[int, flo
 def center_of_mass(poses: WorldPoses, masses: Masses) -> FloatArray:
     """Return c = sum m_j (p_j + R_j c_j) / M, the center of mass in the world, shape (F, 3), clip units."""
     carriers = np.flatnonzero(masses.shares)
-    center: FloatArray = masses.shares[carriers] @ _carried(poses, masses, carriers)
+    center = np.empty((len(poses.positions), 3))
+    # Block by block: what is carried takes more memory on its way than the world transforms of a long motion.
+    for start in range(0, len(center), _BLOCK_FRAMES):
+        block = slice(start, start + _BLOCK_FRAMES)
+        part = WorldPoses(poses.positions[block], poses.rotations[block])
+        center[block] = masses.shares[carriers] @ _carried(part, masses, carriers)
     return center
 
 

@@ -51,12 +51,18 @@ def find_plants(motion: Motion, poses: WorldPoses, anatomy: Anatomy, *, up: Floa
     first : int
         The first frame after a rest pose; earlier ones are never planted.
     """
+    tracks = poses.positions[:, [joint for _, joint in anatomy.foot_points]]
+    return plants_of(tracks, anatomy, up=up, first=first, frame_time=motion.frame_time)
+
+
+def plants_of(tracks: FloatArray, anatomy: Anatomy, *, up: FloatArray, first: int, frame_time: float) -> list[Plant]:
+    """Return the plants of ankles and toes as `find_plants`; `tracks` (F, P, 3) are those of `anatomy.foot_points`."""
     points = anatomy.foot_points
-    if not points or len(motion) - first < 2:
+    if not points or len(tracks) - first < 2:
         return []
     metre = anatomy.leg_length / STANDARD_LEG
-    places = poses.positions[first:, [joint for _, joint in points]]
-    speed = np.linalg.norm(np.gradient(places, motion.frame_time, axis=0), axis=-1)
+    places = tracks[first:]
+    speed = np.linalg.norm(np.gradient(places, frame_time, axis=0), axis=-1)
     height = places @ up
     low = np.percentile(height, _LOW_PERCENTILE, axis=0) + _LOW * metre
     planted = (speed < _SLOW * metre) & (height < low)
@@ -64,7 +70,7 @@ def find_plants(motion: Motion, poses: WorldPoses, anatomy: Anatomy, *, up: Floa
         Plant(side, joint, first + start, first + stop)
         for (side, joint), frames in zip(points, planted.T, strict=True)
         for start, stop in _runs(frames)
-        if (stop - start + 1) * motion.frame_time >= _SHORTEST - 1e-9
+        if (stop - start + 1) * frame_time >= _SHORTEST - 1e-9
     ]
     return sorted(plants, key=lambda plant: (plant.start, plant.foot, plant.joint))
 

@@ -29,6 +29,9 @@ _TURN = 2.0 * np.pi
 # Within this angle (rad, 1e-4 degrees) of gimbal lock the last angle is kept. The rebuilt rotation is off by no more
 # than that; a wider band would cost more than the 2e-4 degrees that are promised.
 GIMBAL_BAND = np.radians(1e-4)
+# Rotations that are solved together: a short clip's joints cost less than the calls they would take one by one, and
+# what is solved together stays in the processor's cache.
+_TOGETHER = 1 << 13
 
 
 def joint_angles(motion: Motion, *, start: FloatArray) -> FloatArray:
@@ -51,13 +54,13 @@ def joint_angles(motion: Motion, *, start: FloatArray) -> FloatArray:
     for p, joint in enumerate(skeleton.translated.tolist()):
         for axis, column in position_columns(skeleton, joint):
             values[:, column] = motion.translations[:, p, axis]
-    for joint in range(len(skeleton)):
-        columns = skeleton.columns(joint, "rotation")
-        if columns:
-            seed = np.radians(start[columns])
-            angles = angles_near(motion.rotations[:, joint], skeleton.rotation_axes[joint], seed=seed)
-            for column, angle in zip(columns, angles.T, strict=True):
-                values[:, column] = np.degrees(angle)
+    for group in skeleton.rotation_groups:
+        step = max(_TOGETHER // len(motion), 1)
+        for first in range(0, len(group.joints), step):
+            joints, columns = group.joints[first : first + step], group.columns[first : first + step]
+            q = np.ascontiguousarray(motion.rotations.transpose(2, 0, 1)[:, :, joints])
+            angles = _angles_of_joints(q, group.axes, np.radians(start[columns.T]))
+            values[:, columns.reshape(-1)] = np.degrees(angles).transpose(1, 2, 0).reshape(len(motion), -1)
     return values
 
 
@@ -140,6 +143,22 @@ def angles_near(q: FloatArray, axes: tuple[int, ...], *, seed: FloatArray) -> Fl
     return angles.T
 
 
+def _angles_of_joints(q: FloatArray, axes: tuple[int, ...], seed: FloatArray) -> FloatArray:
+    """Return what `angles_near` does for G joints at once, shape (A, F, G), from q (4, F, G) and seeds (A, G)."""
+    first = solve_angles(q, axes)
+    if len(axes) < 3:
+        return _unwrap(first, seed)
+    locked = (np.abs(first[1]) > np.pi / 2.0 - GIMBAL_BAND).any(axis=0)
+    distance = _distances(first, first, seed)
+    far = np.flatnonzero((distance >= np.pi).any(axis=0))
+    if len(far):
+        first[:, :, far] = _changed_over(first[:, :, far], seed[:, far], distance[:, far])
+    near = _unwrap(first, seed)
+    for joint in np.flatnonzero(locked).tolist():
+        near[:, :, joint] = angles_near(q[:, :, joint].T, axes, seed=seed[:, joint]).T
+    return near
+
+
 def solve_angles(q: FloatArray, axes: tuple[int, ...]) -> FloatArray:
     """Return one solution of Euler angles (rad), shape (A, ...): exact with three axes, else the nearest rotation.
 
@@ -182,18 +201,23 @@ def other_solution(angles: FloatArray) -> FloatArray:
 
 
 def _nearest(first: FloatArray, seed: FloatArray) -> FloatArray:
-    """Return, of the triples and their other solutions, shape (3, F), those nearest the frame before, unwrapped."""
+    """Return, of the triples and their other solutions, (3, F, ...), those nearest the frame before, unwrapped."""
     distance = _distances(first, first, seed)
     # The two solutions of one rotation are at least a whole turn apart, so a step below half a turn needs no change.
     if np.any(distance >= np.pi):
-        other = other_solution(first)
-        changed = np.logical_xor.accumulate(_distances(first, other, seed) < distance)
-        first = np.where(changed, other, first)
+        first = _changed_over(first, seed, distance)
     return _unwrap(first, seed)
 
 
+def _changed_over(first: FloatArray, seed: FloatArray, distance: FloatArray) -> FloatArray:
+    """Return the triples, or their other solutions where these are nearer the frame before: `distance` is theirs."""
+    other = other_solution(first)
+    changed = np.logical_xor.accumulate(_distances(first, other, seed) < distance, axis=0)
+    return np.where(changed, other, first)
+
+
 def _distances(before: FloatArray, after: FloatArray, seed: FloatArray) -> FloatArray:
-    """Return the sum over the angles of the steps from each frame of `before` to the next of `after`, shape (F,)."""
+    """Return the sum over the angles of the steps from each frame of `before` to the next of `after`, (F, ...)."""
     d = np.empty_like(after)
     np.subtract(after[:, 1:], before[:, :-1], out=d[:, 1:])
     np.subtract(after[:, 0], seed, out=d[:, 0])
@@ -203,7 +227,7 @@ def _distances(before: FloatArray, after: FloatArray, seed: FloatArray) -> Float
 
 
 def _unwrap(angles: FloatArray, seed: FloatArray) -> FloatArray:
-    """Return the angles, shape (A, F), by whole turns nearest the frame before."""
+    """Return the angles, shape (A, F, ...), by whole turns nearest the frame before."""
     turns = np.empty_like(angles)
     np.subtract(angles[:, 1:], angles[:, :-1], out=turns[:, 1:])
     np.subtract(angles[:, 0], seed, out=turns[:, 0])

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.arrays import frozen
+from motionedit.core.arrays import frozen, median
 from motionedit.core.limbs import zero_pose
 
 if TYPE_CHECKING:
@@ -172,7 +172,7 @@ def _standing(anatomy: Anatomy, positions: FloatArray) -> FloatArray | None:
     low = feet or [j for j in (anatomy.chest,) if j is not None and j != top]
     if top is None or not low:
         return None
-    stand: FloatArray = np.median(positions[:, top] - positions[:, low].mean(axis=1), axis=0)
+    stand: FloatArray = median(positions[:, top] - positions[:, low].mean(axis=1))
     return stand if np.any(stand) else None
 
 

@@ -26,15 +26,12 @@ def multiply(a: FloatArray, b: FloatArray) -> FloatArray:
     """Return the Hamilton product a b, shape (..., 4): first turn by b, then by a."""
     aw, ax, ay, az = np.moveaxis(a, -1, 0)
     bw, bx, by, bz = np.moveaxis(b, -1, 0)
-    product: FloatArray = np.stack(
-        (
-            aw * bw - ax * bx - ay * by - az * bz,
-            aw * bx + ax * bw + ay * bz - az * by,
-            aw * by - ax * bz + ay * bw + az * bx,
-            aw * bz + ax * by - ay * bx + az * bw,
-        ),
-        axis=-1,
-    )
+    # Part by part into its place: four parts beside the product would double the memory of a long motion.
+    product: FloatArray = np.empty((*np.broadcast(aw, bw).shape, 4))
+    product[..., 0] = aw * bw - ax * bx - ay * by - az * bz
+    product[..., 1] = aw * bx + ax * bw + ay * bz - az * by
+    product[..., 2] = aw * by - ax * bz + ay * bw + az * bx
+    product[..., 3] = aw * bz + ax * by - ay * bx + az * bw
     return product
 
 
@@ -75,21 +72,36 @@ def skew(v: FloatArray) -> FloatArray:
 
 def exp(v: FloatArray) -> FloatArray:
     """Return the quaternions of rotation vectors v (rad), shape (..., 4)."""
-    half = 0.5 * np.linalg.norm(v, axis=-1, keepdims=True)
+    half = 0.5 * _length(v[..., 0], v[..., 1], v[..., 2])
+    q = np.empty((*v.shape[:-1], 4))
+    np.cos(half, out=q[..., 0])
     # sin(x)/x by np.sinc, whose argument is x/pi, is exact at 0.
-    q: FloatArray = np.concatenate((np.cos(half), 0.5 * np.sinc(half / np.pi) * v), axis=-1)
+    np.multiply((0.5 * np.sinc(half / np.pi))[..., None], v, out=q[..., 1:])
     return q
 
 
 def log(q: FloatArray) -> FloatArray:
     """Return the rotation vectors (rad, length at most pi) of unit quaternions; the sign of q does not matter."""
-    q = np.where(q[..., :1] < 0.0, -q, q)
-    w, xyz = q[..., :1], q[..., 1:]
-    s = np.linalg.norm(xyz, axis=-1, keepdims=True)
+    w = q[..., 0]
+    s = _length(q[..., 1], q[..., 2], q[..., 3])
+    scale = np.arctan2(s, np.abs(w))
+    scale *= 2.0
     small = s < _SMALL_ANGLE
-    scale = np.where(small, 2.0 + s * s / 3.0, 2.0 * np.arctan2(s, w) / np.where(small, 1.0, s))
-    v: FloatArray = scale * xyz
+    if np.any(small):
+        scale = np.where(small, 2.0 + s * s / 3.0, scale / np.where(small, 1.0, s))
+    else:
+        scale /= s
+    v: FloatArray = np.where(w < 0.0, -scale, scale)[..., None] * q[..., 1:]
     return v
+
+
+def _length(x: FloatArray, y: FloatArray, z: FloatArray) -> FloatArray:
+    """Return the lengths of vectors, part by part: a norm over a short last axis takes several times as long."""
+    squares = x * x
+    squares = squares + y * y
+    squares = squares + z * z
+    length: FloatArray = np.sqrt(squares)
+    return length
 
 
 def angle_between(a: FloatArray, b: FloatArray) -> FloatArray:
@@ -144,7 +156,12 @@ def slerp(a: FloatArray, b: FloatArray, t: FloatArray) -> FloatArray:
 def mean(q: FloatArray, *, axis: int = 0) -> FloatArray:
     """Return the Markley mean over one axis: the eigenvector of sum q q^T with the largest eigenvalue, w >= 0."""
     q = np.moveaxis(q, axis, -2)
-    _, vectors = np.linalg.eigh(np.swapaxes(q, -1, -2) @ q)
+    return mean_of_products(np.swapaxes(q, -1, -2) @ q)
+
+
+def mean_of_products(products: FloatArray) -> FloatArray:
+    """Return the Markley mean of rotations of which sum q q^T is known, shape (..., 4, 4): see `mean`."""
+    _, vectors = np.linalg.eigh(products)
     best: FloatArray = vectors[..., -1]
     return np.where(best[..., :1] < 0.0, -best, best)
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
+from motionedit.core.arrays import median
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
@@ -49,7 +50,7 @@ def side_of_toes(*, across: FloatArray, up: FloatArray, toes: FloatArray) -> int
     """
     lean = np.sum(rot.cross(up, toes) * across, axis=-1)
     size = np.linalg.norm(up, axis=-1) * np.linalg.norm(toes, axis=-1) * np.linalg.norm(across, axis=-1)
-    share = float(np.median(lean / np.maximum(size, np.finfo(float).tiny)))
+    share = float(median(lean / np.maximum(size, np.finfo(float).tiny)))
     return 0 if abs(share) < _SURE else int(np.sign(share))
 
 

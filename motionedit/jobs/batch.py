@@ -21,7 +21,7 @@ from motionedit.jobs.plan import ClipTask, RunOptions, find_clips, no_progress, 
 from motionedit.jobs.pool import results_in_order
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Generator, Sequence
 
 
 __all__ = [
@@ -38,6 +38,7 @@ __all__ = [
     "plan",
     "read_task",
     "run_batch",
+    "values_in_order",
 ]
 
 Item = TypeVar("Item")
@@ -122,15 +123,20 @@ def map_tasks(
     A MotionEditError or OSError of an item comes back as its value; every item is tried. `function`, items and
     values are pickled where there are several workers.
     """
+    return list(values_in_order(function, items, options))
+
+
+def values_in_order(
+    function: Callable[[Item], Value], items: Sequence[Item], options: RunOptions
+) -> Generator[Value | MotionEditError]:
+    """Yield what `map_tasks` returns, one by one: of many large values few are held at a time."""
     from motionedit.core import bvh as _bvh  # noqa: F401  as above
 
-    values: list[Value | MotionEditError] = []
     results = results_in_order(_Guarded(function), items, options=options)
     with closing(results), options.progress(len(items)) as advance:
         for value in results:
-            values.append(value)
+            yield value
             advance()
-    return values
 
 
 @dataclass(frozen=True)
@@ -176,7 +182,7 @@ def _collect(waiting: Sequence[ClipTask], done: Sequence[Done], total: int, opti
         exit_code=_exit_code(waiting, done, strict=options.strict),
         seconds=[one.seconds for _, one in pairs],
         details=[(_heading(task), one.outcome.details) for task, one in pairs if not one.errors],
-        content=next((one.outcome.content for _, one in pairs if one.outcome.content is not None), None),
+        content=next((one.outcome.content for _, one in pairs if isinstance(one.outcome.content, bytes)), None),
         current=total - len(waiting),
     )
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -29,16 +30,24 @@ SIDE_BY_SIDE = 0.82
 class ClipFacts:
     """A clip and what was found in it.
 
-    `poses` are the world transforms of all frames, `up` the signed unit axis (3,), `travel` the joint that carries
-    the travel, `first` the first frame after a rest pose.
+    `up` is the signed unit axis (3,), `travel` the joint that carries the travel, `first` the first frame after a rest
+    pose.
     """
 
     clip: Clip
-    poses: WorldPoses
     anatomy: Anatomy
     up: FloatArray
     travel: int
     first: int
+
+    @cached_property
+    def poses(self) -> WorldPoses:
+        """World transforms of all frames; made anew where they were forgotten."""
+        return kinematics.forward(self.clip.motion)
+
+    def forget_poses(self) -> None:
+        """Give back the memory of `poses`: for a long clip twice that of its file."""
+        vars(self).pop("poses", None)
 
     @property
     def last(self) -> int:
@@ -82,4 +91,6 @@ def facts_of(clip: Clip, *, up: str = "auto", keep_rest_pose: bool = False) -> C
     anatomy = find_anatomy(motion.skeleton, poses=poses)
     axis = ground.find_up(motion, poses, anatomy) if up == "auto" else ground.axis_vector(up)
     first = 0 if keep_rest_pose else ground.rest_pose_frames(motion, anatomy)
-    return ClipFacts(clip, poses, anatomy, axis, ground.travel_joint(motion), min(first, len(motion) - 1))
+    facts = ClipFacts(clip, anatomy, axis, ground.travel_joint(motion), min(first, len(motion) - 1))
+    vars(facts)["poses"] = poses
+    return facts

@@ -20,7 +20,7 @@ from motionedit.errors import ClipError
 from motionedit.jobs import resolve
 from motionedit.jobs.batch import Outcome, plan, run_batch
 from motionedit.jobs.clip_facts import facts_of
-from motionedit.jobs.edit_metrics import edit_metrics
+from motionedit.jobs.edit_metrics import edit_metrics, feet_of
 from motionedit.jobs.edit_page import WithPage
 from motionedit.jobs.model_events import events_for_model, refuse_unknown_events
 from motionedit.jobs.pc_goals import ClipGoal, clip_goal
@@ -200,7 +200,7 @@ class _Edit:
         unit = self.loaded.model.unit
         about = {
             "unit": None if unit is None else unit.name,
-            "metrics": edit_metrics(facts, after.positions, retimed=retimed),
+            "metrics": edit_metrics(facts, feet_of(facts, [facts.poses]), None if retimed else feet_of(facts, [after])),
         }
         result = edit_record(self.model, projection, edit, goals, poses=after, bound=self._bound(projection))
         return Outcome(

@@ -7,9 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from motionedit.core import kinematics
-from motionedit.core.bvh import edited_bytes, unedited_bytes
-from motionedit.core.center_of_mass import center_of_mass
+from motionedit.core.bvh import edited_pieces, unedited_bytes
 from motionedit.core.compiled import solver_name
 from motionedit.core.editing.prioritized_edit import (
     LayeredSettings,
@@ -20,11 +18,12 @@ from motionedit.core.editing.prioritized_edit import (
     edit_by_priorities,
 )
 from motionedit.core.motion import Motion
+from motionedit.core.trace import blocks_of, forward_blocks, frame_blocks
 from motionedit.jobs import resolve
 from motionedit.jobs.batch import Outcome, plan, run_batch
 from motionedit.jobs.clip_facts import facts_of
 from motionedit.jobs.collected import Faults
-from motionedit.jobs.edit_metrics import edit_metrics
+from motionedit.jobs.edit_metrics import edit_metrics, feet_of
 from motionedit.jobs.edit_page import WithPage
 from motionedit.jobs.events import event_frames
 from motionedit.jobs.pool import threads_within
@@ -34,11 +33,13 @@ from motionedit.jobs.prioritized_record import edit_record
 from motionedit.jobs.prioritized_recruits import breach_error, breach_warnings, layer_lines
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
+    from motionedit.core.arrays import BoolArray
     from motionedit.core.bvh import Clip
     from motionedit.core.editing.constraints import Constraint
+    from motionedit.core.trace import Trace
     from motionedit.jobs.batch import BatchResult, ClipTask, RunOptions
     from motionedit.jobs.prioritized_body import SizedClip
     from motionedit.jobs.prioritized_constraints import ClipConstraint
@@ -62,7 +63,7 @@ def run(
     """
     tasks = plan(clips, output, options=options, depends=loaded.files)
     others = tuple(task.relative for task in tasks)
-    work = EditByPriorities(loaded, others, threads_within(len(tasks), options))
+    work = EditByPriorities(loaded, others, threads_within(len(tasks), options), options.verify)
     return run_batch(tasks, WithPage(work, loaded.data) if options.preview and not options.dry_run else work, options)
 
 
@@ -73,22 +74,27 @@ class EditByPriorities:
     loaded: LoadedSpec[EditPrioritizedSpec]
     others: tuple[str, ...]
     threads: int = 1
+    verify: bool = False
 
     def __call__(self, clip: Clip, task: ClipTask) -> Outcome:
         """Return the edited clip, and how near each constraint came."""
         sized, constraints = self.resolved(clip, task)
         if not constraints:
-            record = {**self._about(sized, sized.facts.poses), "constraints": []}
+            feet = feet_of(sized.facts, blocks_of(sized.facts.poses), masses=sized.masses)
+            record = {**self._about(sized, feet, feet), "constraints": []}
             return Outcome(
                 unedited_bytes(clip), record, warnings=sized.warnings, details=("no constraints: the same bytes",)
             )
         settings = self.settings(clip)
+        before = feet_of(sized.facts, blocks_of(sized.facts.poses), masses=sized.masses)
+        # What is read off the input has been read: an edit of a long clip needs the room.
+        sized.facts.forget_poses()
         try:
             edit = edit_by_priorities(sized.motion, [c.constraint for c in constraints], sized.body, settings)
         except RecruitingError as error:
             asked = [c.constraint for c in constraints]
             raise breach_error(self.loaded, error.breach, asked, sized.facts) from None
-        return self._outcome(sized, constraints, edit, settings)
+        return self._outcome(sized, constraints, edit, settings, before=before)
 
     def resolved(self, clip: Clip, task: ClipTask) -> tuple[SizedClip, list[ClipConstraint]]:
         """Return a clip in normalised metres, and the spec's constraints in it.
@@ -133,16 +139,24 @@ class EditByPriorities:
         )
 
     def _outcome(
-        self, sized: SizedClip, constraints: Sequence[ClipConstraint], edit: PrioritizedEdit, settings: LayeredSettings
+        self,
+        sized: SizedClip,
+        constraints: Sequence[ClipConstraint],
+        edit: PrioritizedEdit,
+        settings: LayeredSettings,
+        *,
+        before: Trace,
     ) -> Outcome:
         facts, spec = sized.facts, self.loaded.model
         clip = facts.clip
         changed = bool(edit.touched.any() or edit.moved.any())
-        motion = _in_clip_units(clip.motion, edit, sized) if changed else clip.motion
-        after = kinematics.forward(motion) if changed else facts.poses
+        after = before
+        if changed:
+            parts = (_in_clip_units(edit, sized, block) for block in frame_blocks(len(clip.motion)))
+            after = feet_of(facts, forward_blocks(parts), masses=sized.masses)
         result = edit_record(edit, constraints, facts, scale=sized.scale, settings=settings)
         about = {
-            **self._about(sized, after),
+            **self._about(sized, before, after),
             "solver": solver_name(),
             **result.record,
             "passes": spec.smoothing.pass_count,
@@ -150,19 +164,17 @@ class EditByPriorities:
         asked = [each.constraint for each in constraints]
         breaches = breach_warnings(edit.breaches, asked, facts, rule=spec.recruiting_rule)
         return Outcome(
-            _content(clip, motion, edit, facts.travel) if changed else unedited_bytes(clip),
+            _content(clip, edit, sized) if changed else unedited_bytes(clip),
             {"message": result.message, **about},
             result.status,
             (*sized.warnings, *breaches, *_loose_feet(sized, asked, about["metrics"]), *result.warnings),
-            motion=motion if changed else None,
+            motion=_in_clip_units(edit, sized, slice(None)) if changed and self.verify else None,
             details=(*layer_lines(asked, edit.recruits, sized.body.hinges, facts), *breaches),
         )
 
-    def _about(self, sized: SizedClip, after: kinematics.WorldPoses) -> dict[str, Any]:
+    def _about(self, sized: SizedClip, before: Trace, after: Trace) -> dict[str, Any]:
         unit = self.loaded.model.unit
-        metrics = edit_metrics(sized.facts, after.positions)
-        shift = center_of_mass(after, sized.masses) - center_of_mass(sized.facts.poses, sized.masses)
-        metrics["com_shift_max"] = float(np.linalg.norm(shift, axis=1).max())
+        metrics = edit_metrics(sized.facts, before, after)
         return {"unit": None if unit is None else unit.name, "metrics": metrics}
 
 
@@ -180,15 +192,23 @@ def _loose_feet(sized: SizedClip, constraints: Sequence[Constraint], metrics: di
     return [f"planted feet move by up to {drift:.3g}, and no constraint holds them"]
 
 
-def _in_clip_units(before: Motion, edit: PrioritizedEdit, sized: SizedClip) -> Motion:
-    """Return the edited motion in clip units: what was not touched is the input's own, bit for bit."""
-    rotations = np.where(edit.touched[..., None], edit.motion.rotations, before.rotations)
-    travels = before.skeleton.translated == sized.facts.travel
-    moved = (edit.moved[:, None] & travels)[..., None]
-    translations = np.where(moved, edit.motion.translations / sized.scale, before.translations)
+def _in_clip_units(edit: PrioritizedEdit, sized: SizedClip, block: slice) -> Motion:
+    """Return a block of the edited motion in clip units: what was not touched is the input's own, bit for bit."""
+    before, after = sized.facts.clip.motion, edit.motion
+    rotations = np.where(edit.touched[block, :, None], after.rotations[block], before.rotations[block])
+    moved = _moved(edit, sized)[block, :, None]
+    translations = np.where(moved, after.translations[block] / sized.scale, before.translations[block])
     return Motion(before.skeleton, rotations, translations, before.frame_time)
 
 
-def _content(clip: Clip, motion: Motion, edit: PrioritizedEdit, travel: int) -> bytes:
-    moved = edit.moved[:, None] & (clip.motion.skeleton.translated == travel)
-    return edited_bytes(clip, motion, touched=edit.touched, moved=moved)
+def _moved(edit: PrioritizedEdit, sized: SizedClip) -> BoolArray:
+    """Return where joints with position channels are moved, shape (F, P): the one that carries the travel alone."""
+    moved: BoolArray = edit.moved[:, None] & (edit.motion.skeleton.translated == sized.facts.travel)
+    return moved
+
+
+def _content(clip: Clip, edit: PrioritizedEdit, sized: SizedClip) -> Iterator[bytes | memoryview]:
+    # Only what was touched is read of it, so nothing needs to be put back.
+    translations = edit.motion.translations / sized.scale
+    motion = Motion(clip.motion.skeleton, edit.motion.rotations, translations, clip.motion.frame_time)
+    return edited_pieces(clip, motion, touched=edit.touched, moved=_moved(edit, sized))

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 _PARTIAL = ".motionedit-partial"
 
 
-def atomic_write(path: Path, data: bytes) -> None:
-    """Write a file by way of a temporary one in the same folder, renamed when it is whole.
+def atomic_write(path: Path, data: bytes | Iterable[bytes | memoryview]) -> None:
+    """Write a file, whole or in pieces, by way of a temporary one in the same folder, renamed when it is whole.
 
     Folders on the way are made. An error or an interrupt leaves the old file, or none, and no temporary one.
 
@@ -29,9 +29,11 @@ def atomic_write(path: Path, data: bytes) -> None:
         The folder cannot be made or written, or the disk is full.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
+    pieces = (data,) if isinstance(data, bytes) else data
     if path.exists() and not path.is_file():
         # A device or a pipe, such as /dev/stdout: there is nothing to rename.
-        path.write_bytes(data)
+        with path.open("wb") as stream:
+            stream.writelines(pieces)
         return
     # Not `tempfile`: its files are closed to the group, and the rename would keep them so.
     temporary = path.with_name(f".{path.name[:40]}.{os.urandom(4).hex()}{_PARTIAL}")
@@ -40,7 +42,7 @@ def atomic_write(path: Path, data: bytes) -> None:
             # A file system without locks only keeps what a killed run leaves.
             with contextlib.suppress(OSError):
                 _hold(stream)
-            stream.write(data)
+            stream.writelines(pieces)
             stream.flush()
             if fcntl is not None:  # renamed while it is held, so that no other run takes it for a leftover
                 temporary.replace(path)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,23 +11,24 @@ import numpy as np
 from motionedit.core.anatomy import find_anatomy
 from motionedit.core.ground import axis_vector, travel_joint
 from motionedit.core.pca.database import DatabaseMotion, FitSettings, build_model
-from motionedit.core.pca.fit import components_for
+from motionedit.core.pca.fit import AllTheSameError, ComponentCount, TooFewComponentsError
 from motionedit.core.pca.model import DatabaseClip
 from motionedit.core.pca.model_file import model_bytes
+from motionedit.core.pca.streaming import MOST_COMPONENTS
 from motionedit.core.skeleton_match import match_joints
 from motionedit.errors import ClipError, ModelError, MotionEditError, MotionEditErrors
 from motionedit.jobs import resolve
-from motionedit.jobs.batch import ClipTask, atomic_write, clean_leftovers, map_tasks, read_task
+from motionedit.jobs.batch import ClipTask, atomic_write, clean_leftovers, read_task, values_in_order
 from motionedit.jobs.normalization_file import NAME, Normalization, NormalizedClip, read_normalization
 from motionedit.spec.fit_pca import FitPcaSpec
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
     from motionedit.core.motion import Motion
-    from motionedit.core.pca.database import OtherWinding
-    from motionedit.core.pca.model import MotionModel
+    from motionedit.core.pca.database import FittedModel
+    from motionedit.core.skeleton import Skeleton
     from motionedit.jobs.batch import RunOptions
     from motionedit.spec.load import LoadedSpec
 
@@ -35,11 +37,12 @@ HEADINGS = ("component", "variance", "share %", "sum %")
 
 @dataclass(frozen=True)
 class FitReport:
-    """What a fit came to: the explained-variance `table` (headings, rows), the report's `record`, `warnings`."""
+    """What a fit came to: the explained-variance `table` (headings, rows), the report's `record`, lines to print."""
 
     table: tuple[Sequence[str], Sequence[Sequence[object]]]
     record: dict[str, Any]
     warnings: list[str]
+    notes: list[str]
 
 
 def run(folder: Path, output: Path, loaded: LoadedSpec[FitPcaSpec] | None, options: RunOptions) -> FitReport:
@@ -60,55 +63,58 @@ def run(folder: Path, output: Path, loaded: LoadedSpec[FitPcaSpec] | None, optio
         count = len(normalization.clips)
         raise ModelError(f"lists {count} clip; a PCA needs two or more", file=str(folder / NAME))
     database = _database(folder, normalization, options)
-    skeleton = database[0].motion.skeleton
+    first = next(database)
     try:
-        model, windings = build_model(
-            database,
+        fitted = build_model(
+            chain((first,), database),
+            len(normalization.clips),
             timeline=normalization.timeline,
-            travel=travel_joint(database[0].motion),
+            travel=travel_joint(first.motion),
             up=axis_vector(normalization.up),
-            leg_length=find_anatomy(skeleton).leg_length,
+            leg_length=find_anatomy(first.motion.skeleton).leg_length,
             settings=FitSettings(
                 representation="centred" if spec.rotation == "centred" else "exponential",
                 root_weight=spec.root_weight,
-                excluded=_excluded(loaded, database[0], str(folder)),
+                excluded=_excluded(loaded, first, str(folder)),
+                components=ComponentCount(spec.components, spec.explained_variance),
             ),
             rules=normalization.rules,
         )
-    except ValueError as error:
+    except TooFewComponentsError as error:
+        raise _too_few(loaded, spec, len(normalization.clips), error.available) from None
+    except AllTheSameError as error:
         raise ModelError(f"{error}: there is nothing to learn; give clips that differ", file=str(folder)) from error
-    kept = model.truncated(_count(loaded, spec, model))
     clean_leftovers([output.parent])
     output.parent.mkdir(parents=True, exist_ok=True)
-    atomic_write(output, model_bytes(kept))
-    return _report(kept, windings)
+    atomic_write(output, model_bytes(fitted.model))
+    return _report(fitted, spec)
 
 
-def _database(folder: Path, normalization: Normalization, options: RunOptions) -> list[DatabaseMotion]:
+def _database(folder: Path, normalization: Normalization, options: RunOptions) -> Iterator[DatabaseMotion]:
+    """Yield the clips one by one, none after one that cannot be used; all that cannot are named together at the end."""
     items = [_Listed(folder / each.clip, each, normalization.timeline.frames) for each in normalization.clips]
-    values = map_tasks(_read, items, options)
-    errors = [value for value in values if isinstance(value, MotionEditError)]
-    database: list[DatabaseMotion] = []
+    errors: list[MotionEditError] = []
+    reference: Skeleton | None = None
     height = 0.0
-    for item, value in zip(items, values, strict=True):
+    for item, value in zip(items, values_in_order(_read, items, options), strict=True):
         if isinstance(value, MotionEditError):
+            errors.append(value)
             continue
-        skeleton = value.skeleton
-        if not database:
-            height = find_anatomy(skeleton).height
-        reference = database[0].motion.skeleton if database else skeleton
+        if reference is None:
+            reference = value.skeleton
+            height = find_anatomy(reference).height
         try:
             against = str(items[0].path)
-            joint_map = match_joints(reference, skeleton, height=height, label=str(item.path), against=against)
+            joint_map = match_joints(reference, value.skeleton, height=height, label=str(item.path), against=against)
         except ClipError as error:
             errors.append(error)
             continue
-        listed = item.listed
-        clip = DatabaseClip(_stem(listed.clip), listed.digest, tuple(listed.events.items()))
-        database.append(DatabaseMotion(clip, value, joint_map))
+        if not errors:
+            listed = item.listed
+            clip = DatabaseClip(_stem(listed.clip), listed.digest, tuple(listed.events.items()))
+            yield DatabaseMotion(clip, value, joint_map)
     if errors:
         raise errors[0] if len(errors) == 1 else MotionEditErrors("clips cannot be used", errors)
-    return database
 
 
 def _stem(relative: str) -> str:
@@ -139,19 +145,15 @@ def _excluded(loaded: LoadedSpec[FitPcaSpec] | None, first: DatabaseMotion, fold
     return frozenset(resolve.joints(loaded.model.exclude_joints, first.motion.skeleton, place))
 
 
-def _count(loaded: LoadedSpec[FitPcaSpec] | None, spec: FitPcaSpec, model: MotionModel) -> int:
-    available = len(model.components.explained_variance)
-    if spec.explained_variance is not None:
-        return components_for(model.components.explained_variance_ratio, spec.explained_variance)
-    if spec.components is None:
-        return available
-    if spec.components > available and loaded is not None:
-        message = f"{len(model.clips)} clips have {available} components, not {spec.components}"
-        raise loaded.error(("components",), message)
-    return spec.components
+def _too_few(loaded: LoadedSpec[FitPcaSpec] | None, spec: FitPcaSpec, clips: int, available: int) -> MotionEditError:
+    message = f"{clips} clips have {available} components, not {spec.components}"
+    if available == MOST_COMPONENTS:
+        message = f"of {clips} clips at most {available} components are kept, not {spec.components}"
+    return ModelError(message) if loaded is None else loaded.error(("components",), message)
 
 
-def _report(model: MotionModel, windings: Sequence[OtherWinding]) -> FitReport:
+def _report(fitted: FittedModel, spec: FitPcaSpec) -> FitReport:
+    model = fitted.model
     pca = model.components
     shares = pca.explained_variance_ratio
     sums = np.cumsum(shares)
@@ -162,8 +164,13 @@ def _report(model: MotionModel, windings: Sequence[OtherWinding]) -> FitReport:
     warnings = [
         f"{each.clip}: '{each.joint}' turns the other way round than in most clips ({each.degrees:.0f} degrees off); "
         "if that is a capture defect, leave it out with exclude_joints"
-        for each in windings
+        for each in fitted.windings
     ]
+    if spec.explained_variance is not None and sums[-1] < spec.explained_variance - 1e-9:
+        warnings.append(
+            f"the first {len(shares)} components explain {100 * sums[-1]:.2f} % of the variance, not "
+            f"{100 * spec.explained_variance:g} %; no more are kept of so many clips"
+        )
     record = {
         "frames": model.timeline.frames,
         "frame_rate": model.timeline.frame_rate,
@@ -174,4 +181,17 @@ def _report(model: MotionModel, windings: Sequence[OtherWinding]) -> FitReport:
             {"clip": clip.name, "coefficients": a} for clip, a in zip(model.clips, pca.coefficients, strict=True)
         ],
     }
-    return FitReport((HEADINGS, rows), record, warnings)
+    notes = []
+    if fitted.streamed is not None:
+        streamed = fitted.streamed
+        record["streamed"] = {"passes": streamed.passes, "residual": streamed.residual}
+        kept = f"the first {len(shares)} components"
+        if spec.components is None and spec.explained_variance is None:
+            kept += " (set components or explained_variance for another number)"
+        notes = [
+            (
+                f"{len(model.clips)} clips, streamed from a scratch file: {kept}, in {streamed.passes} passes, each to "
+                f"{streamed.residual:.0e} of the first's variance"
+            )
+        ]
+    return FitReport((HEADINGS, rows), record, warnings, notes)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from motionedit.core.bvh import resampled_bytes
+from motionedit.core.ground import travel_joint
 from motionedit.core.quality import find_defects
 from motionedit.core.timeline.alignment import aligned
 from motionedit.core.timeline.resample import resample
@@ -22,7 +23,6 @@ from motionedit.errors import (
     UsageError,
 )
 from motionedit.jobs.batch import BatchResult, ClipTask, Outcome, atomic_write, map_tasks, plan, run_batch
-from motionedit.jobs.clip_facts import facts_of
 from motionedit.jobs.clip_measures import ClipMeasure, MeasureClip, sound_measures
 from motionedit.jobs.common_timeline import common_timeline, events_out_of_order
 from motionedit.jobs.normalization_file import NAME, Normalization, NormalizedClip, normalization_bytes
@@ -102,11 +102,10 @@ class _Resample:
         if measure is None:
             raise TypeError("a clip is resampled after it has been measured")
         timeline = self.timeline
-        facts = facts_of(clip, up=measure.up, keep_rest_pose=True)
         warp = make_warp(timeline, first=measure.first, last=measure.last, events=measure.events, label=task.label)
         at = warp.to_source(np.arange(timeline.frames, dtype=np.float64))
         resampled = resample(clip.motion, at, frame_time=1.0 / timeline.frame_rate)
-        motion = aligned(resampled, measure.alignments[self.line], travel=facts.travel)
+        motion = aligned(resampled, measure.alignments[self.line], travel=travel_joint(clip.motion))
         skeleton = clip.motion.skeleton
         defects = find_defects(clip.motion, first=measure.first)
         warnings = tuple(

@@ -11,7 +11,7 @@ from motionedit.errors import ClipError, MotionEditError, MotionEditErrors
 from motionedit.jobs.files import atomic_write
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
     from pathlib import Path
 
     from motionedit.core.bvh import Clip
@@ -25,8 +25,8 @@ class Outcome:
 
     Attributes
     ----------
-    content : bytes or None
-        The file to write; None writes none.
+    content : bytes, or an iterable of pieces of them, or None
+        The file to write; None writes none. Pieces are made as they are written, and once.
     record : dict
         The clip's entry in the report, from `message` on; plain values only.
     status : str
@@ -41,7 +41,7 @@ class Outcome:
         Makes the preview page that is written next to the clip, once the clip is.
     """
 
-    content: bytes | None
+    content: bytes | Iterable[bytes | memoryview] | None
     record: dict[str, Any] = field(default_factory=dict)
     status: str = "ok"
     warnings: tuple[str, ...] = ()
@@ -98,7 +98,9 @@ class RunOne:
         if content is None or self.options.dry_run:
             return Done(replace(outcome, content=None, page=None, motion=None, warnings=warnings))
         record = outcome.record
-        if self.options.verify:
+        if not isinstance(content, bytes) and (self.options.verify or task.output is None):
+            content = b"".join(content)
+        if isinstance(content, bytes) and self.options.verify:
             record = {**record, "verify": _verify(clip, content, outcome.motion or clip.motion)}
         if task.output is not None:
             _write(task.output, content)
@@ -108,7 +110,7 @@ class RunOne:
         return Done(Outcome(content, record, outcome.status, warnings), written=True)
 
 
-def _write(path: Path, content: bytes) -> None:
+def _write(path: Path, content: bytes | Iterable[bytes | memoryview]) -> None:
     try:
         atomic_write(path, content)
     except OSError as error:

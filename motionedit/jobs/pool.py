@@ -5,12 +5,15 @@ from __future__ import annotations
 import importlib
 import os
 import sys
+from collections import deque
+from itertools import islice
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from motionedit.errors import MotionEditError, UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Sequence
+    from concurrent.futures import Executor, Future
 
     from motionedit.jobs.plan import RunOptions
 
@@ -20,6 +23,8 @@ Result = TypeVar("Result")
 # Windows cannot wait for more processes at once.
 _MOST_WORKERS = 60
 _SECONDS_TO_CONNECT = 10
+# Items that are given to each worker before their results are taken.
+_AHEAD = 16
 
 
 class WorkerDiedError(MotionEditError):
@@ -84,9 +89,12 @@ def _in_processes(
     others = set(multiprocessing.active_children())
     executor = ProcessPoolExecutor(workers, mp_context=context, initializer=_start_worker)
     try:
-        futures = [executor.submit(function, item) for item in items]
-        for n, future in enumerate(futures):
-            # Items are begun in their order, so those that never will be are the rest.
+        # Items are begun in their order, a few ahead of the results that are taken: the others' results would pile up.
+        waiting = iter(items)
+        futures = deque(_begun(executor, function, item) for item in islice(waiting, workers * _AHEAD))
+        while futures:
+            future = futures.popleft()
+            # Those that never will be begun are the rest.
             if future.cancelled():
                 break
             try:
@@ -95,8 +103,10 @@ def _in_processes(
                 result = WorkerDiedError("its worker process was killed, perhaps for want of memory; try fewer --jobs")
             yield result
             if is_last(result):
-                for waiting in futures[n + 1 :]:
-                    waiting.cancel()
+                waiting = iter(())
+                for later in futures:
+                    later.cancel()
+            futures.extend(_begun(executor, function, item) for item in islice(waiting, 1))
     except BaseException:
         # Ctrl-C, an error, or nobody who listens any more: what is not done is not wanted.
         for process in set(multiprocessing.active_children()) - others:
@@ -104,6 +114,18 @@ def _in_processes(
         raise
     finally:
         executor.shutdown(wait=True, cancel_futures=True)
+
+
+def _begun(executor: Executor, function: Callable[[Item], Result], item: Item) -> Future[Result]:
+    """Return the future of an item; one that has failed already where the workers are gone."""
+    from concurrent.futures import BrokenExecutor, Future
+
+    try:
+        return executor.submit(function, item)
+    except BrokenExecutor as error:
+        future: Future[Result] = Future()
+        future.set_exception(error)
+        return future
 
 
 def _start_worker() -> None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from motionedit.core.arrays import median
 from motionedit.core.editing.constraints import order_of_layers
 from motionedit.core.editing.prioritized_edit import LayeredSettings, PaperFilter
 from motionedit.jobs.effector_record import effector_record
@@ -110,7 +111,7 @@ def edit_record(
         "constraints": records,
         "layers": _layers(edit, measured),
         "iterations": {
-            "median": float(np.median(solved)) if len(solved) else 0.0,
+            "median": float(median(solved.astype(np.float64))) if len(solved) else 0.0,
             "max": int(solved.max(initial=0)),
         },
         "frames_solved": len(solved),
@@ -122,8 +123,9 @@ def edit_record(
 
 def _why_each_stopped(edit: PrioritizedEdit) -> list[str]:
     """Return for every frame ``untouched``, ``converged``, or ``iterations`` where these ran out."""
-    solved = np.where(edit.converged, "converged", "iterations")
-    why: list[str] = np.where(edit.iterations > 0, solved, "untouched").tolist()
+    # Objects, so that all frames share three words: texts of their own take more memory than the motion.
+    words = np.array(["iterations", "converged", "untouched"], dtype=object)
+    why: list[str] = words[np.where(edit.iterations > 0, edit.converged.astype(np.intp), 2)].tolist()
     return why
 
 

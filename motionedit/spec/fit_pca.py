@@ -17,7 +17,9 @@ class FitPcaSpec(Document):
         default="motionedit/fit-pca/v1", alias="schema", description="Which spec this is."
     )
     components: Annotated[int | None, kinds.whole(at_least=1)] = Field(
-        default=None, description="How many principal components are kept; default: all of rank."
+        default=None,
+        description="How many principal components are kept; default: all of rank, of more than 2,000 clips the first "
+        "100.",
     )
     explained_variance: Annotated[float | None, kinds.number(above=0.0, at_most=1.0)] = Field(
         default=None,

@@ -8,7 +8,7 @@ import pytest
 from small_clip import HIERARCHY, TEXT, with_text
 
 from motionedit.core import rotations as rot
-from motionedit.core.bvh import edited_bytes, parse_clip, splice
+from motionedit.core.bvh import edited_bytes, edited_pieces, parse_clip, splice
 from motionedit.errors import BvhError
 
 NUMBER = re.compile(rb"[-+.0-9eE]+")
@@ -147,3 +147,17 @@ def test_a_long_clip_is_edited_in_segments_to_the_same_bytes(monkeypatch):
     monkeypatch.setattr(splice, "SEGMENT", 64)
     assert edited_bytes(clip, turned(clip), touched=touched, moved=touched[:, :1]) == whole
     assert whole != data
+
+
+def test_an_edit_in_pieces_is_the_edit_and_no_piece_is_long(monkeypatch):
+    monkeypatch.setattr(splice, "BLOCK_BYTES", 300)
+    monkeypatch.setattr(splice, "SEGMENT", 40)
+    row = TEXT.encode().splitlines()[-1]
+    data = TEXT.encode().replace(b"Frames: 3", b"Frames: 203") + b"\n".join([row] * 200) + b"\n"
+    clip = read(data)
+    assert len(clip.motion) == 203
+    touched = frames(clip, on=[(frame, 1) for frame in range(3, 203)])
+    pieces = list(edited_pieces(clip, turned(clip), touched=touched))
+    assert b"".join(pieces) == edited_bytes(clip, turned(clip), touched=touched)
+    assert len(pieces) > 20
+    assert max(map(len, pieces)) < 600

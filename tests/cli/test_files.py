@@ -44,6 +44,21 @@ def test_a_write_makes_the_folders_and_leaves_only_the_file(tmp_path):
     assert names_in(tmp_path / "a/b") == ["walk.bvh"]
 
 
+def test_a_file_is_written_in_pieces_and_pieces_that_end_in_an_error_leave_the_old_one(tmp_path):
+    target = tmp_path / "walk.bvh"
+    atomic_write(target, iter([b"one ", memoryview(b"two")]))
+    assert target.read_bytes() == b"one two"
+
+    def broken():
+        yield b"half"
+        raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        atomic_write(target, broken())
+    assert target.read_bytes() == b"one two"
+    assert names_in(tmp_path) == ["walk.bvh"]
+
+
 def test_a_written_file_has_the_permissions_of_any_new_file(tmp_path):
     (tmp_path / "plain").write_bytes(b"")
     atomic_write(tmp_path / "walk.bvh", b"")

@@ -9,6 +9,9 @@ from lab import effector_path
 
 from motionedit.core.bvh import parse_clip, read_clip, resampled_bytes
 from motionedit.core.motion import Motion
+from motionedit.core.pca import streaming, vectors
+from motionedit.core.pca.model_file import read_model
+from motionedit.jobs import fit_pca
 
 
 @pytest.fixture(scope="module")
@@ -204,6 +207,52 @@ def test_one_clip_is_normalized_with_a_warning_but_is_no_database(run, configs, 
     fit = run("fit-pca", "n", "-o", "m.npz")
     assert fit.exit_code == 2
     assert "lists 1 clip; a PCA needs two or more" in fit.stderr
+
+
+def test_many_clips_are_streamed_and_the_fit_says_so(run, configs, data, tmp_path, monkeypatch):
+    run("normalize", data, "-s", configs / "golf-normalize.yaml", "-o", "n")
+    held = run("fit-pca", "n", "-o", "held.npz", "--report", "held.json")
+    assert "streamed" not in held.stderr
+    monkeypatch.setattr(vectors, "MOST_IN_MEMORY", 9)
+    fit = run("fit-pca", "n", "-o", "m.npz", "--report", "r.json")
+    assert fit.exit_code == 0
+    assert "10 clips, streamed from a scratch file: the first 9 components (set components or" in fit.stderr
+    report, other = (json.loads((tmp_path / name).read_text()) for name in ("r.json", "held.json"))
+    assert report["streamed"]["residual"] < 1e-8
+    assert "streamed" not in other
+    np.testing.assert_allclose(report["explained_variance"], other["explained_variance"], rtol=1e-9)
+    ours, theirs = (read_model(tmp_path / name).components for name in ("m.npz", "held.npz"))
+    np.testing.assert_allclose(ours.components, theirs.components, atol=1e-7)
+
+
+def test_components_that_many_clips_cannot_have_are_refused_or_told(run, configs, data, tmp_path, monkeypatch):
+    run("normalize", data, "-s", configs / "golf-normalize.yaml", "-o", "n")
+    spec = tmp_path / "f.yaml"
+    for most in (1000, 4):
+        for module in (streaming, fit_pca):
+            monkeypatch.setattr(module, "MOST_COMPONENTS", most)
+        monkeypatch.setattr(vectors, "MOST_IN_MEMORY", 9)
+        spec.write_text("schema: motionedit/fit-pca/v1\ncomponents: 12\n")
+        fit = run("fit-pca", "n", "-o", "m.npz", "-s", spec)
+        assert fit.exit_code == 2
+        wanted = "10 clips have 9 components" if most == 1000 else "of 10 clips at most 4 components are kept"
+        assert f"f.yaml:2: components: {wanted}, not 12" in fit.stderr
+    spec.write_text("schema: motionedit/fit-pca/v1\nexplained_variance: 0.99\n")
+    fit = run("fit-pca", "n", "-o", "m.npz", "-s", spec)
+    assert fit.exit_code == 0
+    assert "the first 4 components explain" in fit.stderr
+    assert "% of the variance, not 99 %" in fit.stderr
+
+
+def test_clips_that_cannot_be_used_are_all_named_and_there_is_no_model(run, configs, data, tmp_path):
+    run("normalize", data, "-s", configs / "golf-normalize.yaml", "-o", "n")
+    for name in ("swing01", "swing07"):
+        (tmp_path / "n" / f"{name}.bvh").write_text("HIERARCHY\n")
+    fit = run("fit-pca", "n", "-o", "m.npz")
+    assert fit.exit_code == 1
+    assert "swing01.bvh" in fit.stderr
+    assert "swing07.bvh" in fit.stderr
+    assert not (tmp_path / "m.npz").exists()
 
 
 def test_equal_clips_are_no_database(run, configs, data, tmp_path):

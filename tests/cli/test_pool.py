@@ -12,6 +12,7 @@ from functools import partial
 import pytest
 
 from motionedit.errors import UsageError
+from motionedit.jobs import pool
 from motionedit.jobs.plan import RunOptions
 from motionedit.jobs.pool import WorkerDiedError, results_in_order
 
@@ -70,6 +71,21 @@ def test_after_the_last_result_that_is_wanted_nothing_is_begun_and_nothing_begun
     assert sorted(int(path.name) for path in tmp_path.iterdir()) == found
     assert len(found) < 40
     assert jobs > 1 or len(found) == 2
+
+
+def test_workers_are_only_a_few_items_ahead_of_the_results_that_are_taken(tmp_path):
+    results = results_in_order(partial(mark, tmp_path), range(200), options=RunOptions(jobs=2))
+    with contextlib.closing(results):
+        assert next(results) == 0
+        time.sleep(2.0)  # time for a hundred items in each worker
+        begun = len(list(tmp_path.iterdir()))
+        assert begun <= 2 * pool._AHEAD
+        assert [next(results) for _ in range(100)] == list(range(1, 101))
+
+
+def test_every_item_after_a_death_is_a_value_too():
+    found = list(results_in_order(die_at_one, [1] * 100, options=RunOptions(jobs=2)))
+    assert [type(value) for value in found] == [WorkerDiedError] * 100
 
 
 def test_closing_early_leaves_no_worker():

@@ -1,17 +1,20 @@
 """edit-prioritized on the walk and the swings of data/: what a spec asks for is in the file that is written."""
 
 import json
+import weakref
 from pathlib import Path
 
 import numpy as np
 import pytest
 from lab import effector_path, joint_positions
 
+from motionedit.core import kinematics
 from motionedit.core import rotations as rot
 from motionedit.core.bvh import new_bytes, read_clip
 from motionedit.core.kinematics import forward
 from motionedit.core.motion import Motion, motion_from_channels, scaled
 from motionedit.core.skeleton import EndSite, Skeleton
+from motionedit.jobs import clip_facts, edit_prioritized
 from motionedit.jobs.clip_facts import facts_of
 
 DATA = Path(__file__).resolve().parents[2] / "data"
@@ -617,3 +620,30 @@ def test_balance_without_feet_keeps_to_the_path_of_the_center_of_mass(edit, tmp_
     assert "no feet found for the support of 'com'" in done.result.stderr
     assert "the skeleton is not a human's" in done.result.stderr
     assert done.path.read_bytes() == path.read_bytes()
+
+
+def test_the_world_transforms_of_the_input_are_given_back_before_the_edit_is_solved(edit, monkeypatch):
+    made, held = [], []
+    forward_of_all, solve = kinematics.forward, edit_prioritized.edit_by_priorities
+
+    def noted(motion):
+        poses = forward_of_all(motion)
+        made.append(weakref.ref(poses))
+        return poses
+
+    def solved(*arguments):
+        held.extend(each() for each in made)
+        return solve(*arguments)
+
+    monkeypatch.setattr(clip_facts.kinematics, "forward", noted)
+    monkeypatch.setattr(edit_prioritized, "edit_by_priorities", solved)
+    assert edit([RAISED]).result.exit_code == 0
+    assert held
+    assert held == [None] * len(held)
+
+
+def test_an_edit_in_pieces_is_verified_and_goes_to_standard_output_whole(edit, run):
+    done = edit([FEET_AS_CAPTURED, RAISED], "--verify")
+    assert done.record["verify"]["distance"] < 0.01
+    shown = run("edit-prioritized", WALK, "-s", "s.yaml", "-o", "-", "-q")
+    assert shown.stdout_bytes == done.path.read_bytes()

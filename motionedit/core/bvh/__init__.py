@@ -2,7 +2,7 @@
 
 from motionedit.core.bvh.adapter import VerifyResult, check_with_bvhio, from_bvhio, to_bvhio
 from motionedit.core.bvh.read import BvhText, Clip, parse_clip, read_clip
-from motionedit.core.bvh.splice import edited_bytes
+from motionedit.core.bvh.splice import edited_bytes, edited_pieces
 from motionedit.core.bvh.write import new_bytes, resampled_bytes, unedited_bytes
 from motionedit.core.euler import joint_angles
 
@@ -12,6 +12,7 @@ __all__ = [
     "VerifyResult",
     "check_with_bvhio",
     "edited_bytes",
+    "edited_pieces",
     "from_bvhio",
     "joint_angles",
     "new_bytes",

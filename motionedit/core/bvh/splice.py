@@ -17,6 +17,8 @@ from motionedit.core.euler import joint_pieces, piece_angles, runs
 from motionedit.core.motion import position_columns
 
 if TYPE_CHECKING:
+    from collections.abc import Generator, Iterator
+
     from numpy.typing import NDArray
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
@@ -47,19 +49,30 @@ def edited_bytes(clip: Clip, motion: Motion, *, touched: BoolArray, moved: BoolA
     BvhError
         Where a value to be written is not finite.
     """
-    plan = _plan(clip, motion, touched, moved)
-    if len(plan.columns) == 0:
-        return clip.text.data
     # A stream grows in place, where joining pieces would hold the file twice.
     stream = BytesIO()
-    stream.write(head_bytes(clip, frames=len(motion)))
+    for piece in edited_pieces(clip, motion, touched=touched, moved=moved):
+        if piece is clip.text.data:
+            return clip.text.data
+        stream.write(piece)
+    return stream.getvalue()
+
+
+def edited_pieces(
+    clip: Clip, motion: Motion, *, touched: BoolArray, moved: BoolArray | None = None
+) -> Iterator[bytes | memoryview]:
+    """Yield what `edited_bytes` returns, piece by piece: a long file need not be held to be written."""
+    plan = _plan(clip, motion, touched, moved)
+    if len(plan.columns) == 0:
+        yield clip.text.data
+        return
+    yield head_bytes(clip, frames=len(motion))
     at = clip.text.header.rows_start
     for start in range(0, len(motion), SEGMENT):
         edit = _edit(plan, motion, touched, moved, slice(start, min(start + SEGMENT, len(motion))))
         check_finite(clip, edit.values, edit.cells, first=start)
-        at = _splice_rows(stream, clip, edit, start, at)
-    _write_tail(stream, clip, at)
-    return stream.getvalue()
+        at = yield from _spliced_rows(clip, edit, start, at)
+    yield _tail(clip, at)
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,10 +130,10 @@ def _edit(plan: _Plan, motion: Motion, touched: BoolArray, moved: BoolArray | No
     return _Edit(plan.columns, values, cells)
 
 
-def _splice_rows(stream: BytesIO, clip: Clip, edit: _Edit, first: int, at: int) -> int:
-    """Write a segment of rows from frame `first` on, with the new text of the touched values in place of the old.
+def _spliced_rows(clip: Clip, edit: _Edit, first: int, at: int) -> Generator[bytes | memoryview, None, int]:
+    """Yield a segment of rows from frame `first` on, with the new text of the touched values in place of the old.
 
-    What stands from byte `at` up to the last touched row is written; the byte after it is returned.
+    What stands from byte `at` up to the last touched row is yielded; the byte after it is returned.
     """
     data, rows = memoryview(clip.text.data), clip.text.rows
     decimals = decimals_of_edits(clip)
@@ -129,13 +142,13 @@ def _splice_rows(stream: BytesIO, clip: Clip, edit: _Edit, first: int, at: int) 
         for block in range(start, stop, step):
             chosen = slice(block, min(block + step, stop))
             begin, end = int(rows.starts[first + block]), int(rows.stops[first + chosen.stop - 1])
-            stream.write(data[at:begin])
+            yield data[at:begin]
             if edit.cells[chosen].all() and _is_plain(clip, (begin, end), edit.columns, chosen.stop - block):
-                stream.write(memoryview(rows_text(edit.values[chosen], decimals=decimals, ending=b"\n"))[:-1])
+                yield memoryview(rows_text(edit.values[chosen], decimals=decimals, ending=b"\n"))[:-1]
                 at = end
                 continue
             cells, values = edit.cells[chosen].reshape(-1), edit.values[chosen].reshape(-1)
-            stream.write(_spliced(clip, (begin, end), edit.columns, values, cells, decimals=decimals).data)
+            yield _spliced(clip, (begin, end), edit.columns, values, cells, decimals=decimals).data
             at = end
     return at
 
@@ -153,13 +166,12 @@ def _is_plain(clip: Clip, span: tuple[int, int], columns: IntArray, count: int) 
     return text.count(b" ") + text.count(b"\n") == count * width - 1
 
 
-def _write_tail(stream: BytesIO, clip: Clip, at: int) -> None:
+def _tail(clip: Clip, at: int) -> bytes | memoryview:
     cut_off = clip.text.rows.cut_off
     if cut_off is None:
-        stream.write(memoryview(clip.text.data)[at:])
-    else:
-        # What is left of a row that was cut short would make the file unreadable.
-        stream.write(clip.text.data[at:cut_off].rstrip(b" \t"))
+        return memoryview(clip.text.data)[at:]
+    # What is left of a row that was cut short would make the file unreadable.
+    return clip.text.data[at:cut_off].rstrip(b" \t")
 
 
 def _spliced(

@@ -23,9 +23,6 @@ Representation = Literal["centred", "exponential"]
 
 TURN = 2.0 * np.pi
 
-# A track this far (rad) from the database's winds the other way round.
-OTHER_WINDING = 2.5
-
 # Below this length (rad) a rotation vector has no direction to add a turn along.
 _NO_DIRECTION = 1e-9
 
@@ -93,16 +90,21 @@ def rotations_of_tracks(v: FloatArray, references: FloatArray) -> FloatArray:
 def unwrapped(v: FloatArray) -> FloatArray:
     """Return rotation vectors v (1 + 2 pi k / |v|) with k such that each is nearest the one before, (F, K, 3)."""
     v = v.copy()
-    length = np.linalg.norm(v, axis=-1)
-    step = np.linalg.norm(np.diff(v, axis=0), axis=-1)
-    # The other representative of v lies at distance |v - 2 pi v/|v| - previous|: only where that is nearer
-    # somewhere does a track need to be followed frame by frame.
-    other = np.linalg.norm(_turned(v[1:], length[1:], -1.0) - v[:-1], axis=-1)
-    for joint in np.flatnonzero((other < step).any(axis=0)):
+    step = _length(np.diff(v, axis=0))
+    # The other representative of v is a whole turn from it, so it is nearer the one before only after half a turn.
+    joints = np.flatnonzero((step > np.pi).any(axis=0))
+    length = _length(v[1:, joints])
+    other = _length(_turned(v[1:, joints], length, -1.0) - v[:-1, joints])
+    for joint in joints[(other < step[:, joints]).any(axis=0)]:
         track = v[:, joint]
         for f in range(1, len(track)):
             track[f] = _nearest(track[f], track[f - 1])
     return v
+
+
+def _length(v: FloatArray) -> FloatArray:
+    length: FloatArray = np.sqrt(np.einsum("...i,...i->...", v, v))
+    return length
 
 
 def _nearest(v: FloatArray, target: FloatArray) -> FloatArray:
@@ -122,38 +124,27 @@ def relabelled(v: FloatArray, target: FloatArray) -> tuple[FloatArray, FloatArra
     ----------
     v, target : shape (F, K, 3)
     """
-    length = np.linalg.norm(v, axis=-1)
-    choices = np.stack([_turned(v, length, k) for k in (0.0, -1.0, 1.0)])
-    distance = np.sum((choices - target) ** 2, axis=(1, 3))
+    k = np.zeros(v.shape[1])
+    # A turn leads 2 pi away: no track that keeps within half of that of its target comes nearer by one.
+    far = np.flatnonzero((_length(v - target) > np.pi).any(axis=0))
+    if not len(far):
+        return v.copy(), k
+    v, track = v.copy(), v[:, far]
+    length = _length(track)
+    choices = np.stack([_turned(track, length, turns) for turns in (0.0, -1.0, 1.0)])
+    distance = np.sum((choices - target[:, far]) ** 2, axis=(1, 3))
     # A track through zero has no direction to be turned along there.
     distance[1:, length.min(axis=0) < _NO_DIRECTION] = np.inf
     best = np.argmin(distance, axis=0)
-    chosen: FloatArray = np.moveaxis(choices, 2, 1)[best, np.arange(v.shape[1])]
-    return np.swapaxes(chosen, 0, 1), np.array([0.0, -1.0, 1.0])[best]
+    v[:, far] = np.swapaxes(np.moveaxis(choices, 2, 1)[best, np.arange(len(far))], 0, 1)
+    k[far] = np.array([0.0, -1.0, 1.0])[best]
+    return v, k
 
 
 def _turned(v: FloatArray, length: FloatArray, k: float) -> FloatArray:
     safe = np.where(length < _NO_DIRECTION, 1.0, length)
     turned: FloatArray = v * (1.0 + TURN * k / safe)[..., None]
     return turned
-
-
-def consistent_tracks(tracks: list[FloatArray]) -> list[FloatArray]:
-    """Return the clips' tracks relabelled to their running mean, in two passes."""
-    total = tracks[0].copy()
-    result = [tracks[0]]
-    for count, track in enumerate(tracks[1:], start=1):
-        result.append(relabelled(track, total / count)[0])
-        total += result[-1]
-    mean = total / len(result)
-    return [relabelled(track, mean)[0] for track in result]
-
-
-def other_windings(tracks: list[FloatArray]) -> list[tuple[int, int, float]]:
-    """Return (clip, column joint, rad) where a clip's track strays further than 2.5 rad from the clips' median."""
-    stacked = np.stack(tracks)
-    stray = np.linalg.norm(stacked - np.median(stacked, axis=0), axis=-1).max(axis=1)
-    return [(int(m), int(k), float(stray[m, k])) for m, k in np.argwhere(stray > OTHER_WINDING)]
 
 
 def pose_rows(v: FloatArray, space: PoseSpace, *, path: TravelPath, alignment: Alignment) -> FloatArray:

@@ -46,38 +46,105 @@ class PrincipalComponents:
         return ratio
 
 
-def fit_components(motions: FloatArray) -> PrincipalComponents:
-    """Return all principal components of M motion vectors, shape (M, D), M >= 2.
+class AllTheSameError(ValueError):
+    """The motions are all the same: there is nothing to learn."""
+
+    def __init__(self) -> None:
+        super().__init__("the motions are all the same")
+
+
+class TooFewComponentsError(ValueError):
+    """More components are asked for than the `available` ones."""
+
+    def __init__(self, available: int) -> None:
+        super().__init__(f"there are {available} components")
+        self.available = available
+
+
+@dataclass(frozen=True)
+class ComponentCount:
+    """How many components to keep: `count` of them, or as many as explain `share` of the variance; else all."""
+
+    count: int | None = None
+    share: float | None = None
+
+    def least(self, default: int) -> int:
+        """Return the count, or a default."""
+        return default if self.count is None else self.count
+
+
+ALL = ComponentCount()
+
+
+def fit_components(motions: FloatArray, *, count: ComponentCount = ALL) -> PrincipalComponents:
+    """Return the principal components of M motion vectors, shape (M, D), M >= 2.
 
     The M x M Gram matrix X X^T has the eigenvalues of the covariance; E_i = X^T u_i / s_i. The rank is at most M - 1.
 
     Raises
     ------
     ValueError
-        If the motions are all the same: there is nothing to learn.
+        If the motions are all the same (`AllTheSameError`), or there are not as many components as asked for
+        (`TooFewComponentsError`).
     """
     mean = motions.mean(axis=0)
-    X = motions - mean
+    return fit_centred(motions - mean, mean, count=count)
+
+
+def fit_centred(X: FloatArray, mean: FloatArray, *, count: ComponentCount = ALL) -> PrincipalComponents:
+    """Return the principal components of motion vectors of which their mean, shape (D,), was taken; see above."""
     eigenvalues, vectors = np.linalg.eigh(X @ X.T)
-    order = np.argsort(eigenvalues)[::-1][: len(motions) - 1]
+    order = np.argsort(eigenvalues)[::-1][: len(X) - 1]
     eigenvalues = np.maximum(eigenvalues[order], 0.0)
-    # Measured against the vectors' own size: rounding of equal motions is no variance.
-    if not eigenvalues[0] > (np.finfo(np.float64).eps ** 2) * np.sum(motions**2):
-        raise ValueError("the motions are all the same")
-    kept = eigenvalues > RANK_TOLERANCE * eigenvalues[0]
-    rows = vectors[:, order[kept]].T @ X
-    # One QR step takes away what the squared condition of the Gram matrix left in the weakest rows.
-    Q, R = np.linalg.qr(rows.T)
-    components = (Q * np.sign(np.diag(R))).T
-    largest = np.argmax(np.abs(components), axis=1)
-    components = components * np.sign(components[np.arange(len(components)), largest])[:, None]
+    total = float(np.vdot(X, X))
+    refuse_no_variance(float(eigenvalues[0]), total=total, mean=mean, count=len(X))
+    kept = _kept(eigenvalues, total, count)
+    components = _orthonormal(vectors[:, order[:kept]].T @ X)
+    components *= signs_of(components)[:, None]
     return PrincipalComponents(
         mean=frozen(mean),
         components=frozen(components),
-        explained_variance=frozen(eigenvalues[kept] / (len(motions) - 1)),
-        total_variance=float(np.sum(X**2) / (len(motions) - 1)),
+        explained_variance=frozen(eigenvalues[:kept] / (len(X) - 1)),
+        total_variance=total / (len(X) - 1),
         coefficients=frozen(X @ components.T),
     )
+
+
+def refuse_no_variance(largest: float, *, total: float, mean: FloatArray, count: int) -> None:
+    """Raise `AllTheSameError` where the largest sum of squares along a direction is but rounding of the vectors."""
+    # The mean of M equal numbers, added up one by one, is off by up to M roundings.
+    rounding = count * np.finfo(np.float64).eps
+    if not largest > rounding**2 * (total + count * float(mean @ mean)):
+        raise AllTheSameError
+
+
+def _kept(eigenvalues: FloatArray, total: float, count: ComponentCount) -> int:
+    available = int(np.count_nonzero(eigenvalues > RANK_TOLERANCE * eigenvalues[0]))
+    if count.share is not None:
+        return components_for(eigenvalues[:available] / total, count.share)
+    if count.count is not None and count.count > available:
+        raise TooFewComponentsError(available)
+    return count.least(available)
+
+
+def _orthonormal(rows: FloatArray) -> FloatArray:
+    """Return nearly orthogonal rows made orthonormal, each with what those before it left.
+
+    The squared condition of the Gram matrix left the weakest rows off by a millionth. The rows at unit length are
+    well conditioned, so that Cholesky does as well as a QR step, in a third of its time.
+    """
+    rows /= np.linalg.norm(rows, axis=1, keepdims=True)
+    L = np.linalg.cholesky(rows @ rows.T)
+    orthonormal: FloatArray = np.linalg.inv(L) @ rows
+    return orthonormal
+
+
+def signs_of(components: FloatArray) -> FloatArray:
+    """Return the signs, shape (m,), that make the entry of largest magnitude of each component positive."""
+    # Row by row, for all at once would take as much memory again.
+    largest = [int(np.argmax(np.abs(row))) for row in components]
+    signs: FloatArray = np.sign(components[np.arange(len(components)), largest])
+    return signs
 
 
 def components_for(explained_variance_ratio: FloatArray, share: float) -> int:

@@ -60,8 +60,9 @@ def model_of(motions, timeline, hits, settings=None):
         normalized = aligned(resample(motion, at, frame_time=1 / timeline.frame_rate), alignment, travel=travel)
         clip = DatabaseClip(f"stroke{m}", f"{m:064d}", (("hit", hit),))
         database.append(DatabaseMotion(clip, normalized, np.arange(len(motion.skeleton))))
-    model, _ = build_model(
+    fitted = build_model(
         database,
+        len(database),
         timeline=timeline,
         travel=0,
         up=up,
@@ -69,7 +70,7 @@ def model_of(motions, timeline, hits, settings=None):
         settings=settings or FitSettings(),
         rules={"align": {"heading": True}},
     )
-    return model
+    return fitted.model
 
 
 TIMELINE = Timeline(61, 50.0, (("hit", 36),))

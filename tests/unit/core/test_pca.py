@@ -9,8 +9,6 @@ from motionedit.core import rotations as rot
 from motionedit.core.motion import Motion
 from motionedit.core.pca.coordinates import (
     TURN,
-    consistent_tracks,
-    other_windings,
     relabelled,
     rotation_tracks,
     space_joints,
@@ -84,15 +82,19 @@ def test_a_track_that_winds_the_other_way_is_moved_as_a_whole():
     moved, k = relabelled(other, target)
     np.testing.assert_allclose(moved, target, atol=1e-9)
     assert list(k) == [1.0, 1.0] or list(k) == [-1.0, -1.0]
-    tracks = consistent_tracks([target, target + 0.01, other])
-    np.testing.assert_allclose(tracks[2], target, atol=1e-9)
 
 
-def test_a_track_far_from_the_median_is_reported():
-    tracks = [np.zeros((10, 3, 3)) for _ in range(5)]
-    tracks[3] = tracks[3].copy()
-    tracks[3][:, 1, 2] = 3.0
-    assert other_windings(tracks) == [(3, 1, 3.0)]
+@pytest.mark.parametrize("scale", [0.5, 2.0, 5.0])
+def test_the_turns_of_a_track_are_the_ones_that_come_nearest_of_all_three(scale):
+    rng = np.random.default_rng(6)
+    v, target = rng.normal(scale=scale, size=(2, 30, 40, 3))
+    moved, k = relabelled(v, target)
+    length = np.linalg.norm(v, axis=-1, keepdims=True)
+    choices = np.stack([v * (1.0 + TURN * turns / length) for turns in (0.0, -1.0, 1.0)])
+    best = np.argmin(((choices - target) ** 2).sum(axis=(1, 3)), axis=0)
+    np.testing.assert_array_equal(k, np.array([0.0, -1.0, 1.0])[best])
+    np.testing.assert_allclose(moved, np.take_along_axis(choices, best[None, None, :, None], axis=0)[0], atol=1e-12)
+    assert (scale < 1.0) == (not k.any())
 
 
 def test_what_stands_above_the_travel_and_what_is_excluded_stays_out():

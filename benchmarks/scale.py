@@ -1,0 +1,187 @@
+"""Many clips and long ones: time and peak memory of processes.
+
+What takes less than a minute stands in the table of `make bench`; `make bench-scale` runs this file for the rest and
+writes results-scale.md.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE.parent), str(HERE)]
+os.environ["OPENBLAS_NUM_THREADS"] = os.environ["OMP_NUM_THREADS"] = "1"
+
+import numpy as np  # noqa: E402
+from clock import Row, best_of, duration, longer, peak_of, process  # noqa: E402
+
+from data.generator.golf import make_swing  # noqa: E402
+from data.generator.players import random_swings  # noqa: E402
+from motionedit.core.bvh import new_bytes, read_clip  # noqa: E402
+from motionedit.core.motion import Motion  # noqa: E402
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+ROOT = HERE.parent
+CONFIGS = ROOT / "configs"
+PROGRAM = Path(sys.executable).parent / "motionedit"
+WALK = ROOT / "data" / "walk.bvh"
+MEGABYTE = 1e6
+# A long take, and the longest that anyone has asked for.
+LONG, LONGEST = 5_945, 150_000
+LEAST_RATE = 6_000.0
+MOST_TIMES_FILE = 6.0
+MOST_MEMORY = 1e9
+MANY = 1_000
+
+
+def edits(folder: Path) -> list[Row]:
+    """Return the rows of edit-prioritized as a process, file to file, on one core."""
+    long = _tiled(folder / "long.bvh", LONG)
+    libraries = process((sys.executable, "-c", "import numpy, click, yaml"), folder)
+    short = process(_edit(WALK, folder), folder)
+    for run in (libraries, short):  # compiled modules are written, files are in memory
+        run()
+    best = best_of({"short": short, "libraries": libraries}, rounds=8)
+    best |= best_of({"long": process(_edit(long, folder), folder)}, rounds=2)
+    than = "import numpy, click, yaml"
+    rate = LONG / best["long"]
+    return [
+        longer(
+            "edit-prioritized, reach.yaml, 145 frames, a process", best["short"], best["libraries"], aim=3.0, than=than
+        ),
+        Row(
+            f"edit-prioritized, reach.yaml, {LONG:,} frames, a process",
+            f"{rate:,.0f} frames/s",
+            duration(best["long"]),
+            "",
+            f">= {LEAST_RATE:,.0f} frames/s",
+            "met" if rate >= LEAST_RATE else "MISSED",
+        ),
+    ]
+
+
+def fits(counts: Sequence[tuple[int, str, int | None]]) -> list[Row]:
+    """Return the rows of fits of so many motions of 12,276 values: (motions, gram or streaming, components).
+
+    Times are the processor's, which other programs disturb less: nothing is run twice.
+    """
+    found = []
+    for count, how, components in counts:
+        more = () if components is None else (str(components),)
+        command = (sys.executable, HERE / "fit_at_scale.py", str(count), how, *more)
+        done = subprocess.run(list(map(str, command)), check=True, capture_output=True, text=True)
+        found.append(_fit_row(count, how, json.loads(done.stdout)))
+    return found
+
+
+def _fit_row(count: int, how: str, told: dict[str, Any]) -> Row:
+    passes = "" if told["passes"] is None else f", {told['passes']} passes, residual {told['residual']:.0e}"
+    matrix = count * 12_276 * 8
+    most = MOST_MEMORY if how == "streaming" else 4.0 * matrix
+    return Row(
+        f"fit of {count:,} motions of 12,276 values, {how}, {told['components']} components{passes}",
+        f"{duration(told['fit'])}, peak {told['peak'] / MEGABYTE:.0f} MB",
+        f"{duration(told['making'])} to make them; the matrix takes {matrix / MEGABYTE:.0f} MB",
+        f"{told['peak'] / matrix:.2f} x matrix",
+        f"<= {most / MEGABYTE:.0f} MB",
+        "met" if told["peak"] <= most else "MISSED",
+    )
+
+
+def chain(folder: Path) -> list[Row]:
+    """Return the rows of normalize and fit-pca of 1,000 golf swings, as processes on one core, beside reading them."""
+    source, normalized, model = folder / "many", folder / "many-normalized", folder / "many.npz"
+    source.mkdir()
+    for n, swing in enumerate(random_swings(np.random.default_rng(11), MANY)):
+        (source / f"swing{n:04d}.bvh").write_bytes(new_bytes(make_swing(swing)))
+    clips = sorted(source.iterdir())
+    spec = CONFIGS / "golf-normalize.yaml"
+    runs = {
+        "normalize": process((PROGRAM, "normalize", source, "-s", spec, "-o", normalized), folder),
+        "fit": process((PROGRAM, "fit-pca", normalized, "-o", model), folder),
+        "read": lambda: [read_clip(clip) for clip in clips],
+    }
+    best = best_of(runs, rounds=1)
+    seconds, peak = peak_of((PROGRAM, "fit-pca", normalized, "-o", model), folder)
+    best["fit"] = min(best["fit"], seconds)
+    both = best["normalize"] + best["fit"]
+    reading = f"{duration(best['read'])} to read them"
+    return [
+        Row(f"normalize, {MANY:,} clips, a process", *_share(best["normalize"], reading, best["read"])),
+        Row(f"fit-pca, {MANY:,} clips, all of rank, a process", *_share(best["fit"], reading, best["read"])),
+        Row(f"normalize + fit-pca, {MANY:,} clips", *_share(both, reading, best["read"])),
+        Row(f"fit-pca, {MANY:,} clips, peak memory", f"{peak / MEGABYTE:.0f} MB"),
+    ]
+
+
+def _share(seconds: float, reading: str, read: float) -> tuple[str, str, str]:
+    return f"{duration(seconds)}, {MANY / seconds:.0f} clips/s", reading, f"{seconds / read:.1f} x"
+
+
+def longest(folder: Path) -> list[Row]:
+    """Return the row of the memory that an edit of the longest clip takes."""
+    path = _tiled(folder / "longest.bvh", LONGEST)
+    seconds, peak = peak_of(_edit(path, folder), folder)
+    size = path.stat().st_size
+    return [
+        Row(
+            f"edit-prioritized, reach.yaml, {LONGEST:,} frames, {size / MEGABYTE:.0f} MB, peak memory",
+            f"{peak / MEGABYTE:.0f} MB, {duration(seconds)}",
+            "its file",
+            f"{peak / size:.2f} x",
+            f"<= {MOST_TIMES_FILE:g} x",
+            "met" if peak <= MOST_TIMES_FILE * size else "MISSED",
+        )
+    ]
+
+
+def _edit(clip: Path, folder: Path) -> tuple[str | Path, ...]:
+    return PROGRAM, "edit-prioritized", clip, "-s", CONFIGS / "reach.yaml", "-o", folder / "edited.bvh", "-j", "1"
+
+
+def _tiled(path: Path, frames: int) -> Path:
+    """Write the walk there and back as often as it takes, so that the tiles meet."""
+    motion = read_clip(WALK).motion
+    there_and_back = np.concatenate((np.arange(len(motion)), np.arange(len(motion) - 2, 0, -1)))
+    at = there_and_back[np.arange(frames) % len(there_and_back)]
+    path.write_bytes(
+        new_bytes(Motion(motion.skeleton, motion.rotations[at], motion.translations[at], motion.frame_time))
+    )
+    return path
+
+
+def main() -> None:
+    """Measure what takes longer than `make bench` may, print the table and write it."""
+    from lab import print_table
+    from run import HEADINGS, machine, table
+
+    page = [
+        "# Scale\n\nWritten by `make bench-scale`: processes on one core, their time and their peak memory.\n",
+        machine(),
+    ]
+    print(machine())
+    with tempfile.TemporaryDirectory() as scratch:
+        parts: list[tuple[str, Callable[[], list[Row]]]] = [
+            ("Many motions, made in memory", lambda: fits([(10_000, "streaming", 20), (1_000, "gram", None)])),
+            ("Many clips", lambda: chain(Path(scratch))),
+            ("The same, as many components as without a number", lambda: fits([(10_000, "streaming", None)])),
+            ("A long clip", lambda: longest(Path(scratch))),
+        ]
+        for title, measure in parts:
+            rows = measure()
+            print_table(title, [HEADINGS, *(row.cells for row in rows)])
+            # What was measured stands, should the rest be stopped.
+            page.append(table(title, rows))
+            (HERE / "results-scale.md").write_text("\n".join(page) + "\n")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,87 @@
+"""What metrics need of a motion, taken block by block: a long motion's world transforms are several times its file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core.arrays import frozen
+from motionedit.core.center_of_mass import center_of_mass
+from motionedit.core.kinematics import WorldPoses, forward
+from motionedit.core.quality import JerkMeter
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from motionedit.core.arrays import FloatArray
+    from motionedit.core.center_of_mass import Masses
+    from motionedit.core.motion import Motion
+
+# Frames of a block, whose arrays stay near the processor.
+BLOCK_FRAMES = 1 << 10
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """What is kept of a motion's F frames.
+
+    Attributes
+    ----------
+    tracks : shape (F, P, 3), clip units
+        World positions of the joints that were asked for.
+    center : shape (F, 3), clip units, or None
+        The path of the center of mass, where masses were given.
+    jerk_rms : float
+        As `quality.jerk_rms` of all joints.
+    """
+
+    tracks: FloatArray
+    center: FloatArray | None
+    jerk_rms: float
+
+
+def trace_of(
+    blocks: Iterable[WorldPoses],
+    joints: Sequence[int],
+    *,
+    frame_time: float,
+    first: int,
+    masses: Masses | None = None,
+) -> Trace:
+    """Return the trace of a motion whose world transforms come in blocks of frames, in order.
+
+    Parameters
+    ----------
+    joints : sequence of int
+        Whose tracks are kept.
+    first : int
+        The first frame after a rest pose; earlier ones have no jerk.
+    """
+    tracks, centers, jerk = [], [], JerkMeter(first)
+    for poses in blocks:
+        tracks.append(poses.positions[:, list(joints)])
+        if masses is not None:
+            centers.append(center_of_mass(poses, masses))
+        jerk.add(poses.positions)
+    center = frozen(np.concatenate(centers)) if centers else None
+    return Trace(frozen(np.concatenate(tracks)), center, jerk.rms(frame_time=frame_time))
+
+
+def blocks_of(poses: WorldPoses) -> Iterator[WorldPoses]:
+    """Yield world transforms in blocks of frames; views."""
+    for block in frame_blocks(len(poses.positions)):
+        yield WorldPoses(poses.positions[block], poses.rotations[block])
+
+
+def forward_blocks(motions: Iterable[Motion]) -> Iterator[WorldPoses]:
+    """Yield the world transforms of blocks of a motion."""
+    for motion in motions:
+        yield forward(motion)
+
+
+def frame_blocks(frames: int) -> Iterator[slice]:
+    """Yield so many frames in blocks."""
+    for start in range(0, frames, BLOCK_FRAMES):
+        yield slice(start, min(start + BLOCK_FRAMES, frames))

@@ -1,0 +1,61 @@
+"""What metrics need of a motion is the same from blocks of any size as from the whole."""
+
+import numpy as np
+import pytest
+from human import skeleton_of, standing, with_rotation
+
+from motionedit.core import center_of_mass as center_of_mass_module
+from motionedit.core import rotations as rot
+from motionedit.core import trace
+from motionedit.core.anatomy import find_anatomy
+from motionedit.core.arrays import median
+from motionedit.core.center_of_mass import center_of_mass, find_masses
+from motionedit.core.kinematics import forward
+from motionedit.core.motion import Motion
+from motionedit.core.quality import jerk_rms
+from motionedit.core.trace import blocks_of, forward_blocks, frame_blocks, trace_of
+
+
+@pytest.fixture
+def moving():
+    motion = standing(skeleton_of(), frames=23)
+    for frame in range(0, 23, 3):
+        motion = with_rotation(motion, "LeftArm", [frame], [0.1 * frame, 0.3, 0.0])
+    return motion
+
+
+@pytest.mark.parametrize("size", [1, 2, 5, 1000])
+@pytest.mark.parametrize("first", [0, 3])
+def test_a_trace_by_blocks_is_that_of_the_whole_motion(moving, monkeypatch, size, first):
+    monkeypatch.setattr(trace, "BLOCK_FRAMES", size)
+    poses = forward(moving)
+    masses = find_masses(moving.skeleton, find_anatomy(moving.skeleton))
+    parts = (
+        Motion(moving.skeleton, moving.rotations[block], moving.translations[block], moving.frame_time)
+        for block in frame_blocks(len(moving))
+    )
+    for blocks in (blocks_of(poses), forward_blocks(parts)):
+        found = trace_of(blocks, [4, 1], frame_time=moving.frame_time, first=first, masses=masses)
+        np.testing.assert_allclose(found.tracks, poses.positions[:, [4, 1]], atol=1e-12)
+        np.testing.assert_allclose(found.center, center_of_mass(poses, masses), atol=1e-12)
+        assert found.jerk_rms == pytest.approx(jerk_rms(poses.positions, frame_time=moving.frame_time, first=first))
+        assert found.jerk_rms > 0.0
+
+
+def test_without_masses_there_is_no_path_of_their_center(moving):
+    assert trace_of(blocks_of(forward(moving)), [], frame_time=0.01, first=0).center is None
+
+
+@pytest.mark.parametrize("shape", [(1,), (2,), (7, 3), (8, 3)])
+def test_the_median_is_numpys(shape):
+    values = np.random.default_rng(1).normal(size=shape)
+    np.testing.assert_array_equal(median(values), np.median(values, axis=0))
+
+
+def test_the_center_of_mass_does_not_depend_on_the_frames_that_are_taken_together(moving, monkeypatch):
+    poses, masses = forward(moving), find_masses(moving.skeleton, find_anatomy(moving.skeleton))
+    whole = center_of_mass(poses, masses)
+    monkeypatch.setattr(center_of_mass_module, "_BLOCK_FRAMES", 4)
+    np.testing.assert_allclose(center_of_mass(poses, masses), whole, atol=1e-12)
+    weighed = masses.shares @ (poses.positions + rot.rotate(poses.rotations, masses.points))
+    np.testing.assert_allclose(whole, weighed, atol=1e-12)
