@@ -24,7 +24,6 @@ from motionedit.core.editing.prioritized_edit import (
 )
 from motionedit.core.editing.prioritized_run import Run
 from motionedit.core.ik import layered_numpy
-from motionedit.core.kinematics import forward
 from motionedit.core.motion import Motion
 from motionedit.jobs.edit_prioritized import EditByPriorities
 from motionedit.jobs.plan import ClipTask
@@ -60,8 +59,7 @@ class Case:
     def first_solve(self) -> Callable[[], object]:
         """Return a function that solves every frame once: targets and layout are made before."""
         recruits, _ = recruit(self.constraints, self.motion, self.body, rule="expand")
-        poses = forward(self.motion)
-        run = Run(self.motion, tuple(self.constraints), tuple(recruits), self.body, self.settings, poses)
+        run = Run(self.motion, tuple(self.constraints), tuple(recruits), self.body, self.settings)
         run.solve(self.motion, reference=self.motion, pull_root=False)
         return lambda: run.solve(self.motion, reference=self.motion, pull_root=False)
 

@@ -74,11 +74,11 @@ void world_quaternion(const Frame *frame, const double *local, int64_t node, dou
         q_multiply(local + 4 * frame->problem->node[i].joint, q, q);
 }
 
-/* z: the world-axis increments that bring the columns back to the reference, hinges along their axes alone. */
-void attraction(Frame *frame, const double *local, const double *translations, int64_t at)
+/* z at frame `own` of the motion: the world-axis increments that bring the columns back to the reference, hinges along their axes alone. */
+void attraction(Frame *frame, const double *local, const double *translations, int64_t own)
 {
     const Problem *problem = frame->problem;
-    const double *reference = problem->reference_rotations + 4 * problem->joints * at;
+    const double *reference = problem->reference_rotations + 4 * problem->joints * own;
     double *root = frame->z + 3 * problem->columns;
     for (int64_t k = 0; k < problem->columns; k++) {
         const int64_t i = problem->column_node[k];
@@ -97,7 +97,7 @@ void attraction(Frame *frame, const double *local, const double *translations, i
     }
     memset(root, 0, 3 * sizeof *root);
     if (problem->pulls_root && problem->root >= 0) {
-        const double *goal = problem->reference_root + 3 * at;
+        const double *goal = problem->reference_root + 3 * own;
         const double *place = translations + 3 * problem->node[problem->root].translation;
         const double back[3] = {goal[0] - place[0], goal[1] - place[1], goal[2] - place[2]};
         turned(parent_rotation(frame, problem->root), back, root);

@@ -11,7 +11,7 @@
 
        C_l = J_l Q_above^T,   S_l = G_ll - C_l C_l^T,   Q_l = B_l (J_l - C_l Q_above)
 
-   Lengths are metres at leg length 0.85 m, angles radians. Symbols: N frames, J joints, K columns (joints that turn),
+   Lengths are metres at leg length 0.85 m, angles radians. Symbols: F frames of a motion, N of them to be solved, J joints, K columns (joints that turn),
    n = 3 K + 3 unknowns, T tasks, R rows, L layers, H hinges. */
 
 #ifndef MOTIONEDIT_LAYERED_H
@@ -60,11 +60,12 @@ typedef struct {
     const int64_t *column_node; /* shape (K,) */
     const Task *task;
     const Hinge *hinge;
-    const double *reference_rotations; /* shape (N, J, 4) */
-    const double *reference_root;      /* shape (N, 3), where the root is pulled */
+    const int64_t *frames;             /* shape (N,): the motion's frames that are solved */
+    const double *reference_rotations; /* shape (F, J, 4) */
+    const double *reference_root;      /* shape (F, 3), where the root is pulled */
     /* in: where each frame starts; out: the solution */
-    double *rotations;    /* shape (N, J, 4) */
-    double *translations; /* shape (N, P, 3) */
+    double *rotations;    /* shape (F, J, 4) */
+    double *translations; /* shape (F, P, 3) */
     int64_t *iterations;  /* shape (N,) */
     uint8_t *converged;   /* shape (N,); in: frames that are left as they are */
     int64_t *ranks;       /* shape (N, L) */
@@ -137,7 +138,7 @@ typedef struct {
 const double *parent_rotation(const Frame *frame, int64_t node);
 void world_quaternion(const Frame *frame, const double *local, int64_t node, double *q);
 void forward(Frame *frame, const double *local, const double *translations);
-void attraction(Frame *frame, const double *local, const double *translations, int64_t at);
+void attraction(Frame *frame, const double *local, const double *translations, int64_t own);
 void hinge_state(Frame *frame, const double *local);
 double apply_step(Frame *frame, double *local, double *translations);
 

@@ -14,11 +14,11 @@
 
 enum {
     SIZES, NODE_INTEGERS, NODE_NUMBERS, COLUMN_NODES, TASK_INTEGERS, TASK_NUMBERS, RECRUITED, TARGETS, HINGE_COLUMNS,
-    HINGE_NUMBERS, REFERENCE_ROTATIONS, REFERENCE_ROOT, ROTATIONS, TRANSLATIONS, ITERATIONS, CONVERGED, RANKS, BUFFERS
+    HINGE_NUMBERS, FRAMES, REFERENCE_ROTATIONS, REFERENCE_ROOT, ROTATIONS, TRANSLATIONS, ITERATIONS, CONVERGED, RANKS, BUFFERS
 };
 enum {
     N_FRAMES, N_NODES, N_COLUMNS, N_TASKS, N_HINGES, N_LAYERS, N_JOINTS, N_TRANSLATED, ROOT, IN_ORDER, MOVES_ROOT,
-    PULLS_ROOT, MAX_ITERATIONS, N_SIZES
+    PULLS_ROOT, MAX_ITERATIONS, MOTION_FRAMES, N_SIZES
 };
 enum { NODE_INTEGER_COUNT = 4, NODE_NUMBER_COUNT = 7, TASK_INTEGER_COUNT = 12, TASK_NUMBER_COUNT = 16 };
 
@@ -57,7 +57,7 @@ static int read_problem(Problem *problem, Py_buffer *buffers, void **memory)
         return 0;
     const int64_t *sizes = buffers[SIZES].buf;
     const int64_t frames = sizes[N_FRAMES], nodes = sizes[N_NODES], columns = sizes[N_COLUMNS], tasks = sizes[N_TASKS];
-    const int64_t hinges = sizes[N_HINGES], joints = sizes[N_JOINTS], moved = sizes[N_TRANSLATED];
+    const int64_t whole = sizes[MOTION_FRAMES], hinges = sizes[N_HINGES], joints = sizes[N_JOINTS], moved = sizes[N_TRANSLATED];
     const size_t integer = sizeof(int64_t), number = sizeof(double);
     if (!has_size(buffers + NODE_INTEGERS, nodes * NODE_INTEGER_COUNT, integer, "node integers") ||
         !has_size(buffers + NODE_NUMBERS, nodes * NODE_NUMBER_COUNT, number, "node numbers") ||
@@ -67,10 +67,11 @@ static int read_problem(Problem *problem, Py_buffer *buffers, void **memory)
         !has_size(buffers + RECRUITED, tasks * columns, 1, "recruited") ||
         !has_size(buffers + HINGE_COLUMNS, hinges, integer, "hinge columns") ||
         !has_size(buffers + HINGE_NUMBERS, hinges * 5, number, "hinge numbers") ||
-        !has_size(buffers + REFERENCE_ROTATIONS, frames * joints * 4, number, "reference rotations") ||
-        !has_size(buffers + REFERENCE_ROOT, sizes[PULLS_ROOT] ? frames * 3 : 0, number, "reference root") ||
-        !has_size(buffers + ROTATIONS, frames * joints * 4, number, "rotations") ||
-        !has_size(buffers + TRANSLATIONS, frames * moved * 3, number, "translations") ||
+        !has_size(buffers + FRAMES, frames, integer, "frames") ||
+        !has_size(buffers + REFERENCE_ROTATIONS, whole * joints * 4, number, "reference rotations") ||
+        !has_size(buffers + REFERENCE_ROOT, sizes[PULLS_ROOT] ? whole * 3 : 0, number, "reference root") ||
+        !has_size(buffers + ROTATIONS, whole * joints * 4, number, "rotations") ||
+        !has_size(buffers + TRANSLATIONS, whole * moved * 3, number, "translations") ||
         !has_size(buffers + ITERATIONS, frames, integer, "iterations") ||
         !has_size(buffers + CONVERGED, frames, 1, "converged") ||
         !has_size(buffers + RANKS, frames * sizes[N_LAYERS], integer, "ranks"))
@@ -107,7 +108,7 @@ static int read_problem(Problem *problem, Py_buffer *buffers, void **memory)
         .joints = joints, .translated = moved, .rows = rows, .root = sizes[ROOT], .in_order = sizes[IN_ORDER],
         .moves_root = sizes[MOVES_ROOT], .pulls_root = sizes[PULLS_ROOT], .max_iterations = sizes[MAX_ITERATIONS],
         .node = node, .column_node = buffers[COLUMN_NODES].buf, .task = task, .hinge = hinge,
-        .reference_rotations = buffers[REFERENCE_ROTATIONS].buf, .reference_root = buffers[REFERENCE_ROOT].buf,
+        .frames = buffers[FRAMES].buf, .reference_rotations = buffers[REFERENCE_ROTATIONS].buf, .reference_root = buffers[REFERENCE_ROOT].buf,
         .rotations = buffers[ROTATIONS].buf, .translations = buffers[TRANSLATIONS].buf,
         .iterations = buffers[ITERATIONS].buf, .converged = buffers[CONVERGED].buf, .ranks = buffers[RANKS].buf,
     };
@@ -121,8 +122,8 @@ static PyObject *solve(PyObject *self, PyObject *arguments)
     double attraction;
     long long begin, end;
     (void)self;
-    if (!PyArg_ParseTuple(arguments, "y*y*y*y*y*y*y*y*y*y*y*y*w*w*w*w*w*dLL", b, b + 1, b + 2, b + 3, b + 4, b + 5, b + 6,
-            b + 7, b + 8, b + 9, b + 10, b + 11, b + 12, b + 13, b + 14, b + 15, b + 16, &attraction, &begin, &end))
+    if (!PyArg_ParseTuple(arguments, "y*y*y*y*y*y*y*y*y*y*y*y*y*w*w*w*w*w*dLL", b, b + 1, b + 2, b + 3, b + 4, b + 5, b + 6,
+            b + 7, b + 8, b + 9, b + 10, b + 11, b + 12, b + 13, b + 14, b + 15, b + 16, b + 17, &attraction, &begin, &end))
         return NULL;
     Problem problem;
     void *memory = NULL;

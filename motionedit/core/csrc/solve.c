@@ -202,8 +202,9 @@ static int is_at_rest(const Frame *frame)
 static void solve_frame(Frame *frame, int64_t at)
 {
     const Problem *problem = frame->problem;
-    double *local = problem->rotations + 4 * problem->joints * at;
-    double *translations = problem->translations + 3 * problem->translated * at;
+    const int64_t own = problem->frames[at];
+    double *local = problem->rotations + 4 * problem->joints * own;
+    double *translations = problem->translations + 3 * problem->translated * own;
     double before = 0.0;
     int nearly = 0;
     frame->remembers = 0;
@@ -223,7 +224,7 @@ static void solve_frame(Frame *frame, int64_t at)
         double gain = problem->attraction * anneal;
         for (int64_t i = FULL_GAIN_ITERATIONS; i < iteration + 1; i++)
             gain *= GAIN_DECAY;
-        attraction(frame, local, translations, at);
+        attraction(frame, local, translations, own);
         gram(frame);
         double moved = 0.0;
         if (is_at_rest(frame)) /* for its ranks alone */
@@ -297,6 +298,7 @@ static size_t lay_out(Frame *frame, char *memory)
 /* eq. (4): what the columns move starts where the frame before ended. */
 static void start_where_the_last_ended(const Problem *problem, int64_t at)
 {
+    at = problem->frames[at];
     double *here = problem->rotations + 4 * problem->joints * at;
     for (int64_t k = 0; k < problem->columns; k++) {
         const int64_t joint = problem->node[problem->column_node[k]].joint;

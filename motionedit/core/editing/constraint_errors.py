@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.center_of_mass import Masses, center_of_mass
 from motionedit.core.kinematics import WorldPoses, effector_positions
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
     from motionedit.core.editing.constraints import Constraint, Targets
+    from motionedit.core.editing.sight import Sight
     from motionedit.core.motion import Motion
 
 
@@ -32,24 +32,24 @@ class ConstraintErrors:
 
 
 def errors_of(
-    constraint: Constraint, targets: Targets, poses: WorldPoses, motion: Motion, *, masses: Masses, reference: Motion
+    constraint: Constraint, targets: Targets, sight: Sight, motion: Motion, *, reference: Motion
 ) -> ConstraintErrors:
     """Return the errors of a constraint over its active interval, not weighted.
 
     Parameters
     ----------
-    poses, motion
+    sight, motion
         The edited motion.
     reference : Motion
         The input.
     """
-    span = slice(targets.first, targets.last + 1)
+    span, poses = slice(targets.first, targets.last + 1), sight.poses
     if constraint.kind == "posture":
         joints = list(constraint.joints)
         off = rot.angle_between(motion.rotations[span, joints], reference.rotations[span, joints])
         return ConstraintErrors(targets.first, None, off.max(axis=1, initial=0.0))
     if constraint.kind == "com":
-        path = center_of_mass(poses, masses)[span] @ constraint.measure.T
+        path = sight.center[span] @ constraint.measure.T
         wanted = _wanted(constraint, targets, path)
         distance: FloatArray = np.linalg.norm(path - wanted, axis=1)
         return ConstraintErrors(targets.first, distance, None, wanted @ constraint.measure)

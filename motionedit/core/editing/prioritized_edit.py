@@ -16,7 +16,7 @@ from motionedit.core.editing.constraints import (
 from motionedit.core.editing.continuity import NO_DISPLACEMENT, smoothed_displacement
 from motionedit.core.editing.prioritized_run import Run
 from motionedit.core.ik.recruiting import Breach, Recruits, breaches, expanded
-from motionedit.core.kinematics import forward
+from motionedit.core.trace import frame_blocks
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -164,13 +164,16 @@ def edit_by_priorities(
         As `recruit`.
     """
     recruits, found = recruit(constraints, motion, body, rule=settings.recruiting_rule)
-    run = Run(motion, tuple(constraints), tuple(recruits), body, settings, forward(motion))
+    run = Run(motion, tuple(constraints), tuple(recruits), body, settings)
     if isinstance(settings.smoothing, Passes):
         state = run.solve(motion, reference=motion, pull_root=False)
         iterations = state.iterations.copy()
         for _ in range(settings.smoothing.count):
             smooth = smoothed_displacement(motion, state.motion, sigma=settings.smoothing.sigma, first=body.first)
-            state = run.solve(smooth, reference=smooth, pull_root=True, previous=state)
+            known = run.after(state, smooth)
+            del state  # of a long motion no more copies are kept than are needed
+            state = run.solve(smooth, reference=smooth, pull_root=True, known=known)
+            del smooth
     else:
         state, iterations = run.solve_as_the_paper(settings.smoothing)
     touched, moved = _changes(motion, state.motion, body.travel)
@@ -188,9 +191,11 @@ def edit_by_priorities(
 
 
 def _changes(before: Motion, after: Motion, travel: int) -> tuple[BoolArray, BoolArray]:
-    # A turn so small is twice the vector part of its quaternion.
-    turns = rot.multiply(rot.conjugate(before.rotations), after.rotations)[..., 1:]
-    touched: BoolArray = 2.0 * np.abs(turns).max(axis=2) > NO_DISPLACEMENT
+    touched = np.empty(before.rotations.shape[:2], dtype=np.bool_)
+    for block in frame_blocks(len(before)):
+        # A turn so small is twice the vector part of its quaternion.
+        turns = rot.multiply(rot.conjugate(before.rotations[block]), after.rotations[block])[..., 1:]
+        touched[block] = 2.0 * np.abs(turns).max(axis=2) > NO_DISPLACEMENT
     place = np.searchsorted(before.skeleton.translated, travel)
     shifts = (after.translations - before.translations)[:, place : place + 1]
     moved: BoolArray = np.abs(shifts).max(axis=(1, 2), initial=0.0) > NO_DISPLACEMENT

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motionedit.core.center_of_mass import center_of_mass
 from motionedit.core.compiled import compiled
 from motionedit.core.editing.balance import com_targets, support_points
 from motionedit.core.editing.constraint_errors import ConstraintErrors, errors_of
@@ -22,11 +21,12 @@ from motionedit.core.editing.constraints import (
     task_of,
 )
 from motionedit.core.editing.continuity import filtered_root
+from motionedit.core.editing.prioritized_groups import Group, hinge_columns, spans_of
+from motionedit.core.editing.sight import Sight, joints_named, sight_of
 from motionedit.core.ik.kernel import Layout
-from motionedit.core.ik.layered_solver import HingeColumns, Problem, Reference, WeightedTask, solve_layers
+from motionedit.core.ik.layered_solver import Problem, Reference, WeightedTask, improve
 from motionedit.core.ik.recruiting import Recruits
-from motionedit.core.ik.tasks import CenterOfMassTask, Columns
-from motionedit.core.kinematics import WorldPoses, forward
+from motionedit.core.ik.tasks import Columns
 from motionedit.core.motion import Motion
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.editing.prioritized_edit import Body, LayeredSettings, PaperFilter
-    from motionedit.core.hinges import Hinge
+    from motionedit.core.kinematics import WorldPoses
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,33 +49,12 @@ class Solved:
 
 
 @dataclass(frozen=True, eq=False)
-class Group:
-    """Frames at which the same constraints are active, which are solved together.
+class Next:
+    """What a solve leaves for the next: its targets, frames (F,) that are done, and their ranks (F, L)."""
 
-    Attributes
-    ----------
-    frames : shape (n,)
-    levels : shape (L,)
-        Where the problem's layers stand among those of the whole edit.
-    problem : Problem
-    following : pairs of (layer, place in the layer) and constraint
-        Tasks whose targets depend on the edited motion.
-    """
-
-    frames: IntArray
-    levels: IntArray
-    problem: Problem
-    following: tuple[tuple[int, int, int], ...]
-
-    def with_targets(self, targets: Sequence[Targets]) -> Problem:
-        """Return the problem with new targets for the tasks that follow the edited motion."""
-        layers = [list(layer) for layer in self.problem.layers]
-        for layer, place, constraint in self.following:
-            each, new = layers[layer][place], targets[constraint]
-            if isinstance(each.task, CenterOfMassTask) and new.positions is not None:
-                task = replace(each.task, targets=new.positions[self.frames - new.first])
-                layers[layer][place] = WeightedTask(task, each.weight)
-        return replace(self.problem, layers=tuple(map(tuple, layers)))
+    targets: tuple[Targets, ...]
+    done: BoolArray
+    ranks: IntArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,7 +66,21 @@ class Run:
     recruits: tuple[Recruits, ...]
     body: Body
     settings: LayeredSettings
-    poses: WorldPoses
+
+    @cached_property
+    def _named(self) -> IntArray:
+        """The joints that constraints name."""
+        return joints_named(self.constraints)
+
+    @cached_property
+    def sight(self) -> Sight:
+        """What the constraints look at in the input."""
+        return sight_of(self.motion, self._named, self.body.masses)
+
+    @property
+    def poses(self) -> WorldPoses:
+        """The input's, of the joints that constraints name."""
+        return self.sight.poses
 
     @cached_property
     def targets(self) -> tuple[Targets, ...]:
@@ -113,18 +106,13 @@ class Run:
             if c.kind in {"position", "orientation", "pose"}
         }
 
-    @cached_property
-    def _com_path(self) -> FloatArray:
-        """The input's center of mass, shape (F, 3)."""
-        return center_of_mass(self.poses, self.body.masses)
-
     def _com_targets(self, constraint: Constraint, current: WorldPoses | None) -> Targets:
         """Return the targets of a `com`; `current` is the edited motion so far, None before there is one."""
         support = None
         if constraint.support:
             poses = self.poses if current is None else current
             support = support_points(constraint, poses, self._support_goals(constraint))
-        return com_targets(constraint, self.poses, self._com_path, support=support, curve=self.settings.curve)
+        return com_targets(constraint, self.poses, self.sight.center, support=support, curve=self.settings.curve)
 
     def _support_goals(self, constraint: Constraint) -> dict[int, FloatArray]:
         """Return the goals of members of a support, by joint, shape (F, 3), nan where there is none: they are A'."""
@@ -183,7 +171,7 @@ class Run:
             columns=columns,
             moves_root=any(self.recruits[i].root for i in members),
             layers=tuple(layers),
-            hinges=_hinge_columns(self.body.hinges, joints),
+            hinges=hinge_columns(self.body.hinges, joints),
             attraction=self.settings.attraction,
             max_iterations=self.settings.max_iterations,
         )
@@ -221,29 +209,37 @@ class Run:
             self.targets,
         )
 
-    def solve(self, start: Motion, *, reference: Motion, pull_root: bool, previous: Solved | None = None) -> Solved:
+    def after(self, previous: Solved, start: Motion) -> Next:
+        """Return the targets of a solve from `start` that follows another, and the frames that it may leave alone.
+
+        Supports without goals stand on the edited motion. Frames that were left as in the input, and that start from
+        there again, need nothing.
+        """
+        if self._following:
+            sight = sight_of(previous.motion, self._named, self.body.masses)
+            moved = {i: self._com_targets(self.constraints[i], sight.poses) for i in self._following}
+            targets = tuple(moved.get(i, each) for i, each in enumerate(self.targets))
+            return Next(targets, np.zeros(len(start), dtype=np.bool_), previous.ranks)
+        done = _same(start, self.motion) & _same(previous.motion, self.motion) & previous.converged
+        return Next(self.targets, done, previous.ranks)
+
+    def solve(self, start: Motion, *, reference: Motion, pull_root: bool, known: Next | None = None) -> Solved:
         """Return the motion with every frame solved from `start`, attracted to `reference`.
 
         Parameters
         ----------
-        previous : Solved, optional
-            The edit so far: supports without goals stand on it, and frames that it left as in the input, and that start
-            from there again, need nothing.
+        known : Next, optional
+            What is known from the solve before.
         """
-        targets, done = list(self.targets), np.zeros(len(start), dtype=np.bool_)
-        if previous is not None and self._following:
-            poses = forward(previous.motion)
-            for i in self._following:
-                targets[i] = self._com_targets(self.constraints[i], poses)
-        elif previous is not None:
-            done = _same(start, self.motion) & _same(previous.motion, self.motion) & previous.converged
-        solved = replace(self.untouched(start), targets=tuple(targets))
+        targets = self.targets if known is None else known.targets
+        done = np.zeros(len(start), dtype=np.bool_) if known is None else known.done
+        solved = replace(self.untouched(start), targets=targets)
         for group in self.groups:
             problem = group.with_targets(targets)
-            rows = _rows(group.frames)
-            self._solve_frames(solved, group, problem, rows, reference, done=done[rows], pull_root=pull_root)
-        if previous is not None:
-            solved.ranks[done] = previous.ranks[done]
+            frames = group.frames
+            self._solve_frames(solved, group, problem, frames, reference, done=done[frames], pull_root=pull_root)
+        if known is not None:
+            solved.ranks[done] = known.ranks[done]
         return solved
 
     def _solve_frames(
@@ -251,7 +247,7 @@ class Run:
         solved: Solved,
         group: Group,
         problem: Problem,
-        rows: slice | IntArray,
+        frames: IntArray,
         reference: Motion,
         *,
         pull_root: bool,
@@ -259,22 +255,24 @@ class Run:
         in_order: bool = False,
     ) -> None:
         """Solve frames of `solved` from where they are, in place."""
-        motion = solved.motion
-        start = Motion(motion.skeleton, motion.rotations[rows], motion.translations[rows], motion.frame_time)
-        root = reference.translations[rows, self.place] if pull_root and reference.translations.shape[1] else None
-        solution = solve_layers(
+        root = np.ascontiguousarray(reference.translations[:, self.place]) if pull_root and self._travels else None
+        solution = improve(
             problem,
-            start,
-            Reference(reference.rotations[rows], root),
+            solved.motion,
+            Reference(reference.rotations, root),
+            frames,
             done=done,
             in_order=in_order,
             threads=self.settings.threads,
         )
-        motion.rotations[rows] = solution.motion.rotations
-        motion.translations[rows] = solution.motion.translations
-        solved.iterations[rows], solved.converged[rows] = solution.iterations, solution.converged
+        solved.iterations[frames], solved.converged[frames] = solution.iterations, solution.converged
         for layer, level in enumerate(group.levels):
-            solved.ranks[rows, level] = solution.ranks[:, layer]
+            solved.ranks[frames, level] = solution.ranks[:, layer]
+
+    @property
+    def _travels(self) -> bool:
+        """Whether any joint has translations."""
+        return bool(self.motion.translations.shape[1])
 
     def solve_as_the_paper(self, smoothing: PaperFilter) -> tuple[Solved, IntArray]:
         """Solve frame by frame from eq. (4)'s start states, filter the root, and solve again with the root frozen."""
@@ -288,13 +286,14 @@ class Run:
                 )
                 state = replace(state, motion=filtered)
             else:
-                state = frozen.solve(state.motion, reference=self.motion, pull_root=False, previous=state)
+                known = frozen.after(state, state.motion)
+                state = frozen.solve(state.motion, reference=self.motion, pull_root=False, known=known)
         return state, iterations
 
     def _in_order(self) -> Solved:
         """Solve the frames one after the other: joints that an active constraint controls start where they were."""
         solved = self.untouched(self.motion)
-        spans = [(int(span[0]), span, group) for group in self.groups for span in _spans(group.frames)]
+        spans = [(int(span[0]), span, group) for group in self.groups for span in spans_of(group.frames)]
         before = -2
         for first, span, group in sorted(spans, key=itemgetter(0)):
             problem = self._at(group, span)
@@ -303,8 +302,7 @@ class Run:
                 motion.rotations[first, joints] = motion.rotations[first - 1, joints]
                 if problem.moves_root:
                     motion.translations[first, self.place] = motion.translations[first - 1, self.place]
-            rows = slice(first, first + len(span))
-            self._solve_frames(solved, group, problem, rows, self.motion, pull_root=False, in_order=True)
+            self._solve_frames(solved, group, problem, span, self.motion, pull_root=False, in_order=True)
             before = first + len(span) - 1
         return solved
 
@@ -317,20 +315,11 @@ class Run:
 
     def errors(self, solved: Solved) -> tuple[ConstraintErrors, ...]:
         """Return what is left of every constraint, against the targets of the last pass, by forward kinematics."""
-        poses = forward(solved.motion)
+        sight = sight_of(solved.motion, self._named, self.body.masses)
         return tuple(
-            errors_of(c, t, poses, solved.motion, masses=self.body.masses, reference=self.motion)
+            errors_of(c, t, sight, solved.motion, reference=self.motion)
             for c, t in zip(self.constraints, solved.targets, strict=True)
         )
-
-
-def _hinge_columns(hinges: Sequence[Hinge], joints: IntArray) -> HingeColumns:
-    here = [hinge for hinge in hinges if hinge.joint in set(map(int, joints))]
-    return HingeColumns(
-        places=np.searchsorted(joints, np.array([hinge.joint for hinge in here], dtype=np.intp)),
-        axes=np.array([hinge.axis for hinge in here]).reshape(-1, 3),
-        limits=np.array([hinge.limits for hinge in here]).reshape(-1, 2),
-    )
 
 
 def _same(one: Motion, other: Motion) -> BoolArray:
@@ -338,14 +327,3 @@ def _same(one: Motion, other: Motion) -> BoolArray:
     turned = (one.rotations == other.rotations).all(axis=(1, 2))
     same: BoolArray = turned & (one.translations == other.translations).all(axis=(1, 2))
     return same
-
-
-def _rows(frames: IntArray) -> slice | IntArray:
-    """Return frames as a slice where they follow each other: numpy need not copy then."""
-    first, count = int(frames[0]), len(frames)
-    return slice(first, first + count) if int(frames[-1]) == first + count - 1 else frames
-
-
-def _spans(frames: IntArray) -> list[IntArray]:
-    """Return frames cut where they do not follow each other."""
-    return np.split(frames, np.flatnonzero(np.diff(frames) > 1) + 1)

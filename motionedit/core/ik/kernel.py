@@ -49,17 +49,31 @@ class Layout:
         return _layout(problem)
 
 
-def solve(problem: Problem, solution: LayeredSolution, reference: Reference, *, in_order: bool, threads: int) -> None:
-    """Solve the frames of `solution` that are not converged from where they are; see `layered_solver.solve_layers`."""
-    count, motion = len(solution.iterations), solution.motion
+def solve(
+    problem: Problem,
+    solution: LayeredSolution,
+    reference: Reference,
+    frames: IntArray,
+    *,
+    in_order: bool,
+    threads: int,
+) -> None:
+    """Solve those `frames` of a motion that are not converged from where they are; see `layered_solver.improve`."""
+    count, motion = len(frames), solution.motion
     layout = problem.layout or Layout.of(problem)
     pulls_root = reference.root is not None
     arrays = (
-        _integers((count, *layout.sizes, in_order, problem.moves_root, pulls_root, problem.max_iterations)),
+        _integers(
+            (
+                *(count, *layout.sizes, in_order, problem.moves_root, pulls_root),
+                *(problem.max_iterations, len(motion)),
+            )
+        ),
         *layout.nodes,
         *layout.tasks,
         _targets(problem),
         *layout.hinges,
+        _integers(frames),
         _numbers(reference.rotations),
         _numbers([] if reference.root is None else reference.root),
         *(motion.rotations, motion.translations, solution.iterations, solution.converged, solution.ranks),

@@ -5,13 +5,14 @@ All frames iterate together; those that have converged leave.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.ik.homing import Memory, accelerated, attraction
+from motionedit.core.ik.layered_solver import Reference
 from motionedit.core.ik.layers import Descent, descend
 from motionedit.core.kinematics import WorldPoses, forward
 from motionedit.core.motion import Motion
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
-    from motionedit.core.ik.layered_solver import LayeredSolution, Problem, Reference, WeightedTask
+    from motionedit.core.ik.layered_solver import LayeredSolution, Problem, WeightedTask
     from motionedit.core.ik.tasks import Columns
 
 # Metres at leg length 0.85 m: a layer's error is clamped to this much per iteration.
@@ -44,8 +45,19 @@ _ON_LIMIT = 1e-12
 BLOCK = 1024
 
 
-def solve(problem: Problem, solution: LayeredSolution, reference: Reference, *, in_order: bool) -> None:
-    """Solve the frames of `solution` that are not converged from where they are; see `layered_solver.solve_layers`."""
+def solve(
+    problem: Problem, solution: LayeredSolution, reference: Reference, frames: IntArray, *, in_order: bool
+) -> None:
+    """Solve those `frames` of a motion that are not converged from where they are; see `layered_solver.improve`."""
+    whole = solution.motion
+    part = Motion(whole.skeleton, whole.rotations[frames], whole.translations[frames], whole.frame_time)
+    root = None if reference.root is None else reference.root[frames]
+    _solve(problem, replace(solution, motion=part), Reference(reference.rotations[frames], root), in_order=in_order)
+    whole.rotations[frames], whole.translations[frames] = part.rotations, part.translations
+
+
+def _solve(problem: Problem, solution: LayeredSolution, reference: Reference, *, in_order: bool) -> None:
+    """Solve every frame of `solution` that is not converged, in place."""
     count = len(solution.iterations)
     if not in_order:
         for block in range(0, count, BLOCK):

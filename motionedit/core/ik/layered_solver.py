@@ -48,7 +48,7 @@ class HingeColumns:
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """What is solved in F frames: layers, the most important first, over common unknowns.
+    """What is solved in N frames: layers, the most important first, over common unknowns.
 
     Attributes
     ----------
@@ -83,7 +83,7 @@ class Reference:
 
 @dataclass(frozen=True, eq=False)
 class LayeredSolution:
-    """What came out: the motion, iterations per frame (F,), which frames converged (F,), rank per layer (F, L)."""
+    """What came out: the motion, and of its N frames that were solved iterations (N,), converged (N,), ranks (N, L)."""
 
     motion: Motion
     iterations: IntArray
@@ -104,24 +104,42 @@ def solve_layers(
 
     Parameters
     ----------
-    done : shape (F,), optional
+    done : shape (N,), optional
         Frames that are known to need nothing: they stay as they are, converged, without iterations and ranks.
     in_order : bool
         The frames follow each other, and each begins where the one before ended, in what the columns move: eq. (4).
     threads : int
         Frames are shared out among so many threads where the compiled solver runs; the result does not depend on it.
     """
-    count = len(start)
+    motion = Motion(start.skeleton, start.rotations.copy(), start.translations.copy(), start.frame_time)
+    frames = np.arange(len(start))
+    return improve(problem, motion, reference, frames, done=done, in_order=in_order, threads=threads)
+
+
+def improve(
+    problem: Problem,
+    motion: Motion,
+    reference: Reference,
+    frames: IntArray,
+    *,
+    done: BoolArray | None = None,
+    in_order: bool = False,
+    threads: int = 1,
+) -> LayeredSolution:
+    """Solve N frames, shape (N,), of a motion that the caller owns, in its own memory; else as `solve_layers`.
+
+    The problem has N frames, the reference as many as the motion; the solution's arrays have N rows.
+    """
     solution = LayeredSolution(
-        Motion(start.skeleton, start.rotations.copy(), start.translations.copy(), start.frame_time),
-        np.zeros(count, dtype=np.intp),
-        np.zeros(count, dtype=np.bool_) if done is None else done.copy(),
-        np.zeros((count, len(problem.layers)), dtype=np.intp),
+        motion,
+        np.zeros(len(frames), dtype=np.intp),
+        np.zeros(len(frames), dtype=np.bool_) if done is None else done.copy(),
+        np.zeros((len(frames), len(problem.layers)), dtype=np.intp),
     )
     if compiled() is None:
         from motionedit.core.ik import layered_numpy
 
-        layered_numpy.solve(problem, solution, reference, in_order=in_order)
+        layered_numpy.solve(problem, solution, reference, frames, in_order=in_order)
     else:
-        kernel.solve(problem, solution, reference, in_order=in_order, threads=threads)
+        kernel.solve(problem, solution, reference, frames, in_order=in_order, threads=threads)
     return solution

@@ -195,7 +195,7 @@ def test_smoothing_is_the_same(patch, first, sigma):
 def test_buffers_of_a_wrong_size_are_an_error_and_no_crash():
     empty = np.zeros(0)
     with pytest.raises(ValueError, match="sizes has 0 bytes"):
-        compiled().solve(*[empty] * 17, 1.0, 0, 0)
+        compiled().solve(*[empty] * 18, 1.0, 0, 0)
     with pytest.raises(ValueError, match="places has 0 bytes"):
         compiled().forward(np.array([-1]), empty, empty, empty, empty, empty, empty, 1)
     with pytest.raises(ValueError, match="rotations after"):
