@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from figures_prioritized import config, foot_plants, reach, step
 
-from paper.comparison import timed
+from paper.comparison import SECONDS, timed
 from paper.drawing import BLUE, GREY, ORANGE, Camera, Stage, new_figure
 from paper.prio_clips import Shown, stand
 from paper.study import ROOT, Findings, Table
@@ -62,7 +62,7 @@ def _variants(lab: Study, clip: Path, specs: dict[str, Spec]) -> tuple[dict[str,
     """Return the clips that specs lead to, the input last, and the seconds each took."""
     clips, seconds = {}, {}
     for name, spec in specs.items():
-        edit, seconds[name] = timed(lambda spec=spec: lab.lab.edit_prioritized(clip, spec))
+        edit, seconds[name] = timed(lambda spec=spec: lab.lab.edit_prioritized(clip, spec), rounds=lab.rounds)
         clips[name] = Shown(edit.path)
     return {**clips, INPUT: Shown(clip)}, seconds
 
@@ -107,7 +107,7 @@ def _times(*seconds: dict[str, float]) -> Table:
     named |= {PRIORITIES: "stepping", WEIGHTS: "the same by weights"}
     for each in seconds:
         rows += [(named[name], theirs.get(name, ""), f"{took:.2f}") for name, took in each.items()]
-    return Table("prio-seconds", "Seconds of an edit, reading and writing in", tuple(rows), quoted=True)
+    return Table("prio-seconds", SECONDS, tuple(rows), quoted=True)
 
 
 def _picture(clips: dict[str, Shown], frame: int, *, goal: Any, camera: Camera) -> Figure:  # noqa: ANN401

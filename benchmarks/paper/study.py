@@ -63,6 +63,8 @@ class Study:
 
     def __init__(self, lab: Lab, *, clips: Path | None = None, quick: bool = False) -> None:
         self.lab, self.clips, self.quick = lab, clips, quick
+        # Of what is timed: others may be at work on the machine, which only ever adds time.
+        self.rounds = 1 if quick else 3
         self.swings = [ROOT / "data" / "golf" / f"swing{n:02d}.bvh" for n in range(1, 11)]
         lines = [line.split("\t") for line in (ROOT / "data" / "golf" / "balls.tsv").read_text().splitlines()[1:]]
         self.styles = [int(line[1]) for line in lines]
