@@ -24,6 +24,9 @@ if TYPE_CHECKING:
     from paper.drawing import Stage
 
 
+_LOW = 0.07  # leg lengths over its lowest at which a point of a foot stands, as contacts are found
+
+
 @dataclass(frozen=True)
 class Shown:
     """A clip to measure and to draw."""
@@ -74,8 +77,9 @@ class Shown:
         return foot_drift(facts.poses.positions, edited.facts.poses.positions, plants)
 
     def support(self, frame: int) -> FloatArray:
-        """Return the outline on the ground of what stands at a frame: points of the feet near the ground."""
-        low = self.feet[frame][self.feet[frame][:, 1] < self.feet[:, :, 1].min() + 0.18 * self.size]
+        """Return the outline on the ground of what stands at a frame: points of the feet as low as they ever are."""
+        heights = self.feet[:, :, 1]
+        low = self.feet[frame][heights[frame] < np.percentile(heights, 2.0, axis=0) + _LOW * self.size]
         # A foot is some centimetres wide on both sides of its joints, and goes on before the toes.
         around = 0.05 * self.size * np.array([[1, 0, 0], [-1, 0, 0], [0, 0, 1], [0, 0, -1]], dtype=float)
         return hull((low[:, None] + around).reshape(-1, 3))
