@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
+    from motionedit.core.arrays import FloatArray
     from paper.study import Study
 
 Spec = dict[str, Any]
@@ -41,8 +42,9 @@ def study(lab: Study) -> Findings:
     return Findings((*tables, *_real(lab)), pictures)
 
 
-def _lifted(clip: Shown, joint: str, frame: int, rise: float) -> Any:  # noqa: ANN401
-    return clip.point(joint)[frame] + np.array([0.0, rise, 0.0])
+def _lifted(clip: Shown, joint: str, frame: int, rise: float) -> FloatArray:
+    lifted: FloatArray = clip.point(joint)[frame] + np.array([0.0, rise, 0.0])
+    return lifted
 
 
 def _reaching(spec: Spec) -> dict[str, Spec]:
@@ -110,7 +112,7 @@ def _times(*seconds: dict[str, float]) -> Table:
     return Table("prio-seconds", SECONDS, tuple(rows), quoted=True)
 
 
-def _picture(clips: dict[str, Shown], frame: int, *, goal: Any, camera: Camera) -> Figure:  # noqa: ANN401
+def _picture(clips: dict[str, Shown], frame: int, *, goal: FloatArray, camera: Camera) -> Figure:
     figure = new_figure(10.0, 3.9)
     stage = Stage(figure.subplots(), camera)
     source = clips[INPUT]
