@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 STEPS = (("RightToeBase", 42, 12.0), ("LeftToeBase", 57, 24.0), ("RightToeBase", 71, 36.0), ("LeftToeBase", 86, 48.0))
 FRAMES = (8, 28, 43, 57, 72, 86, 101)
 WIDTH = 45.0
-_ITERATIONS = ("iterations, median", "most")
+_ITERATIONS = ("iterations, median", "95 %", "most")
 
 
 def study(lab: Study) -> Findings:
