@@ -12,7 +12,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 export OMP_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install demo test test-numpy sanitize test-all lint types docs docs-check golden bench bench-peers bench-scale figures data clean
+.PHONY: help install demo test test-numpy sanitize test-all lint types docs docs-check golden bench bench-peers bench-scale figures paper data clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -84,6 +84,9 @@ bench-scale: $(STAMP)  ## measure many and long clips: their time and peak memor
 
 figures: $(STAMP)  ## print the accuracy figures that the documentation quotes
 	$(BIN)/python benchmarks/figures.py
+
+paper: $(STAMP)  ## make the tables and figures of both papers anew, in out/paper and in docs/
+	$(BIN)/python benchmarks/paper/run.py --out $(OUT)/paper --docs
 
 data: $(STAMP)  ## write the clips in data/ anew, from the generator
 	$(BIN)/python -m data.generator

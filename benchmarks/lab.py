@@ -52,13 +52,18 @@ class Lab:
         path.write_text(json.dumps({"schema": f"motionedit/{command}/v1", **content}))
         return path
 
-    def model(self, clips: Sequence[Path], spec: dict[str, Any], *, fit: dict[str, Any] | None = None) -> Path:
-        """Return the model of clips, normalized by a spec."""
+    def normalized(self, clips: Sequence[Path], spec: dict[str, Any]) -> Path:
+        """Return the folder of clips normalized by a spec."""
         folder = self.place()
         loaded = load_spec(self._spec(spec, "normalize"), "normalize")
         result = normalize.run(loaded, clips, folder, RunOptions(keep_going=False))
         if result.failures:
             raise result.failures[0]
+        return folder
+
+    def model(self, clips: Sequence[Path], spec: dict[str, Any], *, fit: dict[str, Any] | None = None) -> Path:
+        """Return the model of clips, normalized by a spec."""
+        folder = self.normalized(clips, spec)
         model = self.place() / "model.npz"
         fit_pca.run(folder, model, load_spec(self._spec(fit or {}, "fit-pca"), "fit-pca"), RunOptions())
         return model
@@ -116,9 +121,13 @@ def largest_jerk(positions: FloatArray) -> float:
     return float(np.linalg.norm(np.diff(positions, 3, axis=0), axis=-1).max())
 
 
+def table_text(title: str, rows: Sequence[Sequence[str]]) -> str:
+    """Return rows under a title, the columns aligned."""
+    widths = [max(len(row[c]) for row in rows) for c in range(len(rows[0]))]
+    lines = ("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) for row in rows)
+    return "\n".join([title, "", *(f"  {line}".rstrip() for line in lines)])
+
+
 def print_table(title: str, rows: Sequence[Sequence[str]]) -> None:
     """Print rows under a title, the columns aligned."""
-    widths = [max(len(row[c]) for row in rows) for c in range(len(rows[0]))]
-    print(f"\n{title}\n")
-    for row in rows:
-        print("  " + "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
+    print(f"\n{table_text(title, rows)}")

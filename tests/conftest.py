@@ -5,9 +5,14 @@ import sys
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT), str(ROOT / "benchmarks")]
+
+# A busy machine takes its time: that is no fault of what is tested.
+settings.register_profile("motionedit", deadline=None)
+settings.load_profile("motionedit")
 
 GOLF = {
     "events": {

@@ -89,8 +89,8 @@ class PcSolver(SpecModel):
     method: Annotated[Literal["gauss-newton", "damped"], kinds.word("gauss-newton", "damped")] = Field(
         default="gauss-newton", description="gauss-newton, or damped: the paper's Algorithm 1, which needs unit:."
     )
-    damping: Annotated[float, kinds.number(above=0.0)] = Field(
-        default=10.0, description="damped only: the damping xi, in damping_unit."
+    damping: Annotated[float, kinds.number(at_least=0.0)] = Field(
+        default=10.0, description="damped only: the damping xi, in damping_unit; 0 is a plain pseudo-inverse."
     )
     damping_unit: Annotated[Unit, kinds.UNIT] = Field(
         default=Unit("cm", UNITS["cm"]), description="damped only: the unit the solver works in, as unit:."

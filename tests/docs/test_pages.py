@@ -12,7 +12,7 @@ from motionedit.cli import main as program
 
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"\]\(([^)\s]+)\)")
-PLACE = re.compile(r"`((?:motionedit|tests)/\S+\.py)::(\w+)`")
+PLACE = re.compile(r"`((?:motionedit|tests|benchmarks)/\S+\.py)::(\w+)`")
 FILE = re.compile(r"`((?:motionedit|tests|configs|docs|data|benchmarks)/(?!.*/v\d`)[\w./-]+)`")
 
 
@@ -54,11 +54,31 @@ def test_functions_and_tests_that_are_named_exist(page, root):
         assert thing in {node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)}, f"{name}::{thing}"
 
 
-def test_every_equation_of_the_paper_has_a_row(root):
-    rows = [line for line in text_of(root / "docs" / "equations.md").splitlines() if PLACE.search(line)]
+def equation_rows(root, paper):
+    page = text_of(root / "docs" / "equations.md")
+    section = page.partition(f"## [{paper}]\n")[2].partition("\n## ")[0]
+    return [line for line in section.splitlines() if line.startswith("| ") and not line.startswith("| equation")]
+
+
+@pytest.mark.parametrize(("paper", "last"), [("PC", 14), ("PRIO", 4)])
+def test_every_equation_of_the_papers_has_a_row_with_a_function_and_a_test(root, paper, last):
+    rows = equation_rows(root, paper)
     numbers = {int(n) for line in rows for n in re.findall(r"\((\d+)\)", line.split("|")[1])}
-    assert numbers == set(range(1, 15))
-    assert all(len(PLACE.findall(line)) == 2 for line in rows)
+    assert numbers == set(range(1, last + 1))
+    for line in rows:
+        function, test = (PLACE.findall(cell) for cell in line.split("|")[3:5])
+        assert len(function) == len(test) == 1, line
+        assert not function[0][0].startswith("tests/"), line
+        assert test[0][0].startswith("tests/"), line
+        assert test[0][1].startswith("test_"), line
+
+
+def test_every_symbol_is_in_the_code(root):
+    table = text_of(root / "docs" / "equations.md").partition("## Symbols\n")[2]
+    code = "\n".join(path.read_text(encoding="utf-8") for path in (root / "motionedit").rglob("*.py"))
+    for line in table.splitlines():
+        for name in re.findall(r"`([A-Za-z_.]+)", line):
+            assert all(re.search(rf"\b{part}\b", code) for part in name.split(".")), name
 
 
 def test_targets_of_make_that_are_named_exist(page, root):

@@ -5,6 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from lab import effector_path, joint_positions
+from paper.pc_pose_space import by_poses
+from paper.study import Study
 
 from motionedit.core.bvh import read_clip
 from motionedit.core.ik.chain import evaluate
@@ -142,3 +144,31 @@ def test_eq_3_alone_is_the_papers_output_on_the_timeline(golf, model):
     frame = edit.record["goals"][0]["frame"]
     assert frame == dict(model.timeline.events)["hit"]
     assert edit.record["goals"][0]["error_max"] < 1e-2
+
+
+def test_without_damping_algorithm_1_is_eq_10_with_the_plain_pseudo_inverse(golf):
+    # Section 6.1: xi = 0 takes less than twelve iterations, and far goals take it out of what the database knows.
+    for clip in golf.swings[:4]:
+        near = golf.edit(clip, (0.0, 0.0, 10.0), solver={"method": "damped", "damping": 0.0}).record
+        far = golf.edit(clip, (0.0, 0.0, 45.0), solver={"method": "damped", "damping": 0.0}).record
+        for record in (near, far):
+            assert record["stopped"] == "converged"
+            assert record["iterations"] < 12
+        assert far["mahalanobis"]["after"] > 3.0 * far["mahalanobis"]["database_max"]
+
+
+def test_eq_8_in_the_space_of_poses_meets_the_goal_at_its_frame_alone(golf):
+    study = Study(golf.lab)
+    edit = by_poses(study, 3, np.array([10.0, 0.0, 10.0]), damping=10.0)
+    moved = np.linalg.norm(head(edit.path) - head(golf.swings[3]), axis=1)
+    assert moved[study.hits[3]] == pytest.approx(np.hypot(10.0, 10.0), abs=1.0)
+    assert np.delete(moved, study.hits[3]).max() == 0.0
+
+
+def test_the_key_frame_is_the_mean_and_the_duration_too(golf, model):
+    # Eq. (13) and (14), with the last sample counted.
+    study = Study(golf.lab)
+    motions = [read_clip(clip).motion for clip in golf.swings]
+    assert model.timeline.frames == round(np.mean([m.duration for m in motions]) * 25.0) + 1
+    shares = [hit / (len(m) - 1) for hit, m in zip(study.hits, motions, strict=True)]
+    assert dict(model.timeline.events)["hit"] == round(np.mean(shares) * (model.timeline.frames - 1))

@@ -294,9 +294,9 @@ def test_two_long_ropes_side_by_side_are_looked_at_in_no_time(links):
     offsets = np.tile([[0.0, 1.0, 0.0]], (2 * links + 1, 1))
     names = tuple(f"link{j}" for j in range(2 * links + 1))
     skeleton = Skeleton(names, np.array(parents), offsets, ((),) * len(names))
-    start = time.perf_counter()
+    start = time.process_time()
     find_anatomy(skeleton)
-    assert time.perf_counter() - start < 2.0
+    assert time.process_time() - start < 2.0
 
 
 def test_a_body_without_a_head_has_none():

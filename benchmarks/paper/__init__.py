@@ -1,0 +1,1 @@
+"""The tables and figures of the two papers, measured and drawn anew with this tool's own jobs."""
