@@ -168,7 +168,10 @@ def leg(clip: Path) -> float:
 
 
 def reach(clip: Path) -> list[dict[str, Any]]:
-    """Return a hand that reaches up and out in mid-clip, above the CoM."""
+    """Return a hand that reaches up and out in mid-clip, above the CoM on the ground plane.
+
+    A foot that may not roll takes its height from the leg, and so the CoM's from it: that is not asked to stay.
+    """
     skeleton = read_clip(clip).motion.skeleton
     arms = find_anatomy(skeleton).arms
     hand = skeleton.names[arms[0].wrist] if arms else ""
@@ -176,7 +179,7 @@ def reach(clip: Path) -> list[dict[str, Any]]:
     shift = [0.2 * size, 0.5 * size, 0.2 * size]
     return [
         {"type": "position", "effector": hand, "priority": 4, "points": [{"at": at, "shift": shift}]},
-        {"type": "com", "priority": 2, "relative_to": "world"},
+        {"type": "com", "priority": 2, "relative_to": "world", "axes": ["x", "z"]},
     ]
 
 

@@ -16,13 +16,6 @@
 /* L, the diagonal, and the most that any of the solutions takes. */
 size_t factor_scratch(int k) { return (size_t)(3 * k * k + 3 * k); }
 
-/* out += factor a */
-static void add_multiple(double *restrict out, double factor, const double *restrict a, int n)
-{
-    for (int i = 0; i < n; i++)
-        out[i] += factor * a[i];
-}
-
 /* lambda by s = 1 / |A~^+|_F, which the smallest kept singular value exceeds, and the length d of b over b_max. */
 static double damping(double s, double d)
 {

@@ -131,7 +131,8 @@ double apply_step(Frame *frame, double *local, double *translations)
         turned_back(parent_rotation(frame, i), w, v);
         q_exp(v, turn);
         q_multiply(turn, q, q);
-        const double size = 1.0 / sqrt(q[0] * q[0] + dot(q + 1, q + 1));
+        /* 1 / sqrt(1 + x) to second order: x is rounding */
+        const double size = 1.5 - 0.5 * (q[0] * q[0] + dot(q + 1, q + 1));
         for (int a = 0; a < 4; a++)
             q[a] *= size;
     }

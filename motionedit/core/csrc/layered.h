@@ -86,7 +86,7 @@ typedef struct {
     int *columns;    /* shape (count,), growing */
     double *levers;  /* shape (count, 3) */
     double force[3][3], torque[3][3]; /* per row */
-    int has_torque, plain; /* plain: the world's axes times one weight, and no torque */
+    int has_force, has_torque, plain; /* plain: the world's axes times one weight, and no torque */
 } Part;
 
 typedef struct {
@@ -158,6 +158,13 @@ void out_of_rank_space(const Frame *frame, double *q, double *y);
 
 /* algebra.c: small dense matrices, row-major */
 void damped_factor(Layer *layer, double *S, const double *b, double largest, double *c, double *scratch);
+
+/* out += factor a */
+static inline void add_multiple(double *restrict out, double factor, const double *restrict a, int n)
+{
+    for (int i = 0; i < n; i++)
+        out[i] += factor * a[i];
+}
 
 /* a . b; four sums at a time do not wait for each other. */
 static inline double dot_product(const double *a, const double *b, int n)

@@ -17,13 +17,16 @@ static void times_B(const Layer *layer, const double *rows, double *ordered, dou
         q[p] = dot_product(layer->B + p * layer->rows, ordered, layer->triangular ? p + 1 : layer->rows);
 }
 
-/* Numbers of the layer's rows less what the layers above account for: rows - C_l q_above. */
-static void less_above(const Frame *frame, const Layer *layer, const double *rows, const double *above, double *rest)
+/* Numbers of the layer's rows less what the layers above account for: rows - C_l q_above, in `rest` where it differs. */
+static const double *less_above(
+    const Frame *frame, const Layer *layer, const double *rows, const double *above, double *rest)
 {
     const double *C = frame->C + layer->first_row * frame->problem->rows;
-    memcpy(rest, rows, sizeof *rest * layer->rows);
-    for (int s = 0; s < layer->rows && layer->first_rank > 0; s++, C += frame->problem->rows)
-        rest[s] -= dot_product(C, above, layer->first_rank);
+    if (layer->first_rank == 0)
+        return rows;
+    for (int s = 0; s < layer->rows; s++, C += frame->problem->rows)
+        rest[s] = rows[s] - dot_product(C, above, layer->first_rank);
+    return rest;
 }
 
 /* C_l, shape (rows, first_rank): what the rows of a layer have along the orthonormal rows Q of those above. */
@@ -35,8 +38,8 @@ static void against_layers_above(Frame *frame, int l)
         double *C = frame->C + r * R, *rest = frame->scratch_rows;
         for (int m = 0; m < l; m++) {
             const Layer *above = frame->layers + m;
-            less_above(frame, above, frame->G_free + r * R + above->first_row, C, rest);
-            times_B(above, rest, rest + R, C + above->first_rank);
+            const double *own = less_above(frame, above, frame->G_free + r * R + above->first_row, C, rest);
+            times_B(above, own, rest + R, C + above->first_rank);
         }
     }
 }
@@ -112,8 +115,8 @@ void into_rank_space(const Frame *frame, const double *Jv, double *Qv)
     for (int l = 0; l < frame->problem->layers; l++) {
         const Layer *layer = frame->layers + l;
         double *rest = frame->scratch_rows;
-        less_above(frame, layer, Jv + layer->first_row, Qv, rest);
-        times_B(layer, rest, rest + frame->problem->rows, Qv + layer->first_rank);
+        const double *own = less_above(frame, layer, Jv + layer->first_row, Qv, rest);
+        times_B(layer, own, rest + frame->problem->rows, Qv + layer->first_rank);
     }
 }
 
@@ -122,15 +125,15 @@ void out_of_rank_space(const Frame *frame, double *q, double *y)
 {
     for (int l = (int)frame->problem->layers - 1; l >= 0; l--) {
         const Layer *layer = frame->layers + l;
-        double *own = y + layer->first_row;
-        memset(own, 0, sizeof *own * layer->rows);
+        double *own = y + layer->first_row, *ordered = frame->scratch_rows;
+        memset(ordered, 0, sizeof *ordered * layer->rows);
         for (int p = 0; p < layer->rank; p++)
-            for (int s = 0; s < (layer->triangular ? p + 1 : layer->rows); s++)
-                own[layer->order[s]] += layer->B[p * layer->rows + s] * q[layer->first_rank + p];
+            add_multiple(ordered, q[layer->first_rank + p], layer->B + p * layer->rows,
+                layer->triangular ? p + 1 : layer->rows);
+        for (int s = 0; s < layer->rows; s++)
+            own[layer->order[s]] = ordered[s];
         for (int s = 0; s < layer->rows && layer->first_rank > 0; s++) {
-            const double *C = frame->C + (layer->first_row + s) * frame->problem->rows;
-            for (int p = 0; p < layer->first_rank; p++)
-                q[p] -= C[p] * own[s];
+            add_multiple(q, -own[s], frame->C + (layer->first_row + s) * frame->problem->rows, layer->first_rank);
         }
     }
 }

@@ -86,11 +86,17 @@ static inline void q_exp(const double *v, double *out)
 /* The rotation vector of a unit quaternion, at most pi long; the sign of q does not matter. */
 static inline void q_log(const double *q, double *out)
 {
+    /* asin(s) / s by its series in t = s^2 */
+    static const double series[] = {1.0, 1.0 / 6, 3.0 / 40, 5.0 / 112, 35.0 / 1152, 63.0 / 2816, 231.0 / 13312,
+        143.0 / 10240, 6435.0 / 557056, 12155.0 / 1245184, 46189.0 / 5505024, 88179.0 / 12058624};
     const double sign = q[0] < 0.0 ? -1.0 : 1.0, t = dot(q + 1, q + 1);
     double scale;
-    if (t < 1e-3) /* 2 asin(s) / s by its series in t = s^2; the next term is below 1e-19 */
-        scale = 2.0 * (1.0 + t * (1.0 / 6 + t * (3.0 / 40 + t * (15.0 / 336 + t * (105.0 / 3456 + t * (945.0 / 42240))))));
-    else {
+    if (t < 0.04) { /* 23 degrees, or 4 where six terms do; the next term is below 1e-17 of the whole */
+        scale = 0.0;
+        for (int i = t < 1e-3 ? 5 : 11; i >= 0; i--)
+            scale = series[i] + t * scale;
+        scale *= 2.0;
+    } else {
         const double s = sqrt(t);
         scale = 2.0 * atan2(s, sign * q[0]) / s;
     }

@@ -81,6 +81,7 @@ static void lay_out_pull(Frame *frame, const Task *task, Pull *pull, char **memo
         memset(part, 0, sizeof *part);
         part->count = count, part->columns = columns, part->levers = levers;
         part->root = (int)(p == 0 ? task->root : task->base_root);
+        part->has_force = task->kind != ORIENTATION && task->kind != POSTURE;
         part->has_torque = task->kind != POSITION && task->kind != CENTER_OF_MASS;
         part->plain = parts == 1 && !part->has_torque && measures_plainly(task);
         for (int r = 0; r < 3 && part->plain; r++)
@@ -379,6 +380,14 @@ typedef struct {
 
 static void sum_levers(const Shared *shared, const Part *a, const Part *b, Sums *sums)
 {
+    const int turns = a->has_torque || b->has_torque;
+    memset(sums, 0, sizeof *sums);
+    for (int i = 0; i < shared->count && turns && a->has_force; i++)
+        add_scaled(sums->l, 1.0, a->levers + 3 * shared->places[2 * i]);
+    for (int i = 0; i < shared->count && turns && b->has_force; i++)
+        add_scaled(sums->m, 1.0, b->levers + 3 * shared->places[2 * i + 1]);
+    if (!a->has_force || !b->has_force)
+        return;
     double xx = 0.0, xy = 0.0, xz = 0.0, yx = 0.0, yy = 0.0, yz = 0.0, zx = 0.0, zy = 0.0, zz = 0.0;
     for (int i = 0; i < shared->count; i++) {
         const double *l = a->levers + 3 * shared->places[2 * i], *m = b->levers + 3 * shared->places[2 * i + 1];
@@ -386,11 +395,8 @@ static void sum_levers(const Shared *shared, const Part *a, const Part *b, Sums 
         yx += m[1] * l[0], yy += m[1] * l[1], yz += m[1] * l[2];
         zx += m[2] * l[0], zy += m[2] * l[1], zz += m[2] * l[2];
     }
-    *sums = (Sums){xx + yy + zz, {{xx, xy, xz}, {yx, yy, yz}, {zx, zy, zz}}, {0.0}, {0.0}};
-    for (int i = 0; i < shared->count && (a->has_torque || b->has_torque); i++) {
-        add_scaled(sums->l, 1.0, a->levers + 3 * shared->places[2 * i]);
-        add_scaled(sums->m, 1.0, b->levers + 3 * shared->places[2 * i + 1]);
-    }
+    sums->between = xx + yy + zz;
+    memcpy(sums->outer, (double[3][3]){{xx, xy, xz}, {yx, yy, yz}, {zx, zy, zz}}, sizeof sums->outer);
 }
 
 /* Add sum_j (l_j x f_r + t_r) . (m_j x g_s + u_s) over the shared columns, and the root's f_r . g_s. */
@@ -413,16 +419,16 @@ static void add_block(Frame *frame, const Shared *shared)
     }
     for (int64_t r = 0; r < rows; r++) {
         const double *f = a->force[r], *t = a->torque[r];
-        double pushed[3], *out = frame->G + (mine->first_row + r) * problem->rows + theirs->first_row;
+        double pushed[3] = {0.0}, *out = frame->G + (mine->first_row + r) * problem->rows + theirs->first_row;
         /* (l x f) . (m x g) = (l . m) (f . g) - (m . f) (l . g) */
-        for (int x = 0; x < 3; x++)
+        for (int x = 0; x < 3 && a->has_force && b->has_force; x++)
             pushed[x] = between * f[x] - (sums.outer[0][x] * f[0] + sums.outer[1][x] * f[1] + sums.outer[2][x] * f[2]);
-        if (a->has_torque) { /* t . (m x g) = g . (t x m) */
+        if (a->has_torque && b->has_force) { /* t . (m x g) = g . (t x m) */
             double lever[3];
             cross(t, sums.m, lever);
             add_scaled(pushed, 1.0, lever);
         }
-        for (int64_t s = 0; s < others; s++)
+        for (int64_t s = 0; s < others && b->has_force; s++)
             out[s] += dot(pushed, b->force[s]);
         if (b->has_torque) {
             double twisted[3];
@@ -472,7 +478,7 @@ void rows_times(const Frame *frame, const double *v, double *out)
         for (int p = 0; p < pull->parts; p++) {
             const Part *part = pull->part + p;
             double x = 0.0, y = 0.0, z = 0.0, twist[3] = {0.0};
-            for (int i = 0; i < part->count; i++) {
+            for (int i = 0; i < part->count && part->has_force; i++) {
                 const double *w = v + 3 * part->columns[i], *l = part->levers + 3 * i;
                 x += w[1] * l[2] - w[2] * l[1], y += w[2] * l[0] - w[0] * l[2], z += w[0] * l[1] - w[1] * l[0];
             }
@@ -502,9 +508,12 @@ void add_rows_transposed(const Frame *frame, const double *y, double *out)
             }
             for (int i = 0; i < part->count; i++) {
                 const int h = frame->column_hinge[part->columns[i]];
-                double turn[3], *to = out + 3 * part->columns[i];
-                cross(part->levers + 3 * i, force, turn);
-                add_scaled(turn, 1.0, torque);
+                double turn[3] = {torque[0], torque[1], torque[2]}, *to = out + 3 * part->columns[i];
+                if (part->has_force) {
+                    double lever[3];
+                    cross(part->levers + 3 * i, force, lever);
+                    add_scaled(turn, 1.0, lever);
+                }
                 if (h < 0)
                     add_scaled(to, 1.0, turn);
                 else if (frame->hinge_free[h])
