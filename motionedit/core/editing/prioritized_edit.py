@@ -14,7 +14,7 @@ from motionedit.core.editing.constraints import (
     recruits_of,
 )
 from motionedit.core.editing.continuity import NO_DISPLACEMENT, smoothed_displacement
-from motionedit.core.editing.prioritized_run import Run
+from motionedit.core.editing.prioritized_run import Run, Solved
 from motionedit.core.ik.recruiting import Breach, Recruits, breaches, expanded
 from motionedit.core.trace import frame_blocks
 
@@ -166,14 +166,7 @@ def edit_by_priorities(
     recruits, found = recruit(constraints, motion, body, rule=settings.recruiting_rule)
     run = Run(motion, tuple(constraints), tuple(recruits), body, settings)
     if isinstance(settings.smoothing, Passes):
-        state = run.solve(motion, reference=motion, pull_root=False)
-        iterations = state.iterations.copy()
-        for _ in range(settings.smoothing.count):
-            smooth = smoothed_displacement(motion, state.motion, sigma=settings.smoothing.sigma, first=body.first)
-            known = run.after(state, smooth)
-            del state  # of a long motion no more copies are kept than are needed
-            state = run.solve(smooth, reference=smooth, pull_root=True, known=known)
-            del smooth
+        state, iterations = solve_in_passes(run, settings.smoothing)
     else:
         state, iterations = run.solve_as_the_paper(settings.smoothing)
     touched, moved = _changes(motion, state.motion, body.travel)
@@ -188,6 +181,20 @@ def edit_by_priorities(
         recruits=tuple(recruits),
         breaches=tuple(found),
     )
+
+
+def solve_in_passes(run: Run, smoothing: Passes) -> tuple[Solved, IntArray]:
+    """Return the motion solved, smoothed and solved again, and the iterations (F,) of the first solve."""
+    motion = run.motion
+    state = run.solve(motion, reference=motion, pull_root=False)
+    iterations = state.iterations.copy()
+    for _ in range(smoothing.count):
+        smooth = smoothed_displacement(motion, state.motion, sigma=smoothing.sigma, first=run.body.first)
+        known = run.after(state, smooth)
+        del state  # of a long motion no more copies are kept than are needed
+        state = run.solve(smooth, reference=smooth, pull_root=True, known=known)
+        del smooth
+    return state, iterations
 
 
 def _changes(before: Motion, after: Motion, travel: int) -> tuple[BoolArray, BoolArray]:
