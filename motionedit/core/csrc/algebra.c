@@ -247,6 +247,10 @@ void damped_factor(Layer *layer, double *S, const double *b, double largest, dou
         factor_by_eigenvectors(layer, S, b, d, c, rest);
         return;
     }
+    if (d == 0.0) {
+        memset(c, 0, sizeof *c * layer->rank);
+        return;
+    }
     const Dependent rows = dependent_rows(L, layer, rest);
     const double lambda = bound > d ? 0.0 : damping(1.0 / sqrt(squared_inverse(&rows, layer, inverse)), d);
     if (lambda > 0.0)

@@ -85,14 +85,18 @@ static double beyond(const Frame *frame, int64_t h, const double *step, double *
 static void descend_within_limits(Frame *frame, double gain, double anneal)
 {
     const Problem *problem = frame->problem;
+    const int pulls = length(frame->z, unknowns(frame)) > AT_REST; /* at first the reference is where the frame starts */
     memset(frame->hinge_free, 1, problem->hinges);
     memset(frame->hinge_fixed, 0, sizeof *frame->hinge_fixed * problem->hinges);
     for (int round = 0;; round++) {
         int out = 0;
         descend(frame, anneal);
-        memcpy(frame->home, frame->z, sizeof *frame->z * unknowns(frame));
-        on_free_axes(frame, frame->home);
-        off_layers(frame, frame->home);
+        if (pulls) {
+            memcpy(frame->home, frame->z, sizeof *frame->z * unknowns(frame));
+            on_free_axes(frame, frame->home);
+            off_layers(frame, frame->home);
+        } else
+            memset(frame->home, 0, sizeof *frame->home * unknowns(frame));
         compose_step(frame, gain, frame->home, frame->step);
         for (int64_t h = 0; h < problem->hinges && round < LIMIT_ROUNDS; h++) {
             double limited;
@@ -227,9 +231,11 @@ static void solve_frame(Frame *frame, int64_t at)
         attraction(frame, local, translations, own);
         gram(frame);
         double moved = 0.0;
-        if (is_at_rest(frame)) /* for its ranks alone */
-            memset(frame->hinge_free, 1, problem->hinges), descend(frame, anneal);
-        else {
+        if (is_at_rest(frame)) { /* for its ranks alone */
+            memset(frame->hinge_free, 1, problem->hinges);
+            memset(frame->errors, 0, sizeof *frame->errors * problem->rows);
+            descend(frame, anneal);
+        } else {
             descend_within_limits(frame, gain, anneal);
             const double task = task_length(frame);
             accelerate(frame, gain, task);

@@ -39,13 +39,17 @@ class Group:
 
     def with_targets(self, targets: Sequence[Targets]) -> Problem:
         """Return the problem with new targets for the tasks that follow the edited motion."""
+        if not self.following:
+            return self.problem
         layers = [list(layer) for layer in self.problem.layers]
         for layer, place, constraint in self.following:
             each, new = layers[layer][place], targets[constraint]
             if isinstance(each.task, CenterOfMassTask) and new.positions is not None:
                 task = replace(each.task, targets=new.positions[self.frames - new.first])
                 layers[layer][place] = WeightedTask(task, each.weight)
-        return replace(self.problem, layers=tuple(map(tuple, layers)))
+        problem = replace(self.problem, layers=tuple(map(tuple, layers)))
+        layout = self.problem.layout
+        return problem if layout is None else replace(problem, layout=layout.with_targets(problem))
 
 
 def hinge_columns(hinges: Sequence[Hinge], joints: IntArray) -> HingeColumns:

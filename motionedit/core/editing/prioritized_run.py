@@ -24,7 +24,7 @@ from motionedit.core.editing.continuity import filtered_root
 from motionedit.core.editing.prioritized_groups import Group, hinge_columns, spans_of
 from motionedit.core.editing.sight import Sight, joints_named, sight_of
 from motionedit.core.ik.kernel import Layout
-from motionedit.core.ik.layered_solver import Problem, Reference, WeightedTask, improve
+from motionedit.core.ik.layered_solver import Problem, Reference, WeightedTask, solve_layers
 from motionedit.core.ik.recruiting import Recruits
 from motionedit.core.ik.tasks import Columns
 from motionedit.core.motion import Motion
@@ -256,7 +256,7 @@ class Run:
     ) -> None:
         """Solve frames of `solved` from where they are, in place."""
         root = np.ascontiguousarray(reference.translations[:, self.place]) if pull_root and self._travels else None
-        solution = improve(
+        solution = solve_layers(
             problem,
             solved.motion,
             Reference(reference.rotations, root),

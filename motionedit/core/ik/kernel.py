@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -42,11 +42,16 @@ class Layout:
     nodes: tuple[NDArray[Any], ...]
     tasks: tuple[NDArray[Any], ...]
     hinges: tuple[NDArray[Any], ...]
+    targets: FloatArray
 
     @classmethod
     def of(cls, problem: Problem) -> Layout:
         """Return the layout of a problem."""
         return _layout(problem)
+
+    def with_targets(self, problem: Problem) -> Layout:
+        """Return the layout of a problem that differs in its targets alone."""
+        return replace(self, targets=_targets(problem))
 
 
 def solve(
@@ -58,7 +63,7 @@ def solve(
     in_order: bool,
     threads: int,
 ) -> None:
-    """Solve those `frames` of a motion that are not converged from where they are; see `layered_solver.improve`."""
+    """Solve those `frames` of a motion that are not converged from where they are, as `solve_layers`."""
     count, motion = len(frames), solution.motion
     layout = problem.layout or Layout.of(problem)
     pulls_root = reference.root is not None
@@ -71,7 +76,7 @@ def solve(
         ),
         *layout.nodes,
         *layout.tasks,
-        _targets(problem),
+        layout.targets,
         *layout.hinges,
         _integers(frames),
         _numbers(reference.rotations),
@@ -209,6 +214,7 @@ def _layout(problem: Problem) -> Layout:
             np.ascontiguousarray([row.recruited for row in rows], dtype=np.uint8),
         ),
         hinges=(_integers(hinges.places), _numbers(np.concatenate((hinges.axes, hinges.limits), axis=1))),
+        targets=_targets(problem),
     )
 
 

@@ -48,7 +48,7 @@ BLOCK = 1024
 def solve(
     problem: Problem, solution: LayeredSolution, reference: Reference, frames: IntArray, *, in_order: bool
 ) -> None:
-    """Solve those `frames` of a motion that are not converged from where they are; see `layered_solver.improve`."""
+    """Solve those `frames` of a motion that are not converged from where they are, as `solve_layers`."""
     whole = solution.motion
     part = Motion(whole.skeleton, whole.rotations[frames], whole.translations[frames], whole.frame_time)
     root = None if reference.root is None else reference.root[frames]

@@ -22,11 +22,11 @@ import numpy as np
 
 from motionedit.core.compiled import compiled
 from motionedit.core.ik import kernel
-from motionedit.core.motion import Motion
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.ik.tasks import Columns, Task
+    from motionedit.core.motion import Motion
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +61,7 @@ class Problem:
         Gain of z.
     max_iterations : int
     layout : kernel.Layout or None
-        The problem as the compiled solver has it, where it was laid out before; only the targets are read anew.
+        The problem as the compiled solver has it, where it was laid out before.
     """
 
     columns: Columns
@@ -93,31 +93,6 @@ class LayeredSolution:
 
 def solve_layers(
     problem: Problem,
-    start: Motion,
-    reference: Reference,
-    *,
-    done: BoolArray | None = None,
-    in_order: bool = False,
-    threads: int = 1,
-) -> LayeredSolution:
-    """Return the frames of `start` moved so that the layers are met, each as far as those above it allow.
-
-    Parameters
-    ----------
-    done : shape (N,), optional
-        Frames that are known to need nothing: they stay as they are, converged, without iterations and ranks.
-    in_order : bool
-        The frames follow each other, and each begins where the one before ended, in what the columns move: eq. (4).
-    threads : int
-        Frames are shared out among so many threads where the compiled solver runs; the result does not depend on it.
-    """
-    motion = Motion(start.skeleton, start.rotations.copy(), start.translations.copy(), start.frame_time)
-    frames = np.arange(len(start))
-    return improve(problem, motion, reference, frames, done=done, in_order=in_order, threads=threads)
-
-
-def improve(
-    problem: Problem,
     motion: Motion,
     reference: Reference,
     frames: IntArray,
@@ -126,9 +101,22 @@ def improve(
     in_order: bool = False,
     threads: int = 1,
 ) -> LayeredSolution:
-    """Solve N frames, shape (N,), of a motion that the caller owns, in its own memory; else as `solve_layers`.
+    """Move frames of a motion so that the layers are met, each as far as those above it allow.
 
-    The problem has N frames, the reference as many as the motion; the solution's arrays have N rows.
+    Parameters
+    ----------
+    motion : Motion
+        The caller's own: it is changed in place, so that of a long one there is no copy.
+    reference : Reference
+        Of as many frames as the motion.
+    frames : shape (N,)
+        Which frames the problem is about.
+    done : shape (N,), optional
+        Frames that are known to need nothing: they stay as they are, converged, without iterations and ranks.
+    in_order : bool
+        The frames follow each other, and each begins where the one before ended, in what the columns move: eq. (4).
+    threads : int
+        Frames are shared out among so many threads where the compiled solver runs; the result does not depend on it.
     """
     solution = LayeredSolution(
         motion,
