@@ -14,7 +14,10 @@
 #define SWEEPS 30
 
 /* L, the diagonal, and the most that any of the solutions takes. */
-size_t factor_scratch(int k) { return (size_t)(3 * k * k + 3 * k); }
+size_t factor_scratch(int k)
+{
+    return (size_t)(3 * k * k + 3 * k);
+}
 
 /* lambda by s = 1 / |A~^+|_F, which the smallest kept singular value exceeds, and the length d of b over b_max. */
 static double damping(double s, double d)

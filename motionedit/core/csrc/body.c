@@ -42,7 +42,9 @@ static void weigh(Frame *frame)
     }
 }
 
-/* World transforms: p_j = p_parent + R_parent t_j, R_j = R_parent R_local. local: shape (J, 4), translations: (P, 3). */
+/* World transforms: p_j = p_parent + R_parent t_j, R_j = R_parent R_local.
+
+   local: shape (J, 4), translations: shape (P, 3). */
 void forward(Frame *frame, const double *local, const double *translations)
 {
     const Problem *problem = frame->problem;
@@ -74,7 +76,8 @@ void world_quaternion(const Frame *frame, const double *local, int64_t node, dou
         q_multiply(local + 4 * frame->problem->node[i].joint, q, q);
 }
 
-/* z at frame `own` of the motion: the world-axis increments that bring the columns back to the reference, hinges along their axes alone. */
+/* z at frame `own` of the motion: the world-axis increments that bring the columns back to the reference, hinges along
+   their axes alone. */
 void attraction(Frame *frame, const double *local, const double *translations, int64_t own)
 {
     const Problem *problem = frame->problem;

@@ -11,8 +11,9 @@
 
        C_l = J_l Q_above^T,   S_l = G_ll - C_l C_l^T,   Q_l = B_l (J_l - C_l Q_above)
 
-   Lengths are metres at leg length 0.85 m, angles radians. Symbols: F frames of a motion, N of them to be solved, J joints, K columns (joints that turn),
-   n = 3 K + 3 unknowns, T tasks, R rows, L layers, H hinges. */
+   Lengths are metres at leg length 0.85 m, angles radians. Symbols: F frames of a motion, N of them to be solved,
+   J joints, P of them with translations, K columns (joints that turn), n = 3 K + 3 unknowns, T tasks, R rows, L layers,
+   H hinges. */
 
 #ifndef MOTIONEDIT_LAYERED_H
 #define MOTIONEDIT_LAYERED_H
@@ -39,10 +40,10 @@ typedef struct {
     int64_t axes[3];                       /* which of the targets' axes count, `rows` of them */
     int64_t width;                         /* numbers a target has: 3, 4, or 0 for none */
     double weight;
-    double offset[3];     /* of the point, in its joint's frame */
-    double measure[3][3]; /* the axes that count, rows */
-    double axis[3];       /* what an aim looks along, in its joint's frame */
-    const double *targets; /* shape (N, width) */
+    double offset[3];         /* of the point, in its joint's frame */
+    double measure[3][3];     /* the axes that count, rows */
+    double axis[3];           /* what an aim looks along, in its joint's frame */
+    const double *targets;    /* shape (N, width) */
     const uint8_t *recruited; /* shape (K,) */
 } Task;
 
@@ -83,8 +84,8 @@ int smooth_rotations(const double *before, const double *after, int64_t frames, 
 /* What a task pulls at: a force and a torque for each of its rows, on the columns of a chain. */
 typedef struct {
     int count, root;
-    int *columns;    /* shape (count,), growing */
-    double *levers;  /* shape (count, 3) */
+    int *columns;                     /* shape (count,), growing */
+    double *levers;                   /* shape (count, 3) */
     double force[3][3], torque[3][3]; /* per row */
     int has_force, has_torque, plain; /* plain: the world's axes times one weight, and no torque */
 } Part;
@@ -117,17 +118,17 @@ typedef struct {
     Pull *pulls;
     Shared *shared;
     int shared_count, weighs;
-    int *column_hinge;      /* shape (K,): its hinge, or -1 */
-    int *hinge_felt, *hinge_felt_count; /* shapes (H, R), (H,): the rows that feel it turn */
+    int *column_hinge;                              /* shape (K,): its hinge, or -1 */
+    int *hinge_felt, *hinge_felt_count;             /* shapes (H, R), (H,): the rows that feel it turn */
     double *hinge_axes, *hinge_angles, *hinge_rows; /* shapes (H, 3), (H,), (H, R) */
     uint8_t *hinge_free, *hinge_free_before;        /* shape (H,) */
     double *hinge_fixed;                            /* rad, shape (H,) */
     Layer *layers;
     double *errors, *G, *G_frozen, *C; /* shapes (R,), (R, R), (R, R), (R, R) */
-    const double *G_free;             /* G, or G_frozen where hinges are on their limits */
-    double *c, *scratch_rank;         /* rank space, shape (R,) */
-    double *scratch_rows;             /* shape (3 R,) */
-    double *algebra;                  /* scratch of the factorization */
+    const double *G_free;              /* G, or G_frozen where hinges are on their limits */
+    double *c, *scratch_rank;          /* rank space, shape (R,) */
+    double *scratch_rows;              /* shape (3 R,) */
+    double *algebra;                   /* scratch of the factorization */
     double *z, *home, *step, *fast;    /* shape (n,) */
     double *home_before, *step_before; /* shape (n,) */
     double task_before;

@@ -17,7 +17,7 @@ static void times_B(const Layer *layer, const double *rows, double *ordered, dou
         q[p] = dot_product(layer->B + p * layer->rows, ordered, layer->triangular ? p + 1 : layer->rows);
 }
 
-/* Numbers of the layer's rows less what the layers above account for: rows - C_l q_above, in `rest` where it differs. */
+/* Numbers of the layer's rows less what the layers above account for: rows - C_l q_above, in `rest` if it differs. */
 static const double *less_above(
     const Frame *frame, const Layer *layer, const double *rows, const double *above, double *rest)
 {
@@ -128,8 +128,8 @@ void out_of_rank_space(const Frame *frame, double *q, double *y)
         double *own = y + layer->first_row, *ordered = frame->scratch_rows;
         memset(ordered, 0, sizeof *ordered * layer->rows);
         for (int p = 0; p < layer->rank; p++)
-            add_multiple(ordered, q[layer->first_rank + p], layer->B + p * layer->rows,
-                layer->triangular ? p + 1 : layer->rows);
+            add_multiple(
+                ordered, q[layer->first_rank + p], layer->B + p * layer->rows, layer->triangular ? p + 1 : layer->rows);
         for (int s = 0; s < layer->rows; s++)
             own[layer->order[s]] = ordered[s];
         for (int s = 0; s < layer->rows && layer->first_rank > 0; s++) {

@@ -1,7 +1,7 @@
 /* The Python module `_compiled`: buffers in, work without the interpreter's lock, results in buffers that came in.
 
-   core/ik/kernel.py lays out the buffers of `solve`, core/kinematics.py and core/editing/continuity.py those of the others;
-   sizes are checked here, so that a slip there is an error and not a crash. */
+   core/ik/kernel.py lays out the buffers of `solve`, core/kinematics.py and core/editing/continuity.py those of the
+   others; sizes are checked here, so that a slip there is an error and not a crash. */
 
 #define PY_SSIZE_T_CLEAN
 #define Py_LIMITED_API 0x030B0000
@@ -13,12 +13,42 @@
 #include <string.h>
 
 enum {
-    SIZES, NODE_INTEGERS, NODE_NUMBERS, COLUMN_NODES, TASK_INTEGERS, TASK_NUMBERS, RECRUITED, TARGETS, HINGE_COLUMNS,
-    HINGE_NUMBERS, FRAMES, REFERENCE_ROTATIONS, REFERENCE_ROOT, ROTATIONS, TRANSLATIONS, ITERATIONS, CONVERGED, RANKS, BUFFERS
+    SIZES,
+    NODE_INTEGERS,
+    NODE_NUMBERS,
+    COLUMN_NODES,
+    TASK_INTEGERS,
+    TASK_NUMBERS,
+    RECRUITED,
+    TARGETS,
+    HINGE_COLUMNS,
+    HINGE_NUMBERS,
+    FRAMES,
+    REFERENCE_ROTATIONS,
+    REFERENCE_ROOT,
+    ROTATIONS,
+    TRANSLATIONS,
+    ITERATIONS,
+    CONVERGED,
+    RANKS,
+    BUFFERS
 };
 enum {
-    N_FRAMES, N_NODES, N_COLUMNS, N_TASKS, N_HINGES, N_LAYERS, N_JOINTS, N_TRANSLATED, ROOT, IN_ORDER, MOVES_ROOT,
-    PULLS_ROOT, MAX_ITERATIONS, MOTION_FRAMES, N_SIZES
+    N_FRAMES,
+    N_NODES,
+    N_COLUMNS,
+    N_TASKS,
+    N_HINGES,
+    N_LAYERS,
+    N_JOINTS,
+    N_TRANSLATED,
+    ROOT,
+    IN_ORDER,
+    MOVES_ROOT,
+    PULLS_ROOT,
+    MAX_ITERATIONS,
+    MOTION_FRAMES,
+    N_SIZES
 };
 enum { NODE_INTEGER_COUNT = 4, NODE_NUMBER_COUNT = 7, TASK_INTEGER_COUNT = 12, TASK_NUMBER_COUNT = 16 };
 
@@ -26,7 +56,8 @@ static int has_size(const Py_buffer *buffer, int64_t count, size_t bytes, const 
 {
     if (count >= 0 && (size_t)buffer->len == (size_t)count * bytes)
         return 1;
-    PyErr_Format(PyExc_ValueError, "%s has %zd bytes instead of %zd", name, buffer->len, (Py_ssize_t)((size_t)count * bytes));
+    PyErr_Format(
+        PyExc_ValueError, "%s has %zd bytes instead of %zd", name, buffer->len, (Py_ssize_t)((size_t)count * bytes));
     return 0;
 }
 
@@ -57,7 +88,8 @@ static int read_problem(Problem *problem, Py_buffer *buffers, void **memory)
         return 0;
     const int64_t *sizes = buffers[SIZES].buf;
     const int64_t frames = sizes[N_FRAMES], nodes = sizes[N_NODES], columns = sizes[N_COLUMNS], tasks = sizes[N_TASKS];
-    const int64_t whole = sizes[MOTION_FRAMES], hinges = sizes[N_HINGES], joints = sizes[N_JOINTS], moved = sizes[N_TRANSLATED];
+    const int64_t whole = sizes[MOTION_FRAMES], hinges = sizes[N_HINGES], joints = sizes[N_JOINTS],
+                  moved = sizes[N_TRANSLATED];
     const size_t integer = sizeof(int64_t), number = sizeof(double);
     if (!has_size(buffers + NODE_INTEGERS, nodes * NODE_INTEGER_COUNT, integer, "node integers") ||
         !has_size(buffers + NODE_NUMBERS, nodes * NODE_NUMBER_COUNT, number, "node numbers") ||
@@ -104,13 +136,31 @@ static int read_problem(Problem *problem, Py_buffer *buffers, void **memory)
         memcpy(hinge[h].limits, numbers + 3, sizeof hinge[h].limits);
     }
     *problem = (Problem){
-        .nodes = nodes, .columns = columns, .tasks = tasks, .hinges = hinges, .layers = sizes[N_LAYERS],
-        .joints = joints, .translated = moved, .rows = rows, .root = sizes[ROOT], .in_order = sizes[IN_ORDER],
-        .moves_root = sizes[MOVES_ROOT], .pulls_root = sizes[PULLS_ROOT], .max_iterations = sizes[MAX_ITERATIONS],
-        .node = node, .column_node = buffers[COLUMN_NODES].buf, .task = task, .hinge = hinge,
-        .frames = buffers[FRAMES].buf, .reference_rotations = buffers[REFERENCE_ROTATIONS].buf, .reference_root = buffers[REFERENCE_ROOT].buf,
-        .rotations = buffers[ROTATIONS].buf, .translations = buffers[TRANSLATIONS].buf,
-        .iterations = buffers[ITERATIONS].buf, .converged = buffers[CONVERGED].buf, .ranks = buffers[RANKS].buf,
+        .nodes = nodes,
+        .columns = columns,
+        .tasks = tasks,
+        .hinges = hinges,
+        .layers = sizes[N_LAYERS],
+        .joints = joints,
+        .translated = moved,
+        .rows = rows,
+        .root = sizes[ROOT],
+        .in_order = sizes[IN_ORDER],
+        .moves_root = sizes[MOVES_ROOT],
+        .pulls_root = sizes[PULLS_ROOT],
+        .max_iterations = sizes[MAX_ITERATIONS],
+        .node = node,
+        .column_node = buffers[COLUMN_NODES].buf,
+        .task = task,
+        .hinge = hinge,
+        .frames = buffers[FRAMES].buf,
+        .reference_rotations = buffers[REFERENCE_ROTATIONS].buf,
+        .reference_root = buffers[REFERENCE_ROOT].buf,
+        .rotations = buffers[ROTATIONS].buf,
+        .translations = buffers[TRANSLATIONS].buf,
+        .iterations = buffers[ITERATIONS].buf,
+        .converged = buffers[CONVERGED].buf,
+        .ranks = buffers[RANKS].buf,
     };
     return 1;
 }
@@ -122,8 +172,9 @@ static PyObject *solve(PyObject *self, PyObject *arguments)
     double attraction;
     long long begin, end;
     (void)self;
-    if (!PyArg_ParseTuple(arguments, "y*y*y*y*y*y*y*y*y*y*y*y*y*w*w*w*w*w*dLL", b, b + 1, b + 2, b + 3, b + 4, b + 5, b + 6,
-            b + 7, b + 8, b + 9, b + 10, b + 11, b + 12, b + 13, b + 14, b + 15, b + 16, b + 17, &attraction, &begin, &end))
+    if (!PyArg_ParseTuple(arguments, "y*y*y*y*y*y*y*y*y*y*y*y*y*w*w*w*w*w*dLL", b, b + 1, b + 2, b + 3, b + 4, b + 5,
+            b + 6, b + 7, b + 8, b + 9, b + 10, b + 11, b + 12, b + 13, b + 14, b + 15, b + 16, b + 17, &attraction,
+            &begin, &end))
         return NULL;
     Problem problem;
     void *memory = NULL;
@@ -131,11 +182,8 @@ static PyObject *solve(PyObject *self, PyObject *arguments)
     if (read_problem(&problem, buffers, &memory)) {
         problem.attraction = attraction;
         if (0 <= begin && begin <= end && end <= ((int64_t *)buffers[SIZES].buf)[N_FRAMES]) {
-            Py_BEGIN_ALLOW_THREADS
-            status = solve_frames(&problem, begin, end);
-            Py_END_ALLOW_THREADS
-            if (status < 0)
-                PyErr_NoMemory();
+            Py_BEGIN_ALLOW_THREADS status = solve_frames(&problem, begin, end);
+            Py_END_ALLOW_THREADS if (status < 0) PyErr_NoMemory();
         } else
             PyErr_SetString(PyExc_ValueError, "no such frames");
     }
@@ -165,9 +213,8 @@ static PyObject *forward_frames(PyObject *self, PyObject *arguments)
                      has_size(b + POSITIONS, 3 * poses, number, "positions") &&
                      has_size(b + WORLD, 4 * poses, number, "world rotations");
     if (fits) {
-        Py_BEGIN_ALLOW_THREADS
-        world_poses(b[PARENTS].buf, b[PLACES].buf, b[OFFSETS].buf, frames, joints, translated, b[LOCAL].buf,
-            b[MOVED].buf, b[POSITIONS].buf, b[WORLD].buf);
+        Py_BEGIN_ALLOW_THREADS world_poses(b[PARENTS].buf, b[PLACES].buf, b[OFFSETS].buf, frames, joints, translated,
+            b[LOCAL].buf, b[MOVED].buf, b[POSITIONS].buf, b[WORLD].buf);
         Py_END_ALLOW_THREADS
     }
     for (int i = 0; i < COUNT; i++)
@@ -196,12 +243,9 @@ static PyObject *smooth(PyObject *self, PyObject *arguments)
         if (radius < 0 || first < 0 || frames - first <= radius)
             PyErr_SetString(PyExc_ValueError, "too few frames for the filter");
         else {
-            Py_BEGIN_ALLOW_THREADS
-            status = smooth_rotations(
+            Py_BEGIN_ALLOW_THREADS status = smooth_rotations(
                 b[BEFORE].buf, b[AFTER].buf, frames, joints, first, radius, b[TAPS].buf, none, b[OUT].buf);
-            Py_END_ALLOW_THREADS
-            if (status < 0)
-                PyErr_NoMemory();
+            Py_END_ALLOW_THREADS if (status < 0) PyErr_NoMemory();
         }
     }
     for (int i = 0; i < COUNT; i++)
@@ -221,7 +265,18 @@ static PyMethodDef methods[] = {
 static PyModuleDef_Slot slots[] = {{0, NULL}};
 
 static struct PyModuleDef definition = {
-    PyModuleDef_HEAD_INIT, "_compiled", "The layered solver, forward kinematics and smoothing in C.", 0, methods, slots, NULL, NULL, NULL,
+    PyModuleDef_HEAD_INIT,
+    "_compiled",
+    "The layered solver, forward kinematics and smoothing in C.",
+    0,
+    methods,
+    slots,
+    NULL,
+    NULL,
+    NULL,
 };
 
-PyMODINIT_FUNC PyInit__compiled(void) { return PyModuleDef_Init(&definition); }
+PyMODINIT_FUNC PyInit__compiled(void)
+{
+    return PyModuleDef_Init(&definition);
+}

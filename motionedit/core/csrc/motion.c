@@ -42,7 +42,8 @@ static void low_pass(double *padded, int64_t frames, int64_t width, int64_t radi
     for (int64_t i = 1; i <= radius; i++)
         for (int64_t a = 0; a < width; a++) {
             rows[-i * width + a] = 2.0 * rows[a] - rows[i * width + a];
-            rows[(frames - 1 + i) * width + a] = 2.0 * rows[(frames - 1) * width + a] - rows[(frames - 1 - i) * width + a];
+            rows[(frames - 1 + i) * width + a] =
+                2.0 * rows[(frames - 1) * width + a] - rows[(frames - 1 - i) * width + a];
         }
     for (int64_t i = 0; i < frames * width; i++)
         out[i] = taps[0] * rows[i];

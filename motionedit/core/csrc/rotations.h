@@ -1,12 +1,15 @@
-/* Vectors (x, y, z), unit quaternions (w, x, y, z) as in motionedit/core/rotations.py, and rotation matrices, row-major;
-   angles in radians. */
+/* Vectors (x, y, z), unit quaternions (w, x, y, z) as in motionedit/core/rotations.py, and rotation matrices,
+   row-major; angles in radians. */
 
 #ifndef MOTIONEDIT_ROTATIONS_H
 #define MOTIONEDIT_ROTATIONS_H
 
 #include <math.h>
 
-static inline double dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static inline double dot(const double *a, const double *b)
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 static inline void cross(const double *a, const double *b, double *out)
 {
@@ -39,7 +42,8 @@ static inline void q_conjugate(const double *q, double *out)
 static inline void matrix_of(const double *q, double *R)
 {
     const double w = q[0], x = q[1], y = q[2], z = q[3];
-    const double xx = x * x, yy = y * y, zz = z * z, xy = x * y, xz = x * z, yz = y * z, wx = w * x, wy = w * y, wz = w * z;
+    const double xx = x * x, yy = y * y, zz = z * z, xy = x * y, xz = x * z, yz = y * z, wx = w * x, wy = w * y,
+                 wz = w * z;
     R[0] = 1.0 - 2.0 * (yy + zz), R[1] = 2.0 * (xy - wz), R[2] = 2.0 * (xz + wy);
     R[3] = 2.0 * (xy + wz), R[4] = 1.0 - 2.0 * (xx + zz), R[5] = 2.0 * (yz - wx);
     R[6] = 2.0 * (xz - wy), R[7] = 2.0 * (yz + wx), R[8] = 1.0 - 2.0 * (xx + yy);
@@ -78,8 +82,11 @@ static inline void turned_back(const double *R, const double *v, double *out)
 static inline void q_exp(const double *v, double *out)
 {
     const double t = -0.25 * dot(v, v); /* -h^2, h half the angle */
-    const double c = 1.0 + t / 2 * (1.0 + t / 12 * (1.0 + t / 30 * (1.0 + t / 56 * (1.0 + t / 90 * (1.0 + t / 132)))));
-    const double s = 1.0 + t / 6 * (1.0 + t / 20 * (1.0 + t / 42 * (1.0 + t / 72 * (1.0 + t / 110 * (1.0 + t / 156)))));
+    const double c =
+        1.0 + t * (1.0 / 2 + t * (1.0 / 24 + t * (1.0 / 720 +
+                                                     t * (1.0 / 40320 + t * (1.0 / 3628800 + t * (1.0 / 479001600))))));
+    const double s =
+        1.0 + t * (1.0 / 6 + t * (1.0 / 120 + t * (1.0 / 5040 + t * (1.0 / 362880 + t * (1.0 / 39916800)))));
     out[0] = c, out[1] = 0.5 * s * v[0], out[2] = 0.5 * s * v[1], out[3] = 0.5 * s * v[2];
 }
 

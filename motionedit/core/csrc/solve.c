@@ -31,7 +31,10 @@ static double length(const double *v, int64_t n)
     return sqrt(sum);
 }
 
-static int64_t unknowns(const Frame *frame) { return 3 * frame->problem->columns + 3; }
+static int64_t unknowns(const Frame *frame)
+{
+    return 3 * frame->problem->columns + 3;
+}
 
 /* v <- v P, what no layer sees: v - Q^T (Q v). Hinges on their limits take no part. */
 static void off_layers(Frame *frame, double *v)
@@ -85,7 +88,8 @@ static double beyond(const Frame *frame, int64_t h, const double *step, double *
 static void descend_within_limits(Frame *frame, double gain, double anneal)
 {
     const Problem *problem = frame->problem;
-    const int pulls = length(frame->z, unknowns(frame)) > AT_REST; /* at first the reference is where the frame starts */
+    const int pulls =
+        length(frame->z, unknowns(frame)) > AT_REST; /* at first the reference is where the frame starts */
     memset(frame->hinge_free, 1, problem->hinges);
     memset(frame->hinge_fixed, 0, sizeof *frame->hinge_fixed * problem->hinges);
     for (int round = 0;; round++) {

@@ -1,4 +1,4 @@
-/* Tasks: their errors, their rows as forces and torques on chains of columns, and G = J J^T from levers ([PRIO] 3, 4). */
+/* Tasks: errors, rows as forces and torques on chains of columns, and G = J J^T from levers ([PRIO] 3, 4). */
 
 #include "layered.h"
 #include "rotations.h"
