@@ -61,6 +61,7 @@ def real(lab: Lab, clips: Path) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = [HEADINGS]
     for what, clip, constraints in (
         ("reach, CMU 12_01", walk, [*foot_plants(walk), *reach(walk)]),
+        ("reach, CMU 12_01, CoM's height, too", walk, [*foot_plants(walk), *reach(walk, axes=("x", "y", "z"))]),
         ("step, CMU 12_01", walk, step(walk)),
         ("karate, mawashi-geri", kick, karate(kick)),
         ("stairs, CMU 07_04", climb, stairs(climb)),
@@ -167,10 +168,10 @@ def leg(clip: Path) -> float:
     return find_anatomy(read_clip(clip).motion.skeleton).leg_length
 
 
-def reach(clip: Path) -> list[dict[str, Any]]:
-    """Return a hand that reaches up and out in mid-clip, above the CoM on the ground plane.
+def reach(clip: Path, *, axes: Sequence[str] = ("x", "z")) -> list[dict[str, Any]]:
+    """Return a hand that reaches up and out in mid-clip, above the CoM, by default on the ground plane.
 
-    A foot that may not roll takes its height from the leg, and so the CoM's from it: that is not asked to stay.
+    Feet that may not roll make the legs lift and lower the body: its height cannot stay as it was for nothing.
     """
     skeleton = read_clip(clip).motion.skeleton
     arms = find_anatomy(skeleton).arms
@@ -179,7 +180,7 @@ def reach(clip: Path) -> list[dict[str, Any]]:
     shift = [0.2 * size, 0.5 * size, 0.2 * size]
     return [
         {"type": "position", "effector": hand, "priority": 4, "points": [{"at": at, "shift": shift}]},
-        {"type": "com", "priority": 2, "relative_to": "world", "axes": ["x", "z"]},
+        {"type": "com", "priority": 2, "relative_to": "world", "axes": list(axes)},
     ]
 
 

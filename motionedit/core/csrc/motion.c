@@ -66,7 +66,7 @@ static void q_exp_any(const double *v, double *out)
 
 /* Rotations plus their low-passed displacement, d = log(q_before^-1 q_after), joint by joint.
 
-   before, after, out: shape (frames, joints, 4). Frames before `first` keep their displacement and lend none; components
+   before, after, out: shape (frames, joints, 4). Frames before `first` keep their displacement, lend none; components
    below `none` (rad) are 0, and joints without any stay as they were before. Returns -1 where memory ran out. */
 int smooth_rotations(const double *before, const double *after, int64_t frames, int64_t joints, int64_t first,
     int64_t radius, const double *taps, double none, double *out)
