@@ -15,7 +15,15 @@ from motionedit.core.anatomy import find_anatomy
 from motionedit.core.bvh import read_clip
 from motionedit.core.center_of_mass import center_of_mass, find_masses
 from motionedit.core.editing.constraints import Constraint
-from motionedit.core.editing.prioritized_edit import Body, LayeredSettings, Passes, PrioritizedEdit, edit_by_priorities
+from motionedit.core.editing.prioritized_edit import (
+    Body,
+    LayeredSettings,
+    Passes,
+    PrioritizedEdit,
+    edit_by_priorities,
+    recruit,
+)
+from motionedit.core.editing.prioritized_run import Run
 from motionedit.core.editing.trajectories import ControlPoint, position_targets
 from motionedit.core.ground import travel_joint
 from motionedit.core.hinges import find_hinges
@@ -23,7 +31,7 @@ from motionedit.core.kinematics import Effector, WorldPoses, forward
 from motionedit.core.motion import Motion, scaled
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.center_of_mass import Masses
@@ -33,7 +41,7 @@ COM = -1
 WALK = Path(__file__).resolve().parents[2] / "data" / "walk.bvh"
 LEG = 0.85
 # The reach: metres from where the wrist is, the frames in which it stands still there, and frames to either side.
-SHIFT, HELD, EASE = (0.3, 0.6, 0.2), (66, 72), 16.0
+PLACE, HELD, EASE = (58.0, 150.0, 322.0), (66, 72), 17.5
 # Metres: a task is met when it is as near.
 TOLERANCE = 1e-3
 CAP = 40
@@ -80,6 +88,15 @@ class Job:
         settings = LayeredSettings(smoothing=Passes(0, 1.0), max_iterations=self.cap)
         return edit_by_priorities(self.motion, self.constraints, body or self.body, settings)
 
+    def solver(self, body: Body | None = None) -> Callable[[], object]:
+        """Return a function that solves every frame by this project; as the peers', its targets are made before."""
+        settings = LayeredSettings(smoothing=Passes(0, 1.0), max_iterations=self.cap)
+        bones = body or self.body
+        recruits, _ = recruit(self.constraints, self.motion, bones, rule="expand")
+        run = Run(self.motion, self.constraints, tuple(recruits), bones, settings)
+        run.solve(self.motion, reference=self.motion, pull_root=False)
+        return lambda: run.solve(self.motion, reference=self.motion, pull_root=False)
+
     def errors(self, edit: PrioritizedEdit) -> FloatArray:
         """Return how far the edit is from its targets, shape (F, T), in metres, NaN where not active."""
         off = np.linalg.norm(places(forward(edit.motion), self.body.masses, self.joints) - self.targets, axis=2)
@@ -96,13 +113,12 @@ def reach() -> Job:
     clip = read_clip(WALK)
     anatomy = find_anatomy(clip.motion.skeleton)
     motion = scaled(clip.motion, LEG / anatomy.leg_length)
-    # To an anatomy of another size no table of segments fits: each bone weighs as much as it is long, with all solvers.
-    masses = find_masses(motion.skeleton, anatomy)
+    masses = find_masses(motion.skeleton, find_anatomy(motion.skeleton))
     body = Body(masses, tuple(find_hinges(motion, anatomy, first=0)), travel_joint(motion), 0)
     here = np.zeros(3)
     feet = [Constraint("position", name, 10, 1.0, Effector(j, here)) for name, j in anatomy.foot_points]
     wrist = Effector(motion.skeleton.names.index("LeftHand"), here)
-    point = ControlPoint("hold", *HELD, shift=np.array(SHIFT))
+    point = ControlPoint("hold", *HELD, position=LEG / anatomy.leg_length * np.array(PLACE))
     hand = Constraint("position", "hand", 4, 1.0, wrist, points=(point,), ease_in=EASE, ease_out=EASE)
     return _job(motion, body, [*feet, hand, Constraint("com", "balance", 2, 1.0, Effector(0, here))])
 

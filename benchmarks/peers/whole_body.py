@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
+from unittest.mock import patch
 
 import jobs
 import numpy as np
@@ -16,12 +17,12 @@ from motionedit.core.compiled import CHOICE, solver_name
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
+    from contextlib import AbstractContextManager
     from pathlib import Path
 
     from tables import Table
 
     from motionedit.core.arrays import FloatArray
-    from motionedit.core.editing.prioritized_edit import PrioritizedEdit
 
 ROUNDS = 3
 # Seconds that a peer solves the clip again and again in one turn.
@@ -104,23 +105,23 @@ def _contenders(job: Job) -> dict[str, Callable[[], object]]:
     """Return our own solves by name: as by default, with free knees and elbows, and without the compiled solver."""
     free = replace(job.body, hinges=())
     found: dict[str, Callable[[], object]] = {
-        f"motionedit, {solver_name()}, knees and elbows as hinges": job.solve,
-        f"motionedit, {solver_name()}, ball joints alone": lambda: job.solve(free),
+        f"motionedit, {solver_name()}, knees and elbows as hinges": job.solver(),
+        f"motionedit, {solver_name()}, ball joints alone": job.solver(free),
     }
     if solver_name() == "compiled":
-        found["motionedit, numpy, knees and elbows as hinges"] = lambda: _without_compiled(job)
+        with _without_compiled():
+            plain = job.solver()
+
+        def by_numpy() -> object:
+            with _without_compiled():
+                return plain()
+
+        found["motionedit, numpy, knees and elbows as hinges"] = by_numpy
     return found
 
 
-def _without_compiled(job: Job) -> PrioritizedEdit:
-    before = os.environ.get(CHOICE)
-    os.environ[CHOICE] = "numpy"
-    try:
-        return job.solve()
-    finally:
-        del os.environ[CHOICE]
-        if before is not None:
-            os.environ[CHOICE] = before
+def _without_compiled() -> AbstractContextManager[object]:
+    return patch.dict(os.environ, {CHOICE: "numpy"})
 
 
 def _speed_table(job: Job, ours: Mapping[str, float], theirs: Mapping[tuple[str, Way], Measured | str]) -> Table:
