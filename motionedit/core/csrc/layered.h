@@ -126,12 +126,11 @@ typedef struct {
     Layer *layers;
     double *errors, *G, *G_frozen, *C; /* shapes (R,), (R, R), (R, R), (R, R) */
     const double *G_free;              /* G, or G_frozen where hinges are on their limits */
-    double *c, *scratch_rank;          /* rank space, shape (R,) */
-    double *scratch_rows;              /* shape (3 R,) */
+    double *c, *Qz, *scratch_rank;     /* rank space, shape (R,) */
+    double *scratch_rows;              /* shape (5 R,) */
     double *algebra;                   /* scratch of the factorization */
     double *z, *home, *step, *fast;    /* shape (n,) */
     double *home_before, *step_before; /* shape (n,) */
-    double task_before;
     int remembers;
 } Frame;
 

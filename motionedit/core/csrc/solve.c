@@ -60,59 +60,94 @@ static void on_free_axes(const Frame *frame, double *v)
     }
 }
 
-/* step = fixed hinges + Q^T c + gain home */
-static void compose_step(Frame *frame, double gain, const double *home, double *step)
+/* v less what the layers see of z, v - Q^T (Q z), where Q z was found for the hinges that are free: z -> home. */
+static void pull_home(Frame *frame)
 {
     const Problem *problem = frame->problem;
     double *y = frame->scratch_rows + 2 * problem->rows;
-    memcpy(frame->scratch_rank, frame->c, sizeof *frame->c * problem->rows);
+    memcpy(frame->home, frame->z, sizeof *frame->z * unknowns(frame));
+    on_free_axes(frame, frame->home);
+    for (int64_t q = 0; q < problem->rows; q++)
+        frame->scratch_rank[q] = -frame->Qz[q];
     out_of_rank_space(frame, frame->scratch_rank, y);
-    for (int64_t i = 0; i < unknowns(frame); i++)
-        step[i] = gain * home[i];
-    add_rows_transposed(frame, y, step);
-    for (int64_t h = 0; h < problem->hinges; h++)
-        if (!frame->hinge_free[h])
-            add_scaled(step + 3 * problem->hinge[h].column, frame->hinge_fixed[h], frame->hinge_axes + 3 * h);
+    add_rows_transposed(frame, y, frame->home);
 }
 
-/* Where a step takes a hinge (rad), and how far beyond its limits that is. */
-static double beyond(const Frame *frame, int64_t h, const double *step, double *limited)
+/* Q z with the hinges that are free, from J z with all of them: a hinge's part is its row times its turn. */
+static void pull_in_rank_space(Frame *frame, const double *Jz)
+{
+    const Problem *problem = frame->problem;
+    double *rest = frame->scratch_rows + 2 * problem->rows;
+    memcpy(rest, Jz, sizeof *rest * problem->rows);
+    for (int64_t h = 0; h < problem->hinges; h++) {
+        const double turn = dot(frame->z + 3 * problem->hinge[h].column, frame->hinge_axes + 3 * h);
+        if (!frame->hinge_free[h])
+            add_multiple(rest, -turn, frame->hinge_rows + h * problem->rows, (int)problem->rows);
+    }
+    into_rank_space(frame, rest, frame->Qz);
+}
+
+/* Where a turn takes a hinge (rad), and how far beyond its limits that is. */
+static double beyond(const Frame *frame, int64_t h, double turn, double *limited)
 {
     const Hinge *hinge = frame->problem->hinge + h;
-    const double after = frame->hinge_angles[h] + dot(step + 3 * hinge->column, frame->hinge_axes + 3 * h);
+    const double after = frame->hinge_angles[h] + turn;
     *limited = fmin(fmax(after, hinge->limits[0]), hinge->limits[1]);
     return fabs(after - *limited);
 }
 
-/* Descend, and again with hinges that would leave their limits set on them; home and step come out. */
+/* Set on their limits the hinges that fixed + gain z + J^T y would take beyond them; returns whether there were any. */
+static int set_on_limits(Frame *frame, double gain, const double *y)
+{
+    const Problem *problem = frame->problem;
+    int out = 0;
+    for (int64_t h = 0; h < problem->hinges; h++) {
+        if (!frame->hinge_free[h])
+            continue;
+        double limited;
+        const double pull = dot(frame->z + 3 * problem->hinge[h].column, frame->hinge_axes + 3 * h);
+        const double *row = frame->hinge_rows + h * problem->rows;
+        if (beyond(frame, h, gain * pull + dot_product(row, y, (int)problem->rows), &limited) > ON_LIMIT) {
+            frame->hinge_fixed[h] = limited - frame->hinge_angles[h];
+            frame->hinge_free[h] = 0;
+            out = 1;
+        }
+    }
+    return out;
+}
+
+/* Descend, and again with hinges that would leave their limits set on them; Q z and the step come out:
+
+   step = fixed hinges + gain z + Q^T (c - gain Q z) = fixed hinges + gain z + J^T y */
 static void descend_within_limits(Frame *frame, double gain, double anneal)
 {
     const Problem *problem = frame->problem;
-    const int pulls =
-        length(frame->z, unknowns(frame)) > AT_REST; /* at first the reference is where the frame starts */
+    double *y = frame->scratch_rows + 3 * problem->rows, *Jz = y + problem->rows, *step = frame->step;
+    /* At first the reference is where the frame starts. */
+    const int pulls = length(frame->z, unknowns(frame)) > AT_REST;
     memset(frame->hinge_free, 1, problem->hinges);
     memset(frame->hinge_fixed, 0, sizeof *frame->hinge_fixed * problem->hinges);
+    memset(frame->Qz, 0, sizeof *frame->Qz * problem->rows);
+    if (pulls)
+        rows_times(frame, frame->z, Jz);
     for (int round = 0;; round++) {
-        int out = 0;
         descend(frame, anneal);
-        if (pulls) {
-            memcpy(frame->home, frame->z, sizeof *frame->z * unknowns(frame));
-            on_free_axes(frame, frame->home);
-            off_layers(frame, frame->home);
-        } else
-            memset(frame->home, 0, sizeof *frame->home * unknowns(frame));
-        compose_step(frame, gain, frame->home, frame->step);
-        for (int64_t h = 0; h < problem->hinges && round < LIMIT_ROUNDS; h++) {
-            double limited;
-            if (frame->hinge_free[h] && beyond(frame, h, frame->step, &limited) > ON_LIMIT) {
-                frame->hinge_fixed[h] = limited - frame->hinge_angles[h];
-                frame->hinge_free[h] = 0;
-                out = 1;
-            }
-        }
-        if (!out)
-            return;
+        if (pulls)
+            pull_in_rank_space(frame, Jz);
+        for (int64_t q = 0; q < problem->rows; q++)
+            frame->scratch_rank[q] = frame->c[q] - gain * frame->Qz[q];
+        out_of_rank_space(frame, frame->scratch_rank, y);
+        if (round == LIMIT_ROUNDS || !set_on_limits(frame, gain, y))
+            break;
     }
+    memcpy(step, frame->z, sizeof *step * unknowns(frame));
+    on_free_axes(frame, step);
+    for (int64_t i = 0; i < unknowns(frame); i++)
+        step[i] *= gain;
+    add_rows_transposed(frame, y, step);
+    for (int64_t h = 0; h < problem->hinges; h++)
+        if (!frame->hinge_free[h])
+            add_scaled(step + 3 * problem->hinge[h].column, frame->hinge_fixed[h], frame->hinge_axes + 3 * h);
 }
 
 /* The length of Q^T c and the fixed hinges, which are orthogonal. */
@@ -132,8 +167,6 @@ static void accelerate(Frame *frame, double gain, double task)
 {
     const Problem *problem = frame->problem;
     const int64_t n = unknowns(frame);
-    if (!frame->remembers || memcmp(frame->hinge_free, frame->hinge_free_before, problem->hinges))
-        return;
     double size = 0.0, along = 0.0;
     for (int64_t i = 0; i < n; i++) {
         const double change = frame->home[i] - frame->home_before[i];
@@ -141,8 +174,7 @@ static void accelerate(Frame *frame, double gain, double task)
         frame->fast[i] = frame->step_before[i] + change;
     }
     const double home = length(frame->home, n);
-    if (size <= NO_CHANGE || !(frame->task_before < LARGEST_TASK_SHARE * length(frame->step_before, n)) ||
-        !(task < LARGEST_TASK_SHARE * home))
+    if (size <= NO_CHANGE || !(task < LARGEST_TASK_SHARE * home))
         return;
     on_free_axes(frame, frame->fast);
     off_layers(frame, frame->fast);
@@ -154,7 +186,8 @@ static void accelerate(Frame *frame, double gain, double task)
         frame->fast[i] = frame->step[i] + gain * (factor * frame->fast[i] - frame->home[i]);
     for (int64_t h = 0; h < problem->hinges; h++) {
         double limited;
-        if (frame->hinge_free[h] && beyond(frame, h, frame->fast, &limited) > ON_LIMIT)
+        const double turn = dot(frame->fast + 3 * problem->hinge[h].column, frame->hinge_axes + 3 * h);
+        if (frame->hinge_free[h] && beyond(frame, h, turn, &limited) > ON_LIMIT)
             return;
     }
     memcpy(frame->step, frame->fast, sizeof *frame->step * n);
@@ -174,14 +207,18 @@ static double bound_turns(Frame *frame)
     return LARGEST_TURN;
 }
 
-static void remember(Frame *frame, double task)
+/* Remember the pull and the step where the next iteration may compare with them: see homing.py. */
+static void remember(Frame *frame, double task, int has_home)
 {
     const int64_t n = unknowns(frame);
+    frame->remembers = task < LARGEST_TASK_SHARE * length(frame->step, n);
+    if (!frame->remembers)
+        return;
+    if (!has_home)
+        pull_home(frame);
     memcpy(frame->home_before, frame->home, sizeof *frame->home * n);
     memcpy(frame->step_before, frame->step, sizeof *frame->step * n);
     memcpy(frame->hinge_free_before, frame->hinge_free, frame->problem->hinges);
-    frame->task_before = task;
-    frame->remembers = 1;
 }
 
 /* Whether every layer is met to STOP_ERROR. */
@@ -242,9 +279,14 @@ static void solve_frame(Frame *frame, int64_t at)
         } else {
             descend_within_limits(frame, gain, anneal);
             const double task = task_length(frame);
-            accelerate(frame, gain, task);
+            const int compares =
+                frame->remembers && !memcmp(frame->hinge_free, frame->hinge_free_before, problem->hinges);
+            if (compares) {
+                pull_home(frame);
+                accelerate(frame, gain, task);
+            }
             moved = bound_turns(frame);
-            remember(frame, task);
+            remember(frame, task, compares);
             moved = fmax(moved, apply_step(frame, local, translations));
         }
         problem->iterations[at] = iteration + 1;
@@ -273,7 +315,8 @@ static size_t lay_out(Frame *frame, char *memory)
     frame->hinge_axes = NUMBERS(3 * H), frame->hinge_angles = NUMBERS(H), frame->hinge_rows = NUMBERS(H * R);
     frame->hinge_fixed = NUMBERS(H);
     frame->errors = NUMBERS(R), frame->G = NUMBERS(R * R), frame->G_frozen = NUMBERS(R * R), frame->C = NUMBERS(R * R);
-    frame->c = NUMBERS(R), frame->scratch_rows = NUMBERS(3 * R), frame->scratch_rank = NUMBERS(R);
+    frame->c = NUMBERS(R), frame->scratch_rows = NUMBERS(5 * R), frame->scratch_rank = NUMBERS(R),
+    frame->Qz = NUMBERS(R);
     frame->algebra = NUMBERS(R * R + R + factor_scratch((int)R));
     frame->z = NUMBERS(n), frame->home = NUMBERS(n), frame->step = NUMBERS(n), frame->fast = NUMBERS(n);
     frame->home_before = NUMBERS(n), frame->step_before = NUMBERS(n);
@@ -285,6 +328,7 @@ static size_t lay_out(Frame *frame, char *memory)
 #undef NUMBERS
     if (memory != NULL) {
         memset(frame->c, 0, sizeof(double) * R), memset(frame->scratch_rank, 0, sizeof(double) * R);
+        memset(frame->Qz, 0, sizeof(double) * R);
         for (int64_t k = 0; k < problem->columns; k++)
             frame->column_hinge[k] = -1;
         for (int64_t h = 0; h < problem->hinges; h++)
