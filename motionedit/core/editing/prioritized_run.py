@@ -30,11 +30,14 @@ from motionedit.core.ik.tasks import Columns
 from motionedit.core.motion import Motion
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.editing.prioritized_edit import Body, LayeredSettings, PaperFilter
-    from motionedit.core.kinematics import WorldPoses
+
+
+# Kinds of constraints that ask for a place or a turn, and whose targets are found from the input alone.
+_PLACED = frozenset({"position", "orientation", "pose"})
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,63 +70,47 @@ class Run:
     body: Body
     settings: LayeredSettings
 
-    @cached_property
-    def _named(self) -> IntArray:
-        """The joints that constraints name."""
-        return joints_named(self.constraints)
-
-    @cached_property
-    def sight(self) -> Sight:
-        """What the constraints look at in the input."""
-        return sight_of(self.motion, self._named, self.body.masses)
-
-    @property
-    def poses(self) -> WorldPoses:
-        """The input's, of the joints that constraints name."""
-        return self.sight.poses
+    def _sight(self, motion: Motion) -> Sight:
+        """Return what the constraints look at in a motion; not kept, for of a long clip it is large."""
+        return sight_of(motion, joints_named(self.constraints), self.body.masses)
 
     @cached_property
     def targets(self) -> tuple[Targets, ...]:
         """The targets of all constraints, supports where they are in the input."""
-        curve, found = self.settings.curve, []
+        sight = self._sight(self.motion)
+        curve, found = self.settings.curve, list(self._bound_targets(sight))
         for i, constraint in enumerate(self.constraints):
-            if i in self._fixed:
-                found.append(self._fixed[i])
-            elif constraint.kind == "com":
-                found.append(self._com_targets(constraint, None))
+            if constraint.kind == "com":
+                found[i] = self._com_targets(constraint, sight, sight, found)
             elif constraint.kind == "aim":
-                found.append(aim_targets(constraint, self.poses, curve=curve))
-            else:
-                found.append(Targets(*constraint.active(len(self.motion))))
+                found[i] = aim_targets(constraint, sight.poses, curve=curve)
         return tuple(found)
 
-    @cached_property
-    def _fixed(self) -> dict[int, Targets]:
-        """The targets of what is bound to the input alone."""
-        return {
-            i: targets_of(c, self.poses, curve=self.settings.curve)
-            for i, c in enumerate(self.constraints)
-            if c.kind in {"position", "orientation", "pose"}
-        }
+    def _bound_targets(self, sight: Sight) -> Iterator[Targets]:
+        """Yield the targets of what is bound to the input alone, and intervals for the others."""
+        for constraint in self.constraints:
+            if constraint.kind in _PLACED:
+                yield targets_of(constraint, sight.poses, curve=self.settings.curve)
+            else:
+                yield Targets(*constraint.active(len(self.motion)))
 
-    def _com_targets(self, constraint: Constraint, current: WorldPoses | None) -> Targets:
-        """Return the targets of a `com`; `current` is the edited motion so far, None before there is one."""
+    def _com_targets(self, constraint: Constraint, before: Sight, now: Sight, targets: Sequence[Targets]) -> Targets:
+        """Return the targets of a `com` from the input and from the edited motion so far."""
         support = None
         if constraint.support:
-            poses = self.poses if current is None else current
-            support = support_points(constraint, poses, self._support_goals(constraint))
-        return com_targets(constraint, self.poses, self.sight.center, support=support, curve=self.settings.curve)
+            support = support_points(constraint, now.poses, self._support_goals(constraint, targets))
+        return com_targets(constraint, before.poses, before.center, support=support, curve=self.settings.curve)
 
-    def _support_goals(self, constraint: Constraint) -> dict[int, FloatArray]:
+    def _support_goals(self, constraint: Constraint, targets: Sequence[Targets]) -> dict[int, FloatArray]:
         """Return the goals of members of a support, by joint, shape (F, 3), nan where there is none: they are A'."""
         goals: dict[int, FloatArray] = {}
-        for i, targets in self._fixed.items():
-            other = self.constraints[i]
+        for other, each in zip(self.constraints, targets, strict=True):
             whole = other.base is None and other.axes == (0, 1, 2) and not np.any(other.effector.offset)
-            if targets.positions is not None and whole and other.effector.joint in constraint.support:
+            places = each.positions if other.kind in _PLACED else None
+            if places is not None and whole and other.effector.joint in constraint.support:
                 joint = other.effector.joint
                 goals.setdefault(joint, np.full((len(self.motion), 3), np.nan))
-                goals[joint][targets.first : targets.last + 1] = targets.positions @ other.measure
+                goals[joint][each.first : each.last + 1] = places @ other.measure
         return goals
 
     @cached_property
@@ -134,7 +121,7 @@ class Run:
         )
 
     def _has_goals(self, constraint: Constraint) -> bool:
-        goals, (first, last) = self._support_goals(constraint), constraint.active(len(self.motion))
+        goals, (first, last) = self._support_goals(constraint, self.targets), constraint.active(len(self.motion))
         return all(
             joint in goals and not np.isnan(goals[joint][first : last + 1]).any() for joint in constraint.support
         )
@@ -216,8 +203,8 @@ class Run:
         there again, need nothing.
         """
         if self._following:
-            sight = sight_of(previous.motion, self._named, self.body.masses)
-            moved = {i: self._com_targets(self.constraints[i], sight.poses) for i in self._following}
+            before, now = self._sight(self.motion), self._sight(previous.motion)
+            moved = {i: self._com_targets(self.constraints[i], before, now, self.targets) for i in self._following}
             targets = tuple(moved.get(i, each) for i, each in enumerate(self.targets))
             return Next(targets, np.zeros(len(start), dtype=np.bool_), previous.ranks)
         done = _same(start, self.motion) & _same(previous.motion, self.motion) & previous.converged
@@ -315,7 +302,7 @@ class Run:
 
     def errors(self, solved: Solved) -> tuple[ConstraintErrors, ...]:
         """Return what is left of every constraint, against the targets of the last pass, by forward kinematics."""
-        sight = sight_of(solved.motion, self._named, self.body.masses)
+        sight = self._sight(solved.motion)
         return tuple(
             errors_of(c, t, sight, solved.motion, reference=self.motion)
             for c, t in zip(self.constraints, solved.targets, strict=True)
