@@ -137,11 +137,13 @@ class Run:
         active = np.zeros((len(self.motion), len(self.constraints)), dtype=np.bool_)
         for i, each in enumerate(self.targets):
             active[each.first : each.last + 1, i] = True
-        rows, which = np.unique(active, axis=0, return_inverse=True)
+        together: dict[tuple[bool, ...], list[IntArray]] = {}
+        for run in np.split(np.arange(len(active)), np.flatnonzero((active[1:] != active[:-1]).any(axis=1)) + 1):
+            together.setdefault(tuple(active[run[0]].tolist()), []).append(run)
         return tuple(
-            self._group(tuple(map(int, np.flatnonzero(row))), np.flatnonzero(which.ravel() == i))
-            for i, row in enumerate(rows)
-            if row.any()
+            self._group([i for i, there in enumerate(key) if there], np.concatenate(together[key]))
+            for key in sorted(together)
+            if any(key)
         )
 
     def _group(self, members: Sequence[int], frames: IntArray) -> Group:

@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 from human import ANKLE_HEIGHT, HIPS_HEIGHT, skeleton_of, standing
 
+from motionedit.core import contacts
 from motionedit.core.anatomy import find_anatomy
 from motionedit.core.contacts import find_plants
 from motionedit.core.ground import axis_vector
@@ -105,3 +106,9 @@ def test_a_body_without_legs_or_a_take_of_one_frame_has_no_plants():
     assert plants_of(motion, first=2) == []
     arms = [("Hips", None, (0, 0, 0)), ("Tip", "Hips", (0, 1, 0))]
     assert plants_of(standing(skeleton_of(arms))) == []
+
+
+@pytest.mark.parametrize("rows", [2, 3, 50, 51, 145])
+def test_the_low_percentile_is_numpys(rows):
+    heights = np.random.default_rng(rows).normal(size=(rows, 4))
+    np.testing.assert_allclose(contacts._percentile(heights, 2.0), np.percentile(heights, 2.0, axis=0), rtol=1e-13)
