@@ -1,6 +1,7 @@
 /* A layer's step and basis from its Gram matrix S = M M^T: what _damped_step of layers.py gets from eigenvectors. */
 
 #include "layered.h"
+#include "rotations.h"
 
 #include <float.h>
 #include <math.h>
@@ -33,7 +34,7 @@ static void cholesky(double *A, int k)
     for (int i = 0; i < k; i++) {
         for (int j = 0; j < i; j++)
             A[i * k + j] = (A[i * k + j] - dot_product(A + i * k, A + j * k, j)) / A[j * k + j];
-        A[i * k + i] = sqrt(fmax(A[i * k + i] - dot_product(A + i * k, A + i * k, i), DBL_MIN));
+        A[i * k + i] = sqrt(larger(A[i * k + i] - dot_product(A + i * k, A + i * k, i), DBL_MIN));
     }
 }
 
@@ -140,10 +141,10 @@ static void factor_by_eigenvectors(Layer *layer, double *S, const double *b, dou
     double largest = 0.0, inverse = 0.0;
     jacobi(S, k, U);
     for (int i = 0; i < k; i++)
-        largest = fmax(largest, sqrt(fmax(S[i * k + i], 0.0)));
-    const double tolerance = RANK_TOLERANCE * fmax(largest, LEAST_SCALE);
+        largest = larger(largest, sqrt(larger(S[i * k + i], 0.0)));
+    const double tolerance = RANK_TOLERANCE * larger(largest, LEAST_SCALE);
     for (int i = 0; i < k; i++) {
-        const double s = sqrt(fmax(S[i * k + i], 0.0));
+        const double s = sqrt(larger(S[i * k + i], 0.0));
         if (s > tolerance)
             inverse += 1.0 / (s * s);
         layer->order[i] = i;
@@ -151,7 +152,7 @@ static void factor_by_eigenvectors(Layer *layer, double *S, const double *b, dou
     const double lambda = inverse > 0.0 ? damping(1.0 / sqrt(inverse), d) : 0.0;
     layer->rank = layer->triangular = 0;
     for (int i = 0; i < k; i++) {
-        const double s = sqrt(fmax(S[i * k + i], 0.0));
+        const double s = sqrt(larger(S[i * k + i], 0.0));
         if (!(s > tolerance))
             continue;
         double along = 0.0;
@@ -246,7 +247,7 @@ void damped_factor(Layer *layer, double *S, const double *b, double largest, dou
     layer->triangular = 1;
     /* 1 / |B| is a lower bound of the least singular value, the root of the trace an upper one of the largest. */
     const double bound = inverse > 0.0 ? 1.0 / sqrt(inverse) : 0.0;
-    if (bound <= RANK_TOLERANCE * fmax(sqrt(trace), LEAST_SCALE)) {
+    if (bound <= RANK_TOLERANCE * larger(sqrt(trace), LEAST_SCALE)) {
         factor_by_eigenvectors(layer, S, b, d, c, rest);
         return;
     }

@@ -6,6 +6,16 @@
 
 #include <math.h>
 
+/* Unlike fmax and fmin these are no calls; numbers here are never nan. */
+static inline double larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+static inline double smaller(double a, double b)
+{
+    return a < b ? a : b;
+}
+
 static inline double dot(const double *a, const double *b)
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

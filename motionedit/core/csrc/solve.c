@@ -92,7 +92,7 @@ static double beyond(const Frame *frame, int64_t h, double turn, double *limited
 {
     const Hinge *hinge = frame->problem->hinge + h;
     const double after = frame->hinge_angles[h] + turn;
-    *limited = fmin(fmax(after, hinge->limits[0]), hinge->limits[1]);
+    *limited = smaller(larger(after, hinge->limits[0]), hinge->limits[1]);
     return fabs(after - *limited);
 }
 
@@ -180,7 +180,7 @@ static void accelerate(Frame *frame, double gain, double task)
     off_layers(frame, frame->fast);
     for (int64_t i = 0; i < n; i++)
         frame->fast[i] = frame->home[i] - along / size * frame->fast[i];
-    const double factor = fmin(1.0, LARGEST_FACTOR * home / fmax(length(frame->fast, n), 1e-300));
+    const double factor = smaller(1.0, LARGEST_FACTOR * home / larger(length(frame->fast, n), 1e-300));
     /* step + gain (fast - home) */
     for (int64_t i = 0; i < n; i++)
         frame->fast[i] = frame->step[i] + gain * (factor * frame->fast[i] - frame->home[i]);
@@ -198,7 +198,7 @@ static double bound_turns(Frame *frame)
 {
     double largest = 0.0;
     for (int64_t k = 0; k < frame->problem->columns; k++)
-        largest = fmax(largest, dot(frame->step + 3 * k, frame->step + 3 * k));
+        largest = larger(largest, dot(frame->step + 3 * k, frame->step + 3 * k));
     largest = sqrt(largest);
     if (largest <= LARGEST_TURN)
         return largest;
@@ -287,7 +287,7 @@ static void solve_frame(Frame *frame, int64_t at)
             }
             moved = bound_turns(frame);
             remember(frame, task, compares);
-            moved = fmax(moved, apply_step(frame, local, translations));
+            moved = larger(moved, apply_step(frame, local, translations));
         }
         problem->iterations[at] = iteration + 1;
         for (int l = 0; l < problem->layers; l++)
@@ -296,7 +296,7 @@ static void solve_frame(Frame *frame, int64_t at)
             problem->converged[at] = 1;
             return;
         }
-        const double ratio = moved / fmax(before, 1e-300);
+        const double ratio = moved / larger(before, 1e-300);
         nearly = ratio < 0.5 && moved * ratio / (1.0 - ratio) < STOP_LEFT;
         before = moved;
     }

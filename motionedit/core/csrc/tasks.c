@@ -297,7 +297,7 @@ static void evaluate_aim(const Frame *frame, const Task *task, Pull *pull, const
     }
     for (int a = 0; a < 3; a++)
         t[a] = at[a] - from[a];
-    const double distance = fmax(sqrt(dot(t, t)), 1e-9);
+    const double distance = larger(sqrt(dot(t, t)), 1e-9);
     for (int a = 0; a < 3; a++)
         t[a] /= distance;
     cross(d, t, side);
