@@ -221,14 +221,14 @@ class Run:
             What is known from the solve before.
         """
         targets = self.targets if known is None else known.targets
-        done = np.zeros(len(start), dtype=np.bool_) if known is None else known.done
         solved = replace(self.untouched(start), targets=targets)
         for group in self.groups:
             problem = group.with_targets(targets)
             frames = group.frames
-            self._solve_frames(solved, group, problem, frames, reference, done=done[frames], pull_root=pull_root)
+            done = None if known is None else known.done[frames]
+            self._solve_frames(solved, group, problem, frames, reference, done=done, pull_root=pull_root)
         if known is not None:
-            solved.ranks[done] = known.ranks[done]
+            solved.ranks[known.done] = known.ranks[known.done]
         return solved
 
     def _solve_frames(
@@ -255,8 +255,7 @@ class Run:
             threads=self.settings.threads,
         )
         solved.iterations[frames], solved.converged[frames] = solution.iterations, solution.converged
-        for layer, level in enumerate(group.levels):
-            solved.ranks[frames, level] = solution.ranks[:, layer]
+        solved.ranks[frames[:, None], group.levels] = solution.ranks
 
     @property
     def _travels(self) -> bool:
