@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import os
 import subprocess
+import sys
 import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -73,16 +74,26 @@ def process(command: Sequence[str | Path], folder: Path) -> Callable[[], object]
     return run
 
 
+# A new process counts the memory of the one that started it as its own peak, so that a small one must start what is
+# measured.
+_WATCH = """\
+import os, subprocess, sys, time
+start = time.perf_counter()
+child = subprocess.Popen(sys.argv[1:], stdout=subprocess.DEVNULL)
+_, status, usage = os.wait4(child.pid, 0)
+child.returncode = os.waitstatus_to_exitcode(status)
+print(time.perf_counter() - start, usage.ru_maxrss)
+sys.exit(child.returncode)
+"""
+
+
 def peak_of(command: Sequence[str | Path], folder: Path) -> tuple[float, int]:
     """Return the seconds and the peak of resident bytes of a command that is run to its end."""
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
-    start = time.perf_counter()
-    child = subprocess.Popen(list(map(str, command)), cwd=folder, env=environment, stdout=subprocess.DEVNULL)
-    _, status, usage = os.wait4(child.pid, 0)
-    child.returncode = os.waitstatus_to_exitcode(status)
-    if child.returncode:
-        raise subprocess.CalledProcessError(child.returncode, list(map(str, command)))
-    return time.perf_counter() - start, usage.ru_maxrss * 1024
+    watch = [sys.executable, "-c", _WATCH, *map(str, command)]
+    done = subprocess.run(watch, cwd=folder, env=environment, check=True, stdout=subprocess.PIPE, text=True)
+    seconds, kilobytes = done.stdout.split()
+    return float(seconds), int(kilobytes) * 1024
 
 
 def duration(seconds: float) -> str:

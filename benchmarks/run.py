@@ -38,15 +38,16 @@ the libraries' imports (numpy, click, PyYAML) beside it.
 def main() -> None:
     """Measure, print and write every table."""
     with tempfile.TemporaryDirectory() as scratch:
-        # First, while this process is small: a process that it starts is never measured as smaller.
-        fits = scale.fits([(1_000, "gram", None), (1_000, "gram", 20), (1_000, "streaming", 20)])
         parts = [
             ("BVH files", bvh_files.rows(Path(scratch))),
             ("The edit by coefficients, data/golf/swing04.bvh", pc_edit.rows(Path(scratch))),
             ("The edit by prioritized constraints", prioritized.rows(Path(scratch))),
             ("The edit by prioritized constraints, file to file", scale.edits(Path(scratch))),
             ("Many clips, in one process", batches.rows(Path(scratch))),
-            ("Many motions, made in memory", fits),
+            (
+                "Many motions, made in memory",
+                scale.fits([(1_000, "gram", None), (1_000, "gram", 20), (1_000, "streaming", 20)]),
+            ),
         ]
     print(machine())
     for title, rows in parts:
