@@ -50,7 +50,7 @@ enum {
     MOTION_FRAMES,
     N_SIZES
 };
-enum { NODE_INTEGER_COUNT = 4, NODE_NUMBER_COUNT = 7, TASK_INTEGER_COUNT = 12, TASK_NUMBER_COUNT = 16 };
+enum { NODE_INTEGER_COUNT = 4, NODE_NUMBER_COUNT = 7, TASK_INTEGER_COUNT = 11, TASK_NUMBER_COUNT = 16 };
 
 static int has_size(const Py_buffer *buffer, int64_t count, size_t bytes, const char *name)
 {

@@ -60,7 +60,7 @@ static void on_free_axes(const Frame *frame, double *v)
     }
 }
 
-/* v less what the layers see of z, v - Q^T (Q z), where Q z was found for the hinges that are free: z -> home. */
+/* home = z - Q^T (Q z), where Q z was found for the hinges that are free. */
 static void pull_home(Frame *frame)
 {
     const Problem *problem = frame->problem;

@@ -258,7 +258,7 @@ def _task_integers(row: _Row, node_of: IntArray) -> list[int]:
     axes = [*row.axes, 0, 0, 0][:3]
     node = -1 if row.joint < 0 else int(node_of[row.joint])
     base = -1 if row.base < 0 else int(node_of[row.base])
-    return [row.kind, row.layer, len(row.axes), node, base, row.root, row.base_root, *axes, row.width, 0]
+    return [row.kind, row.layer, len(row.axes), node, base, row.root, row.base_root, *axes, row.width]
 
 
 def _task_numbers(row: _Row) -> FloatArray:
