@@ -10,7 +10,7 @@ cp -r motionedit "$folder/"
 rm -f "$folder"/motionedit/core/_compiled*
 headers=$("$python" -c 'import sysconfig; print(sysconfig.get_paths()["include"])')
 gcc -shared -fPIC -std=c11 -O1 -g -Wall -Wextra -Werror -fsanitize=address,undefined -fno-sanitize-recover=all \
-  -fno-omit-frame-pointer -I"$headers" motionedit/core/csrc/*.c -o "$folder/motionedit/core/_compiled.abi3.so"
+  -fno-omit-frame-pointer -I"$headers" motionedit/core/csrc/{module,motion,solver,solver_avx2}.c -o "$folder/motionedit/core/_compiled.abi3.so"
 # Python itself leaks by design; its own allocator would hide overruns.
 export ASAN_OPTIONS=detect_leaks=0 PYTHONMALLOC=malloc PYTHONPATH="$folder"
 export LD_PRELOAD="$(gcc -print-file-name=libasan.so)"

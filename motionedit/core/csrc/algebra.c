@@ -1,11 +1,5 @@
-/* A layer's step and basis from its Gram matrix S = M M^T: what _damped_step of layers.py gets from eigenvectors. */
-
-#include "layered.h"
-#include "rotations.h"
-
-#include <float.h>
-#include <math.h>
-#include <string.h>
+/* A layer's rows of M, B and its step from G = J J^T: what _damped_step of layers.py gets from eigenvectors. Part of
+   solver.c. */
 
 /* As in layers.py: singular values below this share of the largest (or of LEAST_SCALE) are no freedom. */
 #define RANK_TOLERANCE 1e-4
@@ -14,87 +8,86 @@
 #define ROUNDING 1e-13
 #define SWEEPS 30
 
-/* L, the diagonal, and the most that any of the solutions takes. */
-size_t factor_scratch(int k)
+/* What factoring a layer of k rows takes at most. */
+static size_t factor_scratch(int k)
 {
-    return (size_t)(3 * k * k + 3 * k);
+    return (size_t)(3 * k * k + 4 * k);
 }
 
 /* lambda by s = 1 / |A~^+|_F, which the smallest kept singular value exceeds, and the length d of b over b_max. */
-static double damping(double s, double d)
+static V damping(V s, V d)
 {
-    if (s <= 0.5 * d)
-        return 0.5 * d;
-    return s <= d ? sqrt(s * (d - s)) : 0.0;
+    const V near = root_of(larger(s * (d - s), all(0.0)));
+    return select(less(0.5 * d, s), only(~less(d, s), near), 0.5 * d);
 }
 
-/* A = L L^T in the lower triangle, in place; A is k x k, positive definite. */
-static void cholesky(double *A, int k)
+/* A = L L^T in the lower triangle, in place; A is k x k, positive definite. The diagonal comes out inverted. */
+static void cholesky(V *A, int k)
 {
-    for (int i = 0; i < k; i++) {
-        for (int j = 0; j < i; j++)
-            A[i * k + j] = (A[i * k + j] - dot_product(A + i * k, A + j * k, j)) / A[j * k + j];
-        A[i * k + i] = sqrt(larger(A[i * k + i] - dot_product(A + i * k, A + i * k, i), DBL_MIN));
+    for (int j = 0; j < k; j++) {
+        const V pivot = A[j * k + j] - dot_product(A + j * k, A + j * k, j);
+        A[j * k + j] = 1.0 / root_of(larger(pivot, all(DBL_MIN)));
+        for (int i = j + 1; i < k; i++)
+            A[i * k + j] = (A[i * k + j] - dot_product(A + i * k, A + j * k, j)) * A[j * k + j];
     }
 }
 
 /* x <- (L L^T)^-1 x */
-static void cholesky_solve(const double *L, int k, double *x)
+static void cholesky_solve(const V *L, int k, V *x)
 {
-    for (int i = 0; i < k; i++) {
-        for (int p = 0; p < i; p++)
-            x[i] -= L[i * k + p] * x[p];
-        x[i] /= L[i * k + i];
-    }
+    for (int i = 0; i < k; i++)
+        x[i] = (x[i] - dot_product(L + i * k, x, i)) * L[i * k + i];
     for (int i = k - 1; i >= 0; i--) {
-        for (int p = i + 1; p < k; p++)
-            x[i] -= L[p * k + i] * x[p];
-        x[i] /= L[i * k + i];
+        x[i] *= L[i * k + i];
+        for (int p = 0; p < i; p++)
+            x[p] -= L[i * k + p] * x[i];
     }
 }
 
-/* Cholesky with pivots, a column of M = L^T at a time, and the inverse of the pivots' triangle beside it.
-
-   S: shape (k, k), full. Out: L, shape (rank, k), with S = L^T L on what is kept; B, shape (rank, k), lower triangular,
-   with Q = B A~ orthonormal, the rows of A~ in the order of pivots; order: the pivots, then the other rows; inverse:
-   |B|^2. Returns the rank: pivots up to `least` are 0. */
-static int pivoted_cholesky(
-    const double *S, int k, double least, double *L, double *B, int *order, double *diagonal, double *inverse)
+/* The trace of a layer's S = A~ A~^T. */
+static V remaining_trace(const Batch *batch, const Layer *layer)
 {
-    for (int i = 0; i < k; i++)
-        order[i] = i, diagonal[i] = S[i * k + i];
-    *inverse = 0.0;
-    for (int c = 0; c < k; c++) {
-        int best = c;
-        for (int i = c + 1; i < k; i++)
-            if (diagonal[order[i]] > diagonal[order[best]])
-                best = i;
-        const int row = order[best];
-        order[best] = order[c], order[c] = row;
-        double *l = L + c * k, *own = B + c * k;
-        memcpy(l, S + row * k, sizeof *l * k);
-        memset(own, 0, sizeof *own * c);
-        for (int p = 0; p < c; p++) {
-            const double factor = L[p * k + row];
-            add_multiple(l, -factor, L + p * k, k);
-            add_multiple(own, -factor, B + p * k, p + 1);
-        }
-        if (l[row] <= least)
-            return c;
-        const double pivot = sqrt(l[row]), scale = 1.0 / pivot;
-        own[c] = 1.0;
-        for (int i = 0; i <= c; i++) {
-            own[i] *= scale;
-            *inverse += own[i] * own[i];
-        }
-        for (int i = 0; i < k; i++) {
-            l[i] *= scale;
-            diagonal[i] -= l[i] * l[i];
-        }
-        for (int p = 0; p < c; p++)
-            l[order[p]] = 0.0;
+    const int64_t R = batch->problem->rows;
+    V trace = all(0.0);
+    for (int r = layer->first; r < layer->first + layer->rows; r++) {
+        const V *row = batch->M + r * R;
+        trace += batch->G_free[r * R + r] - dot_product(row, row, layer->first);
     }
-    return k;
+    return larger(trace, all(0.0));
+}
+
+/* Cholesky of G, column by column of M, down to the last row of all. A row that is a combination of those before gets
+   no direction: a column of zeros.
+
+   Out: columns of M; B, lower triangular, the inverse of the layer's triangle: Q = B A~ is orthonormal; the layer's rank;
+   dependent, shape (k,): which rows got none. Returns |B|^2. */
+static V eliminate(Batch *batch, Layer *layer, V trace, Mask *dependent)
+{
+    const int k = layer->rows, first = layer->first, R = (int)batch->problem->rows;
+    const V *G = batch->G_free;
+    V *M = batch->M, inverse = all(0.0);
+    layer->rank = all(0.0), layer->full = 0;
+    for (int i = 0; i < k; i++) {
+        const int c = first + i;
+        V *row = M + c * R, *own = layer->B + i * k;
+        const V pivot = G[c * R + c] - dot_product(row, row, c);
+        dependent[i] = ~less(ROUNDING * trace, pivot);
+        const V scale = only(~dependent[i], 1.0 / root_of(select(dependent[i], all(1.0), pivot)));
+        row[c] = pivot * scale;
+        for (int r = c + 1; r < R; r++)
+            M[r * R + c] = (G[r * R + c] - dot_product(M + r * R, row, c)) * scale;
+        layer->rank += only(~dependent[i], all(1.0));
+        for (int q = 0; q < k; q++)
+            own[q] = all(0.0);
+        own[i] = scale;
+        for (int p = 0; p < i; p++) {
+            const V factor = -scale * row[first + p];
+            for (int q = 0; q <= p; q++)
+                own[q] += factor * layer->B[p * k + q];
+        }
+        inverse += dot_product(own, own, i + 1);
+    }
+    return inverse;
 }
 
 /* Eigenvalues on the diagonal of S and eigenvectors in the columns of U, by cyclic Jacobi rotations. */
@@ -104,11 +97,11 @@ static void jacobi(double *S, int k, double *U)
     for (int i = 0; i < k; i++)
         U[i * k + i] = 1.0;
     for (int sweep = 0; sweep < SWEEPS; sweep++) {
-        double off = 0.0, all = 0.0;
+        double off = 0.0, whole = 0.0;
         for (int i = 0; i < k; i++)
             for (int j = 0; j < k; j++)
-                all += S[i * k + j] * S[i * k + j], off += i == j ? 0.0 : S[i * k + j] * S[i * k + j];
-        if (off <= 1e-32 * all)
+                whole += S[i * k + j] * S[i * k + j], off += i == j ? 0.0 : S[i * k + j] * S[i * k + j];
+        if (off <= 1e-32 * whole)
             return;
         for (int p = 0; p < k; p++)
             for (int q = p + 1; q < k; q++) {
@@ -134,131 +127,174 @@ static void jacobi(double *S, int k, double *U)
     }
 }
 
-/* Where the rank is in doubt: the singular triples one by one, as the reference has them. */
-static void factor_by_eigenvectors(Layer *layer, double *S, const double *b, double d, double *c, double *U)
+/* Where the rank is in doubt: the singular triples one by one, as the reference has them. For one lane: a column of M is
+   s u, a row of B u / s; scratch: 2 k^2 plain numbers. */
+static void factor_by_eigenvectors(Batch *batch, Layer *layer, int lane, const V *b, double largest, V *c, double *S)
 {
-    const int k = layer->rows;
-    double largest = 0.0, inverse = 0.0;
+    const int k = layer->rows, first = layer->first, R = (int)batch->problem->rows;
+    const V *G = batch->G_free;
+    V *M = batch->M;
+    double *U = S + k * k, most = 0.0, inverse = 0.0, length = 0.0;
+    for (int r = 0; r < k; r++)
+        for (int s = 0; s <= r; s++) {
+            const V *mine = M + (first + r) * R, *other = M + (first + s) * R;
+            double sum = LANE(G[(first + r) * R + first + s], lane);
+            for (int p = 0; p < first; p++)
+                sum -= LANE(mine[p], lane) * LANE(other[p], lane);
+            S[r * k + s] = S[s * k + r] = sum;
+        }
     jacobi(S, k, U);
-    for (int i = 0; i < k; i++)
-        largest = larger(largest, sqrt(larger(S[i * k + i], 0.0)));
-    const double tolerance = RANK_TOLERANCE * larger(largest, LEAST_SCALE);
     for (int i = 0; i < k; i++) {
-        const double s = sqrt(larger(S[i * k + i], 0.0));
-        if (s > tolerance)
-            inverse += 1.0 / (s * s);
-        layer->order[i] = i;
+        S[i] = sqrt(fmax(S[i * k + i], 0.0)); /* from here on the singular values, in the first row */
+        most = fmax(most, S[i]);
+        length += LANE(b[i], lane) * LANE(b[i], lane);
     }
-    const double lambda = inverse > 0.0 ? damping(1.0 / sqrt(inverse), d) : 0.0;
-    layer->rank = layer->triangular = 0;
+    const double tolerance = RANK_TOLERANCE * fmax(most, LEAST_SCALE), d = sqrt(length) / largest;
+    for (int i = 0; i < k; i++)
+        inverse += S[i] > tolerance ? 1.0 / (S[i] * S[i]) : 0.0;
+    const V damped = damping(all(inverse > 0.0 ? 1.0 / sqrt(inverse) : INFINITY), all(d));
+    const double lambda = LANE(damped, 0);
+    layer->full = 1;
+    LANE(layer->rank, lane) = 0.0;
     for (int i = 0; i < k; i++) {
-        const double s = sqrt(larger(S[i * k + i], 0.0));
-        if (!(s > tolerance))
-            continue;
+        const double s = S[i];
+        const int kept = s > tolerance;
         double along = 0.0;
         for (int r = 0; r < k; r++) {
-            layer->B[layer->rank * k + r] = U[r * k + i] / s;
-            along += U[r * k + i] * b[r];
+            along += U[r * k + i] * LANE(b[r], lane);
+            LANE(M[(first + r) * R + first + i], lane) = kept ? s * U[r * k + i] : 0.0;
+            LANE(layer->B[i * k + r], lane) = kept ? U[r * k + i] / s : 0.0;
         }
-        c[layer->rank++] = along * s / (s * s + lambda * lambda);
+        LANE(c[i], lane) = kept ? along * s / (s * s + lambda * lambda) : 0.0;
+        LANE(layer->rank, lane) += kept;
+        for (int below = first + k; below < R; below++) { /* J_below Q_i */
+            double sum = 0.0;
+            for (int r = 0; r < k && kept; r++) {
+                double rest = LANE(G[below * R + first + r], lane);
+                for (int p = 0; p < first; p++)
+                    rest -= LANE(M[below * R + p], lane) * LANE(M[(first + r) * R + p], lane);
+                sum += U[r * k + i] / s * rest;
+            }
+            LANE(M[below * R + first + i], lane) = sum;
+        }
     }
 }
 
-/* Rows that are no pivots, as W times the pivots' rows: W, shape (rest, rank), and I + W W^T = N N^T. */
+/* Rows that got no direction, in some lane, as W times those that did: W, shape (rest, k), and I + W W^T = N N^T. In lanes
+   where such a row has its own direction W is 0. */
 typedef struct {
-    int rest;
-    double *W, *N, *scratch;
+    int rest, *row;
+    V *W, *N, *scratch;
 } Dependent;
 
-static Dependent dependent_rows(const double *L, const Layer *layer, double *scratch)
+static Dependent dependent_rows(const Batch *batch, const Layer *layer, const Mask *dependent, V *scratch)
 {
-    const int k = layer->rows, rank = layer->rank, rest = k - rank;
-    Dependent found = {rest, scratch, scratch + rest * rank, scratch + rest * (rank + rest)};
-    for (int i = 0; i < rest; i++) {
-        double *w = found.W + i * rank;
-        memset(w, 0, sizeof *w * rank);
-        for (int q = 0; q < rank; q++)
-            add_multiple(w, L[q * k + layer->order[rank + i]], layer->B + q * k, q + 1);
-        for (int j = 0; j <= i; j++)
-            found.N[i * rest + j] = dot_product(w, found.W + j * rank, rank) + (i == j ? 1.0 : 0.0);
+    const int k = layer->rows, R = (int)batch->problem->rows;
+    Dependent found = {.row = (int *)scratch, .W = scratch + k};
+    for (int r = 0; r < k; r++) {
+        if (!any(dependent[r]))
+            continue;
+        V *w = found.W + found.rest * k;
+        const V *M = batch->M + (layer->first + r) * R + layer->first;
+        for (int q = 0; q < k; q++)
+            w[q] = all(0.0);
+        for (int q = 0; q < r; q++) {
+            const V factor = only(dependent[r], M[q]);
+            for (int m = 0; m <= q; m++)
+                w[m] += factor * layer->B[q * k + m];
+        }
+        found.row[found.rest++] = r;
     }
+    const int rest = found.rest;
+    found.N = found.W + rest * k, found.scratch = found.N + rest * rest;
+    for (int i = 0; i < rest; i++)
+        for (int j = 0; j <= i; j++)
+            found.N[i * rest + j] = dot_product(found.W + i * k, found.W + j * k, k) + (i == j ? 1.0 : 0.0);
     cholesky(found.N, rest);
     return found;
 }
 
 /* |M^+|_F^2 = |B|_F^2 - tr((I + W W^T)^-1 V V^T), V = W B^T: 1 / s^2 of the damping. */
-static double squared_inverse(const Dependent *rows, const Layer *layer, double inverse)
+static V squared_inverse(const Dependent *rows, const Layer *layer, V inverse)
 {
-    const int rank = layer->rank, rest = rows->rest;
-    double *column = rows->scratch, *solved = column + rest;
-    for (int q = 0; q < rank; q++) {
+    const int k = layer->rows, rest = rows->rest;
+    V *column = rows->scratch, *solved = column + rest;
+    for (int q = 0; q < k && rest > 0; q++) {
         for (int i = 0; i < rest; i++)
-            column[i] = dot_product(rows->W + i * rank, layer->B + q * layer->rows, q + 1);
-        memcpy(solved, column, sizeof *solved * rest);
+            column[i] = solved[i] = dot_product(rows->W + i * k, layer->B + q * k, q + 1);
         cholesky_solve(rows->N, rest, solved);
         inverse -= dot_product(column, solved, rest);
     }
     return inverse;
 }
 
-/* c = M^+ b without damping: least squares asks the pivots' rows for (I + W^T W)^-1 (b_1 + W^T b_2). */
-static void solve_undamped(const Dependent *rows, const Layer *layer, const double *b, double *c)
+/* c = M^+ b without damping: least squares asks the other rows for (I + W^T W)^-1 (b_1 + W^T b_2). */
+static void solve_undamped(const Dependent *rows, const Layer *layer, const V *b, V *c)
 {
-    const int rank = layer->rank, rest = rows->rest;
-    double *y = rows->scratch, *t = y + rank;
-    for (int q = 0; q < rank; q++)
-        y[q] = b[layer->order[q]];
+    const int k = layer->rows, rest = rows->rest;
+    V *y = rows->scratch, *t = y + k;
+    memcpy(y, b, sizeof *y * k);
     for (int i = 0; i < rest; i++)
-        add_multiple(y, b[layer->order[rank + i]], rows->W + i * rank, rank);
+        for (int q = 0; q < k; q++)
+            y[q] += b[rows->row[i]] * rows->W[i * k + q];
     for (int i = 0; i < rest; i++)
-        t[i] = dot_product(rows->W + i * rank, y, rank);
+        t[i] = dot_product(rows->W + i * k, y, k);
     cholesky_solve(rows->N, rest, t);
     for (int i = 0; i < rest; i++)
-        add_multiple(y, -t[i], rows->W + i * rank, rank);
-    for (int q = 0; q < rank; q++)
-        c[q] = dot_product(layer->B + q * layer->rows, y, q + 1);
+        for (int q = 0; q < k; q++)
+            y[q] -= t[i] * rows->W[i * k + q];
+    for (int q = 0; q < k; q++)
+        c[q] = dot_product(layer->B + q * k, y, q + 1);
 }
 
-/* c = (M^T M + lambda^2)^-1 M^T b */
-static void solve_damped(const double *L, int k, int rank, const double *b, double lambda, double *c, double *N)
+/* c = (M^T M + lambda^2)^-1 M^T b; a column of zeros comes to 0. */
+static void solve_damped(const Batch *batch, const Layer *layer, const V *b, V lambda, V *c, V *N)
 {
-    for (int i = 0; i < rank; i++) {
-        for (int j = 0; j <= i; j++)
-            N[i * rank + j] = dot_product(L + i * k, L + j * k, k);
-        N[i * rank + i] += lambda * lambda;
-        c[i] = dot_product(L + i * k, b, k);
+    const int k = layer->rows, R = (int)batch->problem->rows;
+    const V *M = batch->M + layer->first * R + layer->first;
+    for (int i = 0; i < k; i++) {
+        c[i] = all(0.0);
+        for (int r = i; r < k; r++)
+            c[i] += M[r * R + i] * b[r];
+        for (int j = 0; j <= i; j++) {
+            V sum = all(0.0);
+            for (int r = i; r < k; r++)
+                sum += M[r * R + i] * M[r * R + j];
+            N[i * k + j] = sum;
+        }
+        N[i * k + i] += lambda * lambda;
+        N[i * k + i] = select(is_zero(N[i * k + i]), all(1.0), N[i * k + i]);
     }
-    cholesky(N, rank);
-    cholesky_solve(N, rank, c);
+    cholesky(N, k);
+    cholesky_solve(N, k, c);
 }
 
-/* Factor a layer.
+/* Factor a layer, those above it being factored.
 
-   S: shape (k, k), A~ A~^T, destroyed. b: shape (k,). largest: b_max. Out: the layer's rank and B, with Q = B A~
-   orthonormal, and c, shape (rank,): its step is dm = Q^T c. scratch: `factor_scratch(k)` numbers. */
-void damped_factor(Layer *layer, double *S, const double *b, double largest, double *c, double *scratch)
+   b: shape (k,). largest: b_max. Out: the layer's rank, B and columns of M, and c, shape (k,): its step is dm = Q^T c. */
+static void factor_layer(Batch *batch, Layer *layer, const V *b, V largest, V *c)
 {
     const int k = layer->rows;
-    double *L = scratch, *diagonal = L + k * k, *rest = diagonal + k, trace = 0.0, inverse;
-    for (int i = 0; i < k; i++)
-        trace += S[i * k + i];
-    const double d = sqrt(dot_product(b, b, k)) / largest;
-    layer->rank = pivoted_cholesky(S, k, ROUNDING * trace, L, layer->B, layer->order, diagonal, &inverse);
-    layer->triangular = 1;
+    V *damped = batch->algebra, *scratch = damped + k;
+    Mask *dependent = batch->dependent;
+    const V d = root_of(dot_product(b, b, k)) / largest, trace = remaining_trace(batch, layer);
+    const V inverse = eliminate(batch, layer, trace, dependent);
     /* 1 / |B| is a lower bound of the least singular value, the root of the trace an upper one of the largest. */
-    const double bound = inverse > 0.0 ? 1.0 / sqrt(inverse) : 0.0;
-    if (bound <= RANK_TOLERANCE * larger(sqrt(trace), LEAST_SCALE)) {
-        factor_by_eigenvectors(layer, S, b, d, c, rest);
-        return;
+    const V bound = only(less(all(0.0), inverse), 1.0 / root_of(inverse));
+    const Mask doubtful = ~less(RANK_TOLERANCE * larger(root_of(trace), all(LEAST_SCALE)), bound);
+    const Dependent rows = dependent_rows(batch, layer, dependent, scratch);
+    const Mask near = ~less(d, bound);
+    V lambda = all(0.0);
+    if (any(near))
+        lambda = only(near, damping(1.0 / root_of(squared_inverse(&rows, layer, inverse)), d));
+    solve_undamped(&rows, layer, b, c);
+    const Mask damps = less(all(0.0), lambda);
+    if (any(damps)) {
+        solve_damped(batch, layer, b, lambda, damped, scratch);
+        for (int i = 0; i < k; i++)
+            c[i] = select(damps, damped[i], c[i]);
     }
-    if (d == 0.0) {
-        memset(c, 0, sizeof *c * layer->rank);
-        return;
-    }
-    const Dependent rows = dependent_rows(L, layer, rest);
-    const double lambda = bound > d ? 0.0 : damping(1.0 / sqrt(squared_inverse(&rows, layer, inverse)), d);
-    if (lambda > 0.0)
-        solve_damped(L, k, layer->rank, b, lambda, c, rest);
-    else
-        solve_undamped(&rows, layer, b, c);
+    for (int lane = 0; lane < LANES && any(doubtful); lane++)
+        if (MASK_LANE(doubtful, lane))
+            factor_by_eigenvectors(batch, layer, lane, b, LANE(largest, lane), c, (double *)scratch);
 }

@@ -1,149 +1,199 @@
-/* The body of one frame: forward kinematics, the pull z of eq. (1), hinges, and the step put into the joints. */
+/* The bodies of a batch: frames in and out of lanes, forward kinematics, the pull z of eq. (1), hinges, and the step put
+   into the joints. Part of solver.c. */
 
-#include "layered.h"
-#include "rotations.h"
-
-#include <math.h>
-#include <string.h>
-
-static const double IDENTITY[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
-
-const double *parent_rotation(const Frame *frame, int64_t node)
+/* Put frame `at` into a lane. */
+static void load(Batch *batch, int lane, int64_t at)
 {
-    const int64_t parent = frame->problem->node[node].parent;
-    return parent < 0 ? IDENTITY : frame->rotations + 9 * parent;
-}
-
-/* The moment (share times centre) of all mass at and below each node, and its share of the whole. */
-static void weigh(Frame *frame)
-{
-    const Problem *problem = frame->problem;
-    double *moments = frame->mass_moments, *shares = frame->mass_shares;
-    for (int64_t i = 0; i < problem->nodes; i++) {
-        const Node *node = problem->node + i;
-        double arm[3];
-        shares[i] = node->share;
-        if (node->share == 0.0) {
-            memset(moments + 3 * i, 0, 3 * sizeof *moments);
-            continue;
-        }
-        turned(frame->rotations + 9 * i, node->center, arm);
-        for (int a = 0; a < 3; a++)
-            moments[3 * i + a] = node->share * (frame->positions[3 * i + a] + arm[a]);
-    }
-    memset(frame->center, 0, sizeof frame->center);
-    for (int64_t i = problem->nodes - 1; i >= 0; i--) {
-        const int64_t parent = problem->node[i].parent;
-        if (parent >= 0) {
-            shares[parent] += shares[i];
-            add_scaled(moments + 3 * parent, 1.0, moments + 3 * i);
-        } else
-            add_scaled(frame->center, 1.0, moments + 3 * i);
-    }
-}
-
-/* World transforms: p_j = p_parent + R_parent t_j, R_j = R_parent R_local.
-
-   local: shape (J, 4), translations: shape (P, 3). */
-void forward(Frame *frame, const double *local, const double *translations)
-{
-    const Problem *problem = frame->problem;
+    const Problem *problem = batch->problem;
+    const int64_t own = problem->frames[at];
+    const double *local = problem->rotations + 4 * problem->joints * own;
+    const double *translations = problem->translations + 3 * problem->translated * own;
+    const double *reference = problem->reference_rotations + 4 * problem->joints * own;
     for (int64_t i = 0; i < problem->nodes; i++) {
         const Node *node = problem->node + i;
         const double *offset = node->translation < 0 ? node->offset : translations + 3 * node->translation;
-        double *position = frame->positions + 3 * i;
-        if (node->parent < 0) {
-            memcpy(position, offset, 3 * sizeof *position);
-            matrix_of(local + 4 * node->joint, frame->rotations + 9 * i);
+        for (int a = 0; a < 4; a++)
+            LANE(batch->local[4 * i + a], lane) = local[4 * node->joint + a];
+        for (int a = 0; a < 3; a++)
+            LANE(batch->offsets[3 * i + a], lane) = offset[a];
+    }
+    for (int64_t k = 0; k < problem->columns; k++)
+        for (int a = 0; a < 4; a++)
+            LANE(batch->reference[4 * k + a], lane) = reference[4 * problem->node[problem->column_node[k]].joint + a];
+    for (int a = 0; a < 3 && problem->pulls_root; a++)
+        LANE(batch->reference_root[a], lane) = problem->reference_root[3 * own + a];
+    for (int64_t t = 0; t < problem->tasks; t++) {
+        const Task *task = problem->task + t;
+        for (int64_t a = 0; a < task->width; a++)
+            LANE(batch->targets[4 * t + a], lane) = task->targets[task->width * at + a];
+    }
+}
+
+/* Write back what the columns of a lane have moved. */
+static void store(const Batch *batch, int lane)
+{
+    const Problem *problem = batch->problem;
+    const int64_t own = problem->frames[batch->at[lane]];
+    double *local = problem->rotations + 4 * problem->joints * own;
+    for (int64_t k = 0; k < problem->columns; k++) {
+        const int64_t i = problem->column_node[k];
+        for (int a = 0; a < 4; a++)
+            local[4 * problem->node[i].joint + a] = LANE(batch->local[4 * i + a], lane);
+    }
+    if (problem->root >= 0) {
+        const int64_t place = problem->translated * own + problem->node[problem->root].translation;
+        for (int a = 0; a < 3; a++)
+            problem->translations[3 * place + a] = LANE(batch->offsets[3 * problem->root + a], lane);
+    }
+}
+
+static const V *parent_rotation(const Batch *batch, int64_t node)
+{
+    static const V IDENTITY[9] = {ONES, ZEROS, ZEROS, ZEROS, ONES, ZEROS, ZEROS, ZEROS, ONES};
+    const int64_t parent = batch->problem->node[node].parent;
+    return parent < 0 ? IDENTITY : batch->rotations + 9 * parent;
+}
+
+/* The shares of subtrees in the body's mass. */
+static void share_masses(Batch *batch)
+{
+    const Problem *problem = batch->problem;
+    for (int64_t i = problem->nodes - 1; i >= 0; i--)
+        batch->mass_shares[i] = 0.0;
+    for (int64_t i = problem->nodes - 1; i >= 0; i--) {
+        batch->mass_shares[i] += problem->node[i].share;
+        if (problem->node[i].parent >= 0)
+            batch->mass_shares[problem->node[i].parent] += batch->mass_shares[i];
+    }
+}
+
+/* The moment (share times centre) of all mass at and below each node. */
+static void weigh(Batch *batch)
+{
+    const Problem *problem = batch->problem;
+    V *moments = batch->mass_moments;
+    for (int64_t i = 0; i < problem->nodes; i++) {
+        const Node *node = problem->node + i;
+        V arm[3] = {all(0.0), all(0.0), all(0.0)};
+        if (node->share != 0.0) {
+            turned_plain(batch->rotations + 9 * i, node->center, arm);
+            add(arm, batch->positions + 3 * i);
+        }
+        for (int a = 0; a < 3; a++)
+            moments[3 * i + a] = node->share * arm[a];
+    }
+    for (int a = 0; a < 3; a++)
+        batch->center[a] = all(0.0);
+    for (int64_t i = problem->nodes - 1; i >= 0; i--) {
+        const int64_t parent = problem->node[i].parent;
+        add(parent >= 0 ? moments + 3 * parent : batch->center, moments + 3 * i);
+    }
+}
+
+/* World transforms: p_j = p_parent + R_parent t_j, R_j = R_parent R_local. */
+static void forward(Batch *batch)
+{
+    const Problem *problem = batch->problem;
+    for (int64_t i = 0; i < problem->nodes; i++) {
+        const int64_t parent = problem->node[i].parent;
+        V *position = batch->positions + 3 * i, own[9];
+        if (parent < 0) {
+            memcpy(position, batch->offsets + 3 * i, 3 * sizeof *position);
+            matrix_of(batch->local + 4 * i, batch->rotations + 9 * i);
             continue;
         }
-        const double *above = frame->rotations + 9 * node->parent;
-        double own[9];
-        turned(above, offset, position);
-        add_scaled(position, 1.0, frame->positions + 3 * node->parent);
-        matrix_of(local + 4 * node->joint, own);
-        matrix_product(above, own, frame->rotations + 9 * i);
+        const V *above = batch->rotations + 9 * parent;
+        turned(above, batch->offsets + 3 * i, position);
+        add(position, batch->positions + 3 * parent);
+        matrix_of(batch->local + 4 * i, own);
+        matrix_product(above, own, batch->rotations + 9 * i);
     }
-    if (frame->weighs)
-        weigh(frame);
+    if (batch->weighs)
+        weigh(batch);
 }
 
 /* A node's world rotation as a quaternion: what orientations are compared by. */
-void world_quaternion(const Frame *frame, const double *local, int64_t node, double *q)
+static void world_quaternion(const Batch *batch, int64_t node, V *q)
 {
-    memcpy(q, local + 4 * frame->problem->node[node].joint, 4 * sizeof *q);
-    for (int64_t i = frame->problem->node[node].parent; i >= 0; i = frame->problem->node[i].parent)
-        q_multiply(local + 4 * frame->problem->node[i].joint, q, q);
+    memcpy(q, batch->local + 4 * node, 4 * sizeof *q);
+    for (int64_t i = batch->problem->node[node].parent; i >= 0; i = batch->problem->node[i].parent)
+        q_multiply(batch->local + 4 * i, q, q);
 }
 
-/* z at frame `own` of the motion: the world-axis increments that bring the columns back to the reference, hinges along
-   their axes alone. */
-void attraction(Frame *frame, const double *local, const double *translations, int64_t own)
+/* The rotation vector from a local rotation to a target: log(q_target q^-1). */
+static void turn_to(const V *target, const V *local, V *out)
 {
-    const Problem *problem = frame->problem;
-    const double *reference = problem->reference_rotations + 4 * problem->joints * own;
-    double *root = frame->z + 3 * problem->columns;
+    V inverse[4], turn[4];
+    q_conjugate(local, inverse);
+    q_multiply(target, inverse, turn);
+    q_log(turn, out);
+}
+
+/* z: the world-axis increments that bring the columns back to the reference, of a hinge its angle. */
+static void attraction(Batch *batch)
+{
+    const Problem *problem = batch->problem;
+    V *root = batch->z + batch->unknowns - 3;
     for (int64_t k = 0; k < problem->columns; k++) {
         const int64_t i = problem->column_node[k];
-        const int64_t joint = problem->node[i].joint;
-        const int h = frame->column_hinge[k];
-        double inverse[4], turn[4], *z = frame->z + 3 * k;
-        q_conjugate(local + 4 * joint, inverse);
-        q_multiply(reference + 4 * joint, inverse, turn);
-        q_log(turn, turn);
-        turned(parent_rotation(frame, i), turn, z);
-        if (h >= 0) {
-            const double *axis = frame->hinge_axes + 3 * h, along = dot(z, axis);
-            for (int a = 0; a < 3; a++)
-                z[a] = along * axis[a];
-        }
+        const int h = batch->column_hinge[k];
+        V turn[3], *z = batch->z + batch->column_unknown[k];
+        turn_to(batch->reference + 4 * k, batch->local + 4 * i, turn);
+        if (h >= 0)
+            z[0] = along(problem->hinge[h].axis, turn);
+        else
+            turned(parent_rotation(batch, i), turn, z);
     }
-    memset(root, 0, 3 * sizeof *root);
+    root[0] = root[1] = root[2] = all(0.0);
     if (problem->pulls_root && problem->root >= 0) {
-        const double *goal = problem->reference_root + 3 * own;
-        const double *place = translations + 3 * problem->node[problem->root].translation;
-        const double back[3] = {goal[0] - place[0], goal[1] - place[1], goal[2] - place[2]};
-        turned(parent_rotation(frame, problem->root), back, root);
+        V back[3];
+        for (int a = 0; a < 3; a++)
+            back[a] = batch->reference_root[a] - batch->offsets[3 * problem->root + a];
+        turned(parent_rotation(batch, problem->root), back, root);
     }
 }
 
 /* The hinges' axes in the world (a turn about an axis leaves it where the parent has it) and angles (rad). */
-void hinge_state(Frame *frame, const double *local)
+static void hinge_state(Batch *batch)
 {
-    const Problem *problem = frame->problem;
+    const Problem *problem = batch->problem;
     for (int64_t h = 0; h < problem->hinges; h++) {
         const Hinge *hinge = problem->hinge + h;
         const int64_t i = problem->column_node[hinge->column];
-        double v[4];
-        turned(parent_rotation(frame, i), hinge->axis, frame->hinge_axes + 3 * h);
-        q_log(local + 4 * problem->node[i].joint, v);
-        frame->hinge_angles[h] = dot(v, hinge->axis);
+        V turn[3];
+        turned_plain(parent_rotation(batch, i), hinge->axis, batch->hinge_axes + 3 * h);
+        q_log(batch->local + 4 * i, turn);
+        batch->hinge_angles[h] = along(hinge->axis, turn);
     }
 }
 
 /* Turn the columns by the step, q <- exp(R_parent^-1 w) q, and shift the root; returns the root's way. */
-double apply_step(Frame *frame, double *local, double *translations)
+static V apply_step(Batch *batch)
 {
-    const Problem *problem = frame->problem;
+    const Problem *problem = batch->problem;
     for (int64_t k = 0; k < problem->columns; k++) {
-        const double *w = frame->step + 3 * k;
-        if (dot(w, w) == 0.0)
-            continue;
+        const V *w = batch->step + batch->column_unknown[k];
         const int64_t i = problem->column_node[k];
-        double v[3], turn[4], *q = local + 4 * problem->node[i].joint;
-        turned_back(parent_rotation(frame, i), w, v);
+        const int h = batch->column_hinge[k];
+        V v[3], turn[4], *q = batch->local + 4 * i;
+        if (h < 0)
+            turned_back(parent_rotation(batch, i), w, v);
+        else
+            for (int a = 0; a < 3; a++)
+                v[a] = problem->hinge[h].axis[a] * w[0];
         q_exp(v, turn);
-        q_multiply(turn, q, q);
+        q_multiply(turn, q, turn);
         /* 1 / sqrt(1 + x) to second order: x is rounding */
-        const double size = 1.5 - 0.5 * (q[0] * q[0] + dot(q + 1, q + 1));
+        const V size = 1.5 - 0.5 * (turn[0] * turn[0] + dot(turn + 1, turn + 1));
+        const Mask stays = is_zero(dot(v, v));
         for (int a = 0; a < 4; a++)
-            q[a] *= size;
+            q[a] = select(stays, q[a], size * turn[a]);
     }
     if (problem->root < 0)
-        return 0.0;
-    const double *shift = frame->step + 3 * problem->columns;
-    double own[3];
-    turned_back(parent_rotation(frame, problem->root), shift, own);
-    add_scaled(translations + 3 * problem->node[problem->root].translation, 1.0, own);
-    return sqrt(dot(shift, shift));
+        return all(0.0);
+    const V *shift = batch->step + batch->unknowns - 3;
+    V own[3];
+    turned_back(parent_rotation(batch, problem->root), shift, own);
+    add(batch->offsets + 3 * problem->root, own);
+    return root_of(dot(shift, shift));
 }

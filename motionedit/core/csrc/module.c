@@ -165,13 +165,12 @@ static int read_problem(Problem *problem, Py_buffer *buffers, void **memory)
     return 1;
 }
 
-static PyObject *solve(PyObject *self, PyObject *arguments)
+static PyObject *solve_with(int (*solver)(const Problem *, int64_t, int64_t), PyObject *arguments)
 {
     Py_buffer buffers[BUFFERS] = {{0}};
     Py_buffer *b = buffers;
     double attraction;
     long long begin, end;
-    (void)self;
     if (!PyArg_ParseTuple(arguments, "y*y*y*y*y*y*y*y*y*y*y*y*y*w*w*w*w*w*dLL", b, b + 1, b + 2, b + 3, b + 4, b + 5,
             b + 6, b + 7, b + 8, b + 9, b + 10, b + 11, b + 12, b + 13, b + 14, b + 15, b + 16, b + 17, &attraction,
             &begin, &end))
@@ -182,7 +181,7 @@ static PyObject *solve(PyObject *self, PyObject *arguments)
     if (read_problem(&problem, buffers, &memory)) {
         problem.attraction = attraction;
         if (0 <= begin && begin <= end && end <= ((int64_t *)buffers[SIZES].buf)[N_FRAMES]) {
-            Py_BEGIN_ALLOW_THREADS status = solve_frames(&problem, begin, end);
+            Py_BEGIN_ALLOW_THREADS status = solver(&problem, begin, end);
             Py_END_ALLOW_THREADS if (status < 0) PyErr_NoMemory();
         } else
             PyErr_SetString(PyExc_ValueError, "no such frames");
@@ -193,6 +192,18 @@ static PyObject *solve(PyObject *self, PyObject *arguments)
     if (status < 0)
         return NULL;
     Py_RETURN_NONE;
+}
+
+static PyObject *solve(PyObject *self, PyObject *arguments)
+{
+    (void)self;
+    return solve_with(has_avx2() ? solve_frames_avx2 : solve_frames, arguments);
+}
+
+static PyObject *solve_narrow(PyObject *self, PyObject *arguments)
+{
+    (void)self;
+    return solve_with(solve_frames, arguments);
 }
 
 static PyObject *forward_frames(PyObject *self, PyObject *arguments)
@@ -257,6 +268,7 @@ static PyObject *smooth(PyObject *self, PyObject *arguments)
 
 static PyMethodDef methods[] = {
     {"solve", solve, METH_VARARGS, "Solve frames begin to end - 1 in place."},
+    {"solve_narrow", solve_narrow, METH_VARARGS, "As solve, with what every processor has: the same to the bit."},
     {"forward", forward_frames, METH_VARARGS, "Write the world transforms of all joints at all frames."},
     {"smooth", smooth, METH_VARARGS, "Write rotations plus their low-passed displacement."},
     {NULL, NULL, 0, NULL},

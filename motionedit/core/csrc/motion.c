@@ -1,5 +1,6 @@
 /* Whole motions, frame by frame: forward kinematics, and the low-passed displacement between passes. */
 
+#define ONE_LANE
 #include "layered.h"
 #include "rotations.h"
 

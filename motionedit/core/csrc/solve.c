@@ -1,11 +1,4 @@
-/* The iteration of one frame after another: layered_numpy.py and homing.py, frame by frame. */
-
-#include "layered.h"
-#include "rotations.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
+/* The iteration of a batch: layered_numpy.py and homing.py, each lane with its own frame. Part of solver.c. */
 
 /* As in layered_numpy.py and homing.py, where each is explained. */
 #define LARGEST_TURN 0.5
@@ -23,95 +16,96 @@
 /* Metres and radians: what is less is rounding. */
 #define AT_REST 1e-13
 
-static double length(const double *v, int64_t n)
+static V length(const V *v, int n)
 {
-    double sum = 0.0;
-    for (int64_t i = 0; i < n; i++)
-        sum += v[i] * v[i];
-    return sqrt(sum);
+    return root_of(dot_product(v, v, n));
 }
 
-static int64_t unknowns(const Frame *frame)
+/* Scratch of R numbers; layers.c uses the first two. */
+static V *scratch(const Batch *batch, int which)
 {
-    return 3 * frame->problem->columns + 3;
+    return batch->scratch_rows + (2 + which) * batch->problem->rows;
+}
+
+static V *hinge_turn(const Batch *batch, V *v, int64_t h)
+{
+    return v + batch->column_unknown[batch->problem->hinge[h].column];
+}
+
+/* Hinges on their limits take no part. */
+static void without_fixed_hinges(const Batch *batch, V *v)
+{
+    for (int64_t h = 0; h < batch->problem->hinges; h++) {
+        V *turn = hinge_turn(batch, v, h);
+        *turn = only(batch->hinge_free[h], *turn);
+    }
+}
+
+/* v <- v - Q^T q; q is used up. */
+static void subtract_rank_space(const Batch *batch, V *q, V *v)
+{
+    V *y = scratch(batch, 0);
+    out_of_rank_space(batch, q, y);
+    for (int64_t r = 0; r < batch->problem->rows; r++)
+        y[r] = -y[r];
+    add_rows_transposed(batch, y, v);
 }
 
 /* v <- v P, what no layer sees: v - Q^T (Q v). Hinges on their limits take no part. */
-static void off_layers(Frame *frame, double *v)
+static void off_layers(const Batch *batch, V *v)
 {
-    double *y = frame->scratch_rows + 2 * frame->problem->rows;
-    rows_times(frame, v, y);
-    into_rank_space(frame, y, frame->scratch_rank);
-    for (int64_t q = 0; q < frame->problem->rows; q++)
-        frame->scratch_rank[q] = -frame->scratch_rank[q];
-    out_of_rank_space(frame, frame->scratch_rank, y);
-    add_rows_transposed(frame, y, v);
-}
-
-/* v on the hinges' axes; 0 where they are on their limits. */
-static void on_free_axes(const Frame *frame, double *v)
-{
-    for (int64_t h = 0; h < frame->problem->hinges; h++) {
-        const double *axis = frame->hinge_axes + 3 * h;
-        double *w = v + 3 * frame->problem->hinge[h].column;
-        const double along = frame->hinge_free[h] ? dot(w, axis) : 0.0;
-        for (int a = 0; a < 3; a++)
-            w[a] = along * axis[a];
-    }
+    V *Jv = scratch(batch, 0), *q = scratch(batch, 1);
+    without_fixed_hinges(batch, v);
+    rows_times(batch, v, Jv);
+    into_rank_space(batch, Jv, q);
+    subtract_rank_space(batch, q, v);
 }
 
 /* home = z - Q^T (Q z), where Q z was found for the hinges that are free. */
-static void pull_home(Frame *frame)
+static void pull_home(Batch *batch)
 {
-    const Problem *problem = frame->problem;
-    double *y = frame->scratch_rows + 2 * problem->rows;
-    memcpy(frame->home, frame->z, sizeof *frame->z * unknowns(frame));
-    on_free_axes(frame, frame->home);
-    for (int64_t q = 0; q < problem->rows; q++)
-        frame->scratch_rank[q] = -frame->Qz[q];
-    out_of_rank_space(frame, frame->scratch_rank, y);
-    add_rows_transposed(frame, y, frame->home);
+    V *q = scratch(batch, 1);
+    memcpy(batch->home, batch->z, sizeof *batch->z * batch->unknowns);
+    without_fixed_hinges(batch, batch->home);
+    memcpy(q, batch->Qz, sizeof *q * batch->problem->rows);
+    subtract_rank_space(batch, q, batch->home);
 }
 
 /* Q z with the hinges that are free, from J z with all of them: a hinge's part is its row times its turn. */
-static void pull_in_rank_space(Frame *frame, const double *Jz)
+static void pull_in_rank_space(Batch *batch, const V *Jz)
 {
-    const Problem *problem = frame->problem;
-    double *rest = frame->scratch_rows + 2 * problem->rows;
-    memcpy(rest, Jz, sizeof *rest * problem->rows);
-    for (int64_t h = 0; h < problem->hinges; h++) {
-        const double turn = dot(frame->z + 3 * problem->hinge[h].column, frame->hinge_axes + 3 * h);
-        if (!frame->hinge_free[h])
-            add_multiple(rest, -turn, frame->hinge_rows + h * problem->rows, (int)problem->rows);
-    }
-    into_rank_space(frame, rest, frame->Qz);
+    V *rest = scratch(batch, 0);
+    memcpy(rest, Jz, sizeof *rest * batch->problem->rows);
+    for (int64_t h = 0; h < batch->problem->hinges; h++)
+        if (any(~batch->hinge_free[h]))
+            add_hinge_row(batch, h, only(~batch->hinge_free[h], -*hinge_turn(batch, batch->z, h)), rest);
+    into_rank_space(batch, rest, batch->Qz);
 }
 
-/* Where a turn takes a hinge (rad), and how far beyond its limits that is. */
-static double beyond(const Frame *frame, int64_t h, double turn, double *limited)
+/* Where a turn takes a hinge (rad), and whether that is beyond its limits. */
+static Mask beyond(const Batch *batch, int64_t h, V turn, V *limited)
 {
-    const Hinge *hinge = frame->problem->hinge + h;
-    const double after = frame->hinge_angles[h] + turn;
-    *limited = smaller(larger(after, hinge->limits[0]), hinge->limits[1]);
-    return fabs(after - *limited);
+    const Hinge *hinge = batch->problem->hinge + h;
+    const V after = batch->hinge_angles[h] + turn;
+    *limited = smaller(larger(after, all(hinge->limits[0])), all(hinge->limits[1]));
+    return less(all(ON_LIMIT), size_of(after - *limited)) & batch->hinge_free[h];
 }
 
-/* Set on their limits the hinges that fixed + gain z + J^T y would take beyond them; returns whether there were any. */
-static int set_on_limits(Frame *frame, double gain, const double *y)
+/* Set on their limits the hinges that gain z + J^T y would take beyond them; returns whether there were any. */
+static int set_on_limits(Batch *batch, V gain, const V *y)
 {
-    const Problem *problem = frame->problem;
+    const Problem *problem = batch->problem;
     int out = 0;
     for (int64_t h = 0; h < problem->hinges; h++) {
-        if (!frame->hinge_free[h])
-            continue;
-        double limited;
-        const double pull = dot(frame->z + 3 * problem->hinge[h].column, frame->hinge_axes + 3 * h);
-        const double *row = frame->hinge_rows + h * problem->rows;
-        if (beyond(frame, h, gain * pull + dot_product(row, y, (int)problem->rows), &limited) > ON_LIMIT) {
-            frame->hinge_fixed[h] = limited - frame->hinge_angles[h];
-            frame->hinge_free[h] = 0;
-            out = 1;
+        V turn = gain * *hinge_turn(batch, batch->z, h), limited;
+        for (int i = 0; i < batch->hinge_felt_count[h]; i++) {
+            const int r = batch->hinge_felt[h * problem->rows + i];
+            turn += batch->hinge_rows[h * problem->rows + r] * y[r];
         }
+        const Mask leaves = beyond(batch, h, turn, &limited);
+        batch->hinge_fixed[h] = select(leaves, limited - batch->hinge_angles[h], batch->hinge_fixed[h]);
+        batch->hinge_free[h] &= ~leaves;
+        out |= any(leaves);
     }
     return out;
 }
@@ -119,233 +113,218 @@ static int set_on_limits(Frame *frame, double gain, const double *y)
 /* Descend, and again with hinges that would leave their limits set on them; Q z and the step come out:
 
    step = fixed hinges + gain z + Q^T (c - gain Q z) = fixed hinges + gain z + J^T y */
-static void descend_within_limits(Frame *frame, double gain, double anneal)
+static void descend_within_limits(Batch *batch, V gain, V anneal)
 {
-    const Problem *problem = frame->problem;
-    double *y = frame->scratch_rows + 3 * problem->rows, *Jz = y + problem->rows, *step = frame->step;
-    /* At first the reference is where the frame starts. */
-    const int pulls = length(frame->z, unknowns(frame)) > AT_REST;
-    memset(frame->hinge_free, 1, problem->hinges);
-    memset(frame->hinge_fixed, 0, sizeof *frame->hinge_fixed * problem->hinges);
-    memset(frame->Qz, 0, sizeof *frame->Qz * problem->rows);
-    if (pulls)
-        rows_times(frame, frame->z, Jz);
+    const Problem *problem = batch->problem;
+    V *y = scratch(batch, 0), *q = scratch(batch, 1), *Jz = scratch(batch, 2), *step = batch->step;
+    for (int64_t h = 0; h < problem->hinges; h++)
+        batch->hinge_free[h] = is_zero(all(0.0)), batch->hinge_fixed[h] = all(0.0);
+    rows_times(batch, batch->z, Jz);
     for (int round = 0;; round++) {
-        descend(frame, anneal);
-        if (pulls)
-            pull_in_rank_space(frame, Jz);
-        for (int64_t q = 0; q < problem->rows; q++)
-            frame->scratch_rank[q] = frame->c[q] - gain * frame->Qz[q];
-        out_of_rank_space(frame, frame->scratch_rank, y);
-        if (round == LIMIT_ROUNDS || !set_on_limits(frame, gain, y))
+        descend(batch, anneal);
+        pull_in_rank_space(batch, Jz);
+        for (int64_t p = 0; p < problem->rows; p++)
+            q[p] = batch->c[p] - gain * batch->Qz[p];
+        out_of_rank_space(batch, q, y);
+        if (round == LIMIT_ROUNDS || !set_on_limits(batch, gain, y))
             break;
     }
-    memcpy(step, frame->z, sizeof *step * unknowns(frame));
-    on_free_axes(frame, step);
-    for (int64_t i = 0; i < unknowns(frame); i++)
-        step[i] *= gain;
-    add_rows_transposed(frame, y, step);
+    for (int i = 0; i < batch->unknowns; i++)
+        step[i] = gain * batch->z[i];
+    add_rows_transposed(batch, y, step);
     for (int64_t h = 0; h < problem->hinges; h++)
-        if (!frame->hinge_free[h])
-            add_scaled(step + 3 * problem->hinge[h].column, frame->hinge_fixed[h], frame->hinge_axes + 3 * h);
+        *hinge_turn(batch, step, h) += batch->hinge_fixed[h];
 }
 
 /* The length of Q^T c and the fixed hinges, which are orthogonal. */
-static double task_length(const Frame *frame)
+static V task_length(const Batch *batch)
 {
-    double sum = 0.0;
-    const Layer *last = frame->layers + frame->problem->layers - 1;
-    for (int q = 0; q < last->first_rank + last->rank; q++)
-        sum += frame->c[q] * frame->c[q];
-    for (int64_t h = 0; h < frame->problem->hinges; h++)
-        sum += frame->hinge_fixed[h] * frame->hinge_fixed[h];
-    return sqrt(sum);
+    const int64_t rows = batch->problem->rows, hinges = batch->problem->hinges;
+    return root_of(
+        dot_product(batch->c, batch->c, (int)rows) + dot_product(batch->hinge_fixed, batch->hinge_fixed, (int)hinges));
 }
 
 /* homing.py: a secant step for the pull where it applies and leaves every hinge within its limits. */
-static void accelerate(Frame *frame, double gain, double task)
+static void accelerate(Batch *batch, Mask usable, V gain, V task)
 {
-    const Problem *problem = frame->problem;
-    const int64_t n = unknowns(frame);
-    double size = 0.0, along = 0.0;
-    for (int64_t i = 0; i < n; i++) {
-        const double change = frame->home[i] - frame->home_before[i];
-        size += change * change, along += frame->home[i] * change;
-        frame->fast[i] = frame->step_before[i] + change;
+    const int n = batch->unknowns;
+    V size = all(0.0), share = size;
+    for (int i = 0; i < n; i++) {
+        const V change = batch->home[i] - batch->home_before[i];
+        size += change * change, share += batch->home[i] * change;
+        batch->fast[i] = batch->step_before[i] + change;
     }
-    const double home = length(frame->home, n);
-    if (size <= NO_CHANGE || !(task < LARGEST_TASK_SHARE * home))
+    const V home = length(batch->home, n);
+    usable &= less(all(NO_CHANGE), size) & less(task, LARGEST_TASK_SHARE * home);
+    if (!any(usable))
         return;
-    on_free_axes(frame, frame->fast);
-    off_layers(frame, frame->fast);
-    for (int64_t i = 0; i < n; i++)
-        frame->fast[i] = frame->home[i] - along / size * frame->fast[i];
-    const double factor = smaller(1.0, LARGEST_FACTOR * home / larger(length(frame->fast, n), 1e-300));
+    off_layers(batch, batch->fast);
+    share /= select(usable, size, all(1.0));
+    for (int i = 0; i < n; i++)
+        batch->fast[i] = batch->home[i] - share * batch->fast[i];
+    const V factor = smaller(all(1.0), LARGEST_FACTOR * home / larger(length(batch->fast, n), all(1e-300)));
     /* step + gain (fast - home) */
-    for (int64_t i = 0; i < n; i++)
-        frame->fast[i] = frame->step[i] + gain * (factor * frame->fast[i] - frame->home[i]);
-    for (int64_t h = 0; h < problem->hinges; h++) {
-        double limited;
-        const double turn = dot(frame->fast + 3 * problem->hinge[h].column, frame->hinge_axes + 3 * h);
-        if (frame->hinge_free[h] && beyond(frame, h, turn, &limited) > ON_LIMIT)
-            return;
+    for (int i = 0; i < n; i++)
+        batch->fast[i] = batch->step[i] + gain * (factor * batch->fast[i] - batch->home[i]);
+    for (int64_t h = 0; h < batch->problem->hinges; h++) {
+        V limited;
+        usable &= ~beyond(batch, h, *hinge_turn(batch, batch->fast, h), &limited);
     }
-    memcpy(frame->step, frame->fast, sizeof *frame->step * n);
+    for (int i = 0; i < n; i++)
+        batch->step[i] = select(usable, batch->fast[i], batch->step[i]);
 }
 
 /* Scale the step so that no joint turns further than LARGEST_TURN; returns the largest turn. */
-static double bound_turns(Frame *frame)
+static V bound_turns(Batch *batch)
 {
-    double largest = 0.0;
-    for (int64_t k = 0; k < frame->problem->columns; k++)
-        largest = larger(largest, dot(frame->step + 3 * k, frame->step + 3 * k));
-    largest = sqrt(largest);
-    if (largest <= LARGEST_TURN)
+    V largest = all(0.0);
+    for (int64_t k = 0; k < batch->problem->columns; k++) {
+        const V *w = batch->step + batch->column_unknown[k];
+        largest = larger(largest, batch->column_hinge[k] < 0 ? dot(w, w) : w[0] * w[0]);
+    }
+    largest = root_of(largest);
+    const Mask far = less(all(LARGEST_TURN), largest);
+    if (!any(far))
         return largest;
-    for (int64_t i = 0; i < unknowns(frame); i++)
-        frame->step[i] *= LARGEST_TURN / largest;
-    return LARGEST_TURN;
+    const V factor = select(far, LARGEST_TURN / larger(largest, all(LARGEST_TURN)), all(1.0));
+    for (int i = 0; i < batch->unknowns; i++)
+        batch->step[i] *= factor;
+    return smaller(largest, all(LARGEST_TURN));
 }
 
 /* Remember the pull and the step where the next iteration may compare with them: see homing.py. */
-static void remember(Frame *frame, double task, int has_home)
+static void remember(Batch *batch, V task, int has_home)
 {
-    const int64_t n = unknowns(frame);
-    frame->remembers = task < LARGEST_TASK_SHARE * length(frame->step, n);
-    if (!frame->remembers)
+    const size_t n = batch->unknowns, hinges = batch->problem->hinges;
+    batch->remembers = less(task, LARGEST_TASK_SHARE * length(batch->step, (int)n));
+    if (!any(batch->remembers))
         return;
     if (!has_home)
-        pull_home(frame);
-    memcpy(frame->home_before, frame->home, sizeof *frame->home * n);
-    memcpy(frame->step_before, frame->step, sizeof *frame->step * n);
-    memcpy(frame->hinge_free_before, frame->hinge_free, frame->problem->hinges);
+        pull_home(batch);
+    memcpy(batch->home_before, batch->home, sizeof *batch->home * n);
+    memcpy(batch->step_before, batch->step, sizeof *batch->step * n);
+    memcpy(batch->hinge_free_before, batch->hinge_free, sizeof *batch->hinge_free * hinges);
 }
 
-/* Whether every layer is met to STOP_ERROR. */
-static int are_met(const Frame *frame)
+/* Which lanes meet every layer to STOP_ERROR. */
+static Mask are_met(const Batch *batch)
 {
-    for (int l = 0; l < frame->problem->layers; l++)
-        if (!(length(frame->errors + frame->layers[l].first_row, frame->layers[l].rows) < STOP_ERROR))
-            return 0;
-    return 1;
+    Mask met = is_zero(all(0.0));
+    for (int l = 0; l < batch->problem->layers; l++)
+        met &= less(length(batch->errors + batch->layers[l].first, batch->layers[l].rows), all(STOP_ERROR));
+    return met;
 }
 
-/* Whether nothing is left to do: every layer met, the reference reached, to rounding, and hinges within limits. */
-static int is_at_rest(const Frame *frame)
+/* Rounding is no error and no pull. */
+static void drop_rounding(Batch *batch)
 {
-    const Problem *problem = frame->problem;
-    if (length(frame->errors, problem->rows) > AT_REST || length(frame->z, unknowns(frame)) > AT_REST)
-        return 0;
-    for (int64_t h = 0; h < problem->hinges; h++) {
-        const double angle = frame->hinge_angles[h], *limits = problem->hinge[h].limits;
-        if (angle < limits[0] - ON_LIMIT || angle > limits[1] + ON_LIMIT)
-            return 0;
-    }
-    return 1;
+    const int rows = (int)batch->problem->rows;
+    const Mask pulls = less(all(AT_REST), length(batch->z, batch->unknowns));
+    const Mask errs = less(all(AT_REST), length(batch->errors, rows)) | pulls;
+    for (int i = 0; i < batch->unknowns; i++)
+        batch->z[i] = only(pulls, batch->z[i]);
+    for (int r = 0; r < rows; r++)
+        batch->errors[r] = only(errs, batch->errors[r]);
 }
 
-static void solve_frame(Frame *frame, int64_t at)
+/* Give a lane frame `at`, or none: -1. */
+static void begin_frame(Batch *batch, int lane, int64_t at)
 {
-    const Problem *problem = frame->problem;
-    const int64_t own = problem->frames[at];
-    double *local = problem->rotations + 4 * problem->joints * own;
-    double *translations = problem->translations + 3 * problem->translated * own;
-    double before = 0.0;
-    int nearly = 0;
-    frame->remembers = 0;
-    problem->converged[at] = 0, problem->iterations[at] = 0;
-    for (int64_t iteration = 0; iteration < problem->max_iterations || nearly; iteration++) {
-        forward(frame, local, translations);
-        hinge_state(frame, local);
-        evaluate_tasks(frame, local, at);
-        if (nearly && are_met(frame)) {
-            problem->converged[at] = 1;
-            return;
-        }
-        if (iteration == problem->max_iterations)
-            return;
+    batch->at[lane] = at, batch->iteration[lane] = 0;
+    MASK_LANE(batch->nearly, lane) = MASK_LANE(batch->remembers, lane) = 0;
+    LANE(batch->moved_before, lane) = 0.0;
+    if (at >= 0)
+        load(batch, lane, at);
+}
+
+static void end_frame(Batch *batch, int lane, int converged)
+{
+    const Problem *problem = batch->problem;
+    const int64_t at = batch->at[lane];
+    problem->converged[at] = (uint8_t)converged, problem->iterations[at] = batch->iteration[lane];
+    for (int l = 0; l < problem->layers; l++)
+        problem->ranks[at * problem->layers + l] = (int64_t)LANE(batch->layers[l].rank, lane);
+    store(batch, lane);
+}
+
+/* One iteration of every lane: what it moves. */
+static V iterate(Batch *batch)
+{
+    const Problem *problem = batch->problem;
+    V anneal, gain;
+    for (int lane = 0; lane < LANES; lane++) {
+        const int64_t iteration = batch->iteration[lane];
         const int64_t left_over = problem->max_iterations - ANNEALED_ITERATIONS - iteration - 1;
-        const double anneal = left_over < 0 ? ldexp(1.0, (int)left_over) : 1.0;
-        double gain = problem->attraction * anneal;
+        LANE(anneal, lane) = left_over < 0 ? ldexp(1.0, (int)left_over) : 1.0;
+        LANE(gain, lane) = problem->attraction * LANE(anneal, lane);
         for (int64_t i = FULL_GAIN_ITERATIONS; i < iteration + 1; i++)
-            gain *= GAIN_DECAY;
-        attraction(frame, local, translations, own);
-        gram(frame);
-        double moved = 0.0;
-        if (is_at_rest(frame)) { /* for its ranks alone */
-            memset(frame->hinge_free, 1, problem->hinges);
-            memset(frame->errors, 0, sizeof *frame->errors * problem->rows);
-            descend(frame, anneal);
-        } else {
-            descend_within_limits(frame, gain, anneal);
-            const double task = task_length(frame);
-            const int compares =
-                frame->remembers && !memcmp(frame->hinge_free, frame->hinge_free_before, problem->hinges);
-            if (compares) {
-                pull_home(frame);
-                accelerate(frame, gain, task);
-            }
-            moved = bound_turns(frame);
-            remember(frame, task, compares);
-            moved = larger(moved, apply_step(frame, local, translations));
-        }
-        problem->iterations[at] = iteration + 1;
-        for (int l = 0; l < problem->layers; l++)
-            problem->ranks[at * problem->layers + l] = frame->layers[l].rank;
-        if (moved < STOP_STEP) {
-            problem->converged[at] = 1;
-            return;
-        }
-        const double ratio = moved / larger(before, 1e-300);
-        nearly = ratio < 0.5 && moved * ratio / (1.0 - ratio) < STOP_LEFT;
-        before = moved;
+            LANE(gain, lane) *= GAIN_DECAY;
     }
+    attraction(batch);
+    drop_rounding(batch);
+    gram(batch);
+    descend_within_limits(batch, gain, anneal);
+    const V task = task_length(batch);
+    Mask compares = batch->remembers;
+    for (int64_t h = 0; h < problem->hinges; h++)
+        compares &= ~(batch->hinge_free[h] ^ batch->hinge_free_before[h]);
+    const int compare = any(compares);
+    if (compare) {
+        pull_home(batch);
+        accelerate(batch, compares, gain, task);
+    }
+    const V turned = bound_turns(batch);
+    remember(batch, task, compare);
+    return larger(turned, apply_step(batch));
 }
 
-/* Give a frame its memory, all in one piece; counts it where there is none yet. */
-static size_t lay_out(Frame *frame, char *memory)
+/* Give a batch its memory, all in one piece; counts it where there is none yet. */
+static size_t lay_out(Batch *batch, char *memory)
 {
-    const Problem *problem = frame->problem;
-    const size_t nodes = problem->nodes, R = problem->rows, H = problem->hinges, n = unknowns(frame);
+    const Problem *problem = batch->problem;
+    const size_t nodes = problem->nodes, R = problem->rows, K = problem->columns, H = problem->hinges;
+    batch->unknowns = (int)(3 * (K - H) + H + 3);
+    const size_t n = batch->unknowns;
     size_t needed = 0;
     char **from = &memory;
-#define NUMBERS(count) take(from, &needed, sizeof(double) * (count))
-    frame->positions = NUMBERS(3 * nodes), frame->rotations = NUMBERS(9 * nodes);
-    frame->mass_moments = NUMBERS(3 * nodes), frame->mass_shares = NUMBERS(nodes);
-    frame->hinge_axes = NUMBERS(3 * H), frame->hinge_angles = NUMBERS(H), frame->hinge_rows = NUMBERS(H * R);
-    frame->hinge_fixed = NUMBERS(H);
-    frame->errors = NUMBERS(R), frame->G = NUMBERS(R * R), frame->G_frozen = NUMBERS(R * R), frame->C = NUMBERS(R * R);
-    frame->c = NUMBERS(R), frame->scratch_rows = NUMBERS(5 * R), frame->scratch_rank = NUMBERS(R),
-    frame->Qz = NUMBERS(R);
-    frame->algebra = NUMBERS(R * R + R + factor_scratch((int)R));
-    frame->z = NUMBERS(n), frame->home = NUMBERS(n), frame->step = NUMBERS(n), frame->fast = NUMBERS(n);
-    frame->home_before = NUMBERS(n), frame->step_before = NUMBERS(n);
-    frame->hinge_free = take(from, &needed, H), frame->hinge_free_before = take(from, &needed, H);
-    frame->column_hinge = take(from, &needed, sizeof(int) * problem->columns);
-    frame->layers = take(from, &needed, sizeof(Layer) * problem->layers);
-    double *B = NUMBERS(R * R);
-    int *order = take(from, &needed, sizeof(int) * R);
-#undef NUMBERS
-    if (memory != NULL) {
-        memset(frame->c, 0, sizeof(double) * R), memset(frame->scratch_rank, 0, sizeof(double) * R);
-        memset(frame->Qz, 0, sizeof(double) * R);
-        for (int64_t k = 0; k < problem->columns; k++)
-            frame->column_hinge[k] = -1;
-        for (int64_t h = 0; h < problem->hinges; h++)
-            frame->column_hinge[problem->hinge[h].column] = (int)h;
-        int row = 0, t = 0;
-        for (int l = 0; l < problem->layers; l++) {
-            Layer *layer = frame->layers + l;
-            *layer = (Layer){row, 0, 0, 0, 0, order + row, B + row * R};
-            for (; t < problem->tasks && problem->task[t].layer == l; t++)
-                row += (int)problem->task[t].rows;
-            layer->rows = row - layer->first_row;
-        }
-        frame->weighs = 0;
-        for (int64_t i = 0; i < problem->tasks; i++)
-            frame->weighs |= problem->task[i].kind == CENTER_OF_MASS;
+#define NUMBERS(count) take(from, &needed, sizeof(V) * (count))
+#define MASKS(count) take(from, &needed, sizeof(Mask) * (count))
+#define PLACES(count) take(from, &needed, sizeof(int) * (count))
+    batch->local = NUMBERS(4 * nodes), batch->reference = NUMBERS(4 * K), batch->offsets = NUMBERS(3 * nodes);
+    batch->targets = NUMBERS(4 * problem->tasks);
+    batch->positions = NUMBERS(3 * nodes), batch->rotations = NUMBERS(9 * nodes);
+    batch->mass_moments = NUMBERS(3 * nodes);
+    batch->mass_shares = take(from, &needed, sizeof(double) * nodes);
+    batch->hinge_axes = NUMBERS(3 * H), batch->hinge_angles = NUMBERS(H), batch->hinge_rows = NUMBERS(H * R);
+    batch->hinge_fixed = NUMBERS(H), batch->hinge_free = MASKS(H), batch->hinge_free_before = MASKS(H);
+    batch->errors = NUMBERS(R), batch->G = NUMBERS(R * R), batch->G_frozen = NUMBERS(R * R), batch->M = NUMBERS(R * R);
+    batch->c = NUMBERS(R), batch->Qz = NUMBERS(R), batch->scratch_rows = NUMBERS(5 * R);
+    batch->algebra = NUMBERS(factor_scratch((int)R)), batch->dependent = MASKS(R);
+    batch->z = NUMBERS(n), batch->home = NUMBERS(n), batch->step = NUMBERS(n), batch->fast = NUMBERS(n);
+    batch->home_before = NUMBERS(n), batch->step_before = NUMBERS(n);
+    batch->column_hinge = PLACES(K), batch->column_unknown = PLACES(K);
+    batch->layers = take(from, &needed, sizeof(Layer) * problem->layers);
+    for (int64_t l = 0, t = 0, row = 0; l < problem->layers; l++) {
+        const int64_t first = row;
+        for (; t < problem->tasks && problem->task[t].layer == l; t++)
+            row += problem->task[t].rows;
+        V *B = NUMBERS((row - first) * (row - first));
+        if (memory != NULL)
+            batch->layers[l] = (Layer){.first = (int)first, .rows = (int)(row - first), .B = B, .rank = all(0.0)};
     }
-    lay_out_tasks(frame, from, &needed);
+#undef NUMBERS
+#undef MASKS
+#undef PLACES
+    if (memory != NULL)
+        for (int64_t k = 0; k < problem->columns; k++)
+            batch->column_hinge[k] = -1;
+    for (int64_t h = 0; h < problem->hinges && memory != NULL; h++)
+        batch->column_hinge[problem->hinge[h].column] = (int)h;
+    for (int64_t k = 0, unknown = 0; k < problem->columns && memory != NULL; k++) {
+        batch->column_unknown[k] = (int)unknown;
+        unknown += batch->column_hinge[k] < 0 ? 3 : 1;
+    }
+    lay_out_tasks(batch, from, &needed);
     return needed;
 }
 
@@ -365,18 +344,83 @@ static void start_where_the_last_ended(const Problem *problem, int64_t at)
     }
 }
 
+/* Fill the lanes that have no frame, from frame `next` on, as long as there are any; returns which is next then. In
+   order, one goes at a time. */
+static int64_t fill(Batch *batch, int64_t next, int64_t end)
+{
+    const Problem *problem = batch->problem;
+    for (int lane = 0; lane < (problem->in_order ? 1 : LANES); lane++) {
+        while (next < end && problem->converged[next])
+            next++;
+        if (batch->at[lane] >= 0 || next == end)
+            continue;
+        if (problem->in_order && next > 0)
+            start_where_the_last_ended(problem, next);
+        begin_frame(batch, lane, next++);
+    }
+    return next;
+}
+
+static int active(const Batch *batch)
+{
+    int count = 0;
+    for (int lane = 0; lane < LANES; lane++)
+        count += batch->at[lane] >= 0;
+    return count;
+}
+
+/* End the frames that turn out to be met, or have had all their iterations. */
+static void end_before_iterating(Batch *batch)
+{
+    const Mask met = any(batch->nearly) ? batch->nearly & are_met(batch) : batch->nearly;
+    for (int lane = 0; lane < LANES; lane++)
+        if (batch->at[lane] >= 0 &&
+            (MASK_LANE(met, lane) || batch->iteration[lane] == batch->problem->max_iterations)) {
+            end_frame(batch, lane, MASK_LANE(met, lane) != 0);
+            batch->at[lane] = -1;
+        }
+}
+
+/* End the frames whose last step was short enough; expect that of others. */
+static void end_after_iterating(Batch *batch, V moved)
+{
+    const V ratio = moved / larger(batch->moved_before, all(1e-300));
+    batch->nearly = less(ratio, all(0.5)) & less(moved * ratio, STOP_LEFT * (1.0 - ratio));
+    batch->moved_before = moved;
+    for (int lane = 0; lane < LANES; lane++) {
+        batch->iteration[lane]++;
+        if (batch->at[lane] >= 0 && LANE(moved, lane) < STOP_STEP) {
+            end_frame(batch, lane, 1);
+            batch->at[lane] = -1;
+        }
+    }
+}
+
 int solve_frames(const Problem *problem, int64_t begin, int64_t end)
 {
-    Frame frame = {.problem = problem};
-    char *memory = malloc(lay_out(&frame, NULL));
+    Batch batch = {.problem = problem};
+    char *memory = malloc(lay_out(&batch, NULL) + sizeof(V));
     if (memory == NULL)
         return -1;
-    lay_out(&frame, memory);
-    for (int64_t at = begin; at < end; at++) {
-        if (problem->in_order && at > 0)
-            start_where_the_last_ended(problem, at);
-        if (!problem->converged[at])
-            solve_frame(&frame, at);
+    lay_out(&batch, memory + sizeof(V) - (uintptr_t)memory % sizeof(V));
+    share_masses(&batch);
+    for (int lane = 0; lane < LANES && begin < end; lane++) {
+        load(&batch, lane, begin); /* so that a lane without a frame has numbers, too */
+        begin_frame(&batch, lane, -1);
+    }
+    for (int64_t next = begin;;) {
+        next = fill(&batch, next, end);
+        const int count = active(&batch);
+        if (count == 0)
+            break;
+        forward(&batch);
+        hinge_state(&batch);
+        evaluate_tasks(&batch);
+        end_before_iterating(&batch);
+        const int left = active(&batch);
+        if (left == 0 || (left < count && next < end))
+            continue;
+        end_after_iterating(&batch, iterate(&batch));
     }
     free(memory);
     return 0;

@@ -17,8 +17,6 @@ from motionedit.core.ik.layers import Descent, off_layers
 from motionedit.core.ik.tasks import posture_error
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.ik.layered_solver import Reference
     from motionedit.core.ik.tasks import Columns
@@ -74,18 +72,11 @@ class Memory:
         self.tasks[frames], self.free[frames] = np.linalg.norm(descent.tasks, axis=1), descent.free
 
 
-def accelerated(
-    memory: Memory, frames: IntArray, descent: Descent, *, on_axes: Callable[[FloatArray], FloatArray]
-) -> FloatArray:
+def accelerated(memory: Memory, frames: IntArray, descent: Descent) -> FloatArray:
     """Return the pull h, shape (N, n), after a secant step where it applies, else as it is.
 
     With h' and the step x' of the iteration before, y = h - h', and c = (h . y) / (y . y), which makes |h - c y| least:
     h - c P (x' + y), where P takes off what the layers see.
-
-    Parameters
-    ----------
-    on_axes
-        Projects rows, shape (N, k, n), on the axes of hinges: those of x' were the axes then.
     """
     home = descent.home
     step, change = memory.steps[frames], home - memory.homes[frames]
@@ -96,7 +87,7 @@ def accelerated(
     usable &= task < _LARGEST_TASK_SHARE * length
     if not usable.any():
         return home
-    way = on_axes(((step + change) * descent.free)[:, None])[:, 0]
+    way = (step + change) * descent.free
     share = np.where(usable, np.sum(home * change, axis=1) / np.where(usable, size, 1.0), 0.0)
     fast = home - share[:, None] * off_layers(descent.Q, way)
     longest = _LARGEST_FACTOR * length / np.maximum(np.linalg.norm(fast, axis=1), 1e-300)

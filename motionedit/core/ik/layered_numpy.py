@@ -110,10 +110,11 @@ def _iterate(problem: Problem, solution: LayeredSolution, reference: Reference, 
     for iteration in range(problem.max_iterations):
         here = frames - block.first
         pose = _Pose.of(state, frames)
-        step, descent = _step(block, pose, iteration)
+        hinges = _Hinges(problem, pose)
+        step, descent = _step(block, pose, hinges, iteration)
         largest = np.linalg.norm(step[:, :-3].reshape(len(frames), -1, 3), axis=2).max(axis=1, initial=0.0)
         step *= np.minimum(1.0, LARGEST_TURN / np.maximum(largest, LARGEST_TURN))[:, None]
-        _apply(state, columns, pose, step, root)
+        _apply(state, columns, pose, hinges.in_world(step), root)
         memory.keep(here, descent, step)
         solution.iterations[frames] = iteration + 1
         solution.ranks[frames] = descent.ranks
@@ -164,12 +165,11 @@ def _apply(state: Motion, columns: Columns, pose: _Pose, step: FloatArray, root:
         state.translations[frames, root] += shift
 
 
-def _step(block: _Block, pose: _Pose, iteration: int) -> tuple[FloatArray, Descent]:
+def _step(block: _Block, pose: _Pose, hinges: _Hinges, iteration: int) -> tuple[FloatArray, Descent]:
     """Return the step, shape (N, n), and the descent behind it; hinges that leave their limits are set on them."""
     problem = block.problem
     anneal = 2.0 ** min(0, problem.max_iterations - ANNEALED_ITERATIONS - iteration - 1)
     gain = problem.attraction * GAIN_DECAY ** max(0, iteration + 1 - FULL_GAIN_ITERATIONS) * anneal
-    hinges = _Hinges(problem, pose)
     evaluated = [_evaluated(layer, pose) for layer in problem.layers]
     evaluated = [(e, hinges.on_axes(J)) for e, J in evaluated]
     z = attraction(problem.columns, block.reference, pose.world, pose.motion, pose.frames)
@@ -179,7 +179,7 @@ def _step(block: _Block, pose: _Pose, iteration: int) -> tuple[FloatArray, Desce
     descent = descend(evaluated, z, fixed=np.zeros_like(z), free=everything, largest_errors=largest_errors)
     hinges.keep_limits(evaluated, z, descent, largest_errors, gain)
     step = descent.tasks + gain * descent.home
-    home = accelerated(block.memory, pose.frames - block.first, descent, on_axes=hinges.on_axes)
+    home = accelerated(block.memory, pose.frames - block.first, descent)
     fast = descent.tasks + gain * home
     outside = hinges.out_of_limits(fast, descent.free).any(axis=1, keepdims=True)
     return np.where(outside, step, fast), descent
@@ -195,7 +195,10 @@ def _evaluated(layer: Sequence[WeightedTask], pose: _Pose) -> tuple[FloatArray, 
 
 
 class _Hinges:
-    """The hinges of N frames: world axes (N, H, 3), angles (N, H) in rad, and their unknowns `blocks` (H, 3)."""
+    """The hinges of N frames: world axes (N, H, 3), angles (N, H) in rad, and their unknowns `blocks` (H, 3).
+
+    Of a hinge's three unknowns the first is the turn about its axis; the others stay 0.
+    """
 
     def __init__(self, problem: Problem, pose: _Pose) -> None:
         hinges = problem.hinges
@@ -211,15 +214,22 @@ class _Hinges:
         self.blocks = 3 * hinges.places[:, None] + np.arange(3)
 
     def on_axes(self, J: FloatArray) -> FloatArray:
-        """Return rows, shape (N, k, n), with each hinge's block projected on its axis: J_j <- (J_j a) a^T."""
+        """Return rows, shape (N, k, n), with what they have along each hinge's axis in its first unknown."""
         if not len(self.places):
             return J
         J = J.copy()
-        blocks = J[:, :, :-3].reshape(*J.shape[:2], -1, 3)
-        along = np.einsum("nkhc,nhc->nkh", blocks[:, :, self.places], self.axes)
-        blocks[:, :, self.places] = along[..., None] * self.axes[:, None]
-        J[:, :, :-3] = blocks.reshape(*J.shape[:2], -1)
+        along = np.einsum("nkhc,nhc->nkh", J[:, :, self.blocks], self.axes)
+        J[:, :, self.blocks] = 0.0
+        J[:, :, self.blocks[:, 0]] = along
         return J
+
+    def in_world(self, step: FloatArray) -> FloatArray:
+        """Return a step, shape (N, n), with each hinge's turn as a world-axis increment."""
+        if not len(self.places):
+            return step
+        step = step.copy()
+        step[:, self.blocks] = step[:, self.blocks[:, :1]] * self.axes
+        return step
 
     def out_of_limits(self, step: FloatArray, free: BoolArray) -> BoolArray:
         """Return which free hinges a step (N, n) would take beyond their limits, shape (N, H)."""
@@ -248,14 +258,14 @@ class _Hinges:
             onto = self._limited(self._after(step)) - self.angles
             for h in np.flatnonzero(out.any(axis=0)):
                 rows = np.flatnonzero(out[:, h])
-                fixed[rows[:, None], self.blocks[h]] = onto[rows, h, None] * self.axes[rows, h]
+                fixed[rows, self.blocks[h, 0]] = onto[rows, h]
                 free[rows[:, None], self.blocks[h]] = False
             part = [(e[again], J[again]) for e, J in evaluated]
             new = descend(part, z[again], fixed=fixed[again], free=free[again], largest_errors=largest_errors)
             descent.replace_rows(again, new)
 
     def _after(self, step: FloatArray) -> FloatArray:
-        after: FloatArray = self.angles + np.einsum("nhc,nhc->nh", step[:, self.blocks], self.axes)
+        after: FloatArray = self.angles + step[:, self.blocks[:, 0]]
         return after
 
     def _limited(self, angles: FloatArray) -> FloatArray:

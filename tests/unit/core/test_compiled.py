@@ -17,6 +17,7 @@ from motionedit.core.editing.continuity import smoothed_displacement
 from motionedit.core.editing.prioritized_edit import Body, LayeredSettings, PaperFilter, Passes, edit_by_priorities
 from motionedit.core.editing.trajectories import ControlPoint
 from motionedit.core.hinges import Hinge
+from motionedit.core.ik import kernel
 from motionedit.core.ik.recruiting import RecruitRule
 from motionedit.core.kinematics import Effector, forward
 from motionedit.core.motion import Motion
@@ -135,6 +136,41 @@ def test_both_solvers_move_a_body_alike(patch, seed, joints, count, reach):
     assert difference(mine, theirs) < (FEASIBLE if met else INFEASIBLE)
     if met:
         np.testing.assert_array_equal(mine.iterations, theirs.iterations)
+
+
+class Narrow:
+    """The compiled part with the solver that every processor has."""
+
+    def __getattr__(self, name):
+        return getattr(compiled(), "solve_narrow" if name == "solve" else name)
+
+
+@given(seed=st.integers(0, 2**32 - 1), joints=st.integers(3, 16), count=st.integers(1, 5))
+@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_the_width_of_the_processors_vectors_changes_no_bit(patch, seed, joints, count):
+    motion, constraints, body = problem_of(seed, joints, count, 0.1)
+    setting = LayeredSettings(smoothing=Passes(0), max_iterations=12)
+    wide = edit_by_priorities(motion, constraints, body, setting)
+    with patch.context() as narrowed:
+        narrowed.setattr(kernel, "compiled", Narrow)
+        narrow = edit_by_priorities(motion, constraints, body, setting)
+    np.testing.assert_array_equal(wide.motion.rotations, narrow.motion.rotations)
+    np.testing.assert_array_equal(wide.motion.translations, narrow.motion.translations)
+    np.testing.assert_array_equal(wide.ranks, narrow.ranks)
+
+
+@given(seed=st.integers(0, 2**32 - 1), joints=st.integers(3, 16), count=st.integers(1, 5))
+@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_a_frame_comes_out_the_same_whoever_its_neighbours_are(patch, seed, joints, count):
+    motion, constraints, body = problem_of(seed, joints, count, 0.1)
+    setting = LayeredSettings(smoothing=Passes(0), max_iterations=12)
+    together = edit_by_priorities(motion, constraints, body, setting)
+    with patch.context() as parted:
+        parted.setattr(kernel, "_LEAST_SHARE", 1)
+        alone = edit_by_priorities(motion, constraints, body, replace(setting, threads=FRAMES))
+    np.testing.assert_array_equal(together.motion.rotations, alone.motion.rotations)
+    np.testing.assert_array_equal(together.motion.translations, alone.motion.translations)
+    np.testing.assert_array_equal(together.iterations, alone.iterations)
 
 
 @pytest.mark.parametrize("smoothing", [Passes(2, 1.5), PaperFilter(2, 10.0)])

@@ -11,10 +11,6 @@ PULL = np.random.default_rng(0).normal(size=(1, SIZE))
 NOW = np.array([0])
 
 
-def plainly(rows):
-    return rows
-
-
 def descent_of(home, *, tasks=None, Q=None, free=None):
     return Descent(
         np.zeros((1, SIZE)) if tasks is None else tasks,
@@ -29,7 +25,7 @@ def after(ratio, *, before=None, **now):
     """Return the pull that follows one of PULL, whose step was made in full, and left `ratio` of it."""
     memory = Memory.empty(1, SIZE)
     memory.keep(NOW, before or descent_of(PULL), PULL)
-    return accelerated(memory, NOW, descent_of(ratio * PULL, **now), on_axes=plainly)
+    return accelerated(memory, NOW, descent_of(ratio * PULL, **now))
 
 
 @pytest.mark.parametrize("ratio", [-1.5, -0.6, 0.3, 0.6])
@@ -43,7 +39,7 @@ def test_an_accelerated_pull_is_at_most_three_times_the_plain_one():
 
 
 def test_the_first_pull_is_as_it_is():
-    home = accelerated(Memory.empty(1, SIZE), NOW, descent_of(PULL), on_axes=plainly)
+    home = accelerated(Memory.empty(1, SIZE), NOW, descent_of(PULL))
     np.testing.assert_array_equal(home, PULL)
 
 

@@ -1,0 +1,83 @@
+/* The layered solver in C: a batch of frames on their way, side by side in lanes, and who does what with it.
+
+   The method is that of layers.py, homing.py and layered_numpy.py in core/ik; what differs is how the same numbers are
+   found. The unknowns of a step are a world-axis increment for each column, or its angle alone where it is a hinge, and
+   the root's shift: n = 3 (K - H) + H + 3. The Jacobian J of a frame is never formed. Every row of every task is a force
+   f at a point and a torque t, shared by the columns of a chain:
+
+       row . w  =  sum_j w_j . (l_j x f + t) + w_root . f,        l_j = point - p_j
+
+   so G = J J^T needs sums over common columns of the levers l_j alone, J v and J^T y one sweep each. Everything else
+   happens among the R rows, and in the space of the orthonormal rows Q that they span ("rank space"), a number a row,
+   0 where a row adds no direction to those before:
+
+       G = M M^T,    J = M Q,    Q_l = B_l (J_l - M_l Q_above) */
+
+#ifndef MOTIONEDIT_BATCH_H
+#define MOTIONEDIT_BATCH_H
+
+#include "lanes.h"
+#include "layered.h"
+
+/* What a task pulls at: a force and a torque for each of its rows, on the columns of a chain. */
+typedef struct {
+    int count, root;
+    int *columns;                     /* shape (count,), growing */
+    V *levers;                        /* shape (count, 3) */
+    V force[3][3], torque[3][3];      /* per row */
+    int has_force, has_torque, plain; /* plain: the world's axes times one weight, and no torque */
+} Part;
+
+typedef struct {
+    int parts, first_row;
+    Part part[2]; /* the point's, and the base's */
+} Pull;
+
+/* The columns that two parts share, without hinges: places in the one and in the other. */
+typedef struct {
+    int task[2], part[2], count;
+    int *places; /* shape (count, 2) */
+} Shared;
+
+/* One layer among the rows and in rank space. */
+typedef struct {
+    int first, rows;
+    int full; /* whether B has numbers beside its lower triangle: where a lane's rank was in doubt */
+    V *B;     /* shape (rows, rows) */
+    V rank;
+} Layer;
+
+/* All arrays are a thread's own. */
+typedef struct {
+    const Problem *problem;
+    int64_t at[LANES], iteration[LANES]; /* which of the N frames a lane has, or -1; and its iteration */
+    V moved_before;                      /* rad or m, in the iteration before */
+    Mask nearly, remembers;
+    V *local, *reference, *offsets; /* quaternions of nodes and columns; where nodes are in their parents */
+    V reference_root[3], *targets;  /* shape (T, 4) */
+    V *positions, *rotations;       /* world, shapes (nodes, 3), (nodes, 9) */
+    V *mass_moments, center[3];     /* of subtrees, shape (nodes, 3), and of the whole body */
+    double *mass_shares;            /* of subtrees, shape (nodes,) */
+    int weighs, unknowns;
+    Pull *pulls;
+    Shared *shared;
+    int shared_count;
+    int *column_hinge, *column_unknown;        /* shape (K,): its hinge, or -1; its first unknown */
+    int *hinge_felt, *hinge_felt_count;        /* shapes (H, R), (H,): the rows that feel it turn */
+    V *hinge_axes, *hinge_angles, *hinge_rows; /* shapes (H, 3), in the world; (H,), (H, R) */
+    V *hinge_fixed;                            /* rad, shape (H,) */
+    Mask *hinge_free, *hinge_free_before;      /* shape (H,) */
+    Layer *layers;
+    V *errors, *G, *G_frozen;     /* shapes (R,), (R, R), (R, R): blocks on and below the diagonal */
+    const V *G_free;              /* G, or G_frozen where hinges are on their limits */
+    V *M;                         /* shape (R, R), lower triangle of layers */
+    V *c, *Qz;                    /* rank space, shape (R,) */
+    V *scratch_rows, *algebra;    /* shape (5, R); a layer's factorization */
+    Mask *dependent;              /* shape (R,): a layer's rows that got no direction */
+    V *z, *home, *step, *fast;    /* shape (n,) */
+    V *home_before, *step_before; /* shape (n,) */
+} Batch;
+
+#define METRES_PER_RADIAN 0.3
+
+#endif

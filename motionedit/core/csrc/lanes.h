@@ -1,0 +1,133 @@
+/* Vectors of one number from each of several frames: what is done with one is done with all, and no lane knows of the
+   others. So a frame comes out the same, to the bit, whatever the width and whoever its neighbours. */
+
+#ifndef MOTIONEDIT_LANES_H
+#define MOTIONEDIT_LANES_H
+
+#include <math.h>
+#include <stdint.h>
+
+/* V: a number a lane. Mask: -1 or 0 a lane. ONE_LANE asks for plain numbers. */
+#if defined(__AVX2__) && !defined(ONE_LANE)
+enum { LANES = 4 };
+typedef double V __attribute__((vector_size(32)));
+typedef int64_t Mask __attribute__((vector_size(32)));
+#define VECTORS
+#elif defined(__GNUC__) && !defined(ONE_LANE)
+enum { LANES = 2 };
+typedef double V __attribute__((vector_size(16)));
+typedef int64_t Mask __attribute__((vector_size(16)));
+#define VECTORS
+#else
+enum { LANES = 1 };
+typedef double V;
+typedef int64_t Mask;
+#endif
+
+/* As initializers. */
+#if !defined(VECTORS)
+#define ZEROS 0.0
+#define ONES 1.0
+#elif defined(__AVX2__)
+#define ZEROS {0.0, 0.0, 0.0, 0.0}
+#define ONES {1.0, 1.0, 1.0, 1.0}
+#else
+#define ZEROS {0.0, 0.0}
+#define ONES {1.0, 1.0}
+#endif
+
+/* One lane of a V or a Mask, to read or to write. */
+#define LANE(v, lane) (((double *)&(v))[lane])
+#define MASK_LANE(m, lane) (((int64_t *)&(m))[lane])
+
+#ifdef VECTORS
+static inline V all(double x)
+{
+    return x - (V){0.0};
+}
+static inline Mask less(V a, V b)
+{
+    return a < b;
+}
+static inline Mask is_zero(V a)
+{
+    return a == 0.0;
+}
+static inline V select(Mask which, V a, V b)
+{
+    return (V)((which & (Mask)a) | (~which & (Mask)b));
+}
+static inline int any(Mask m)
+{
+    int64_t found = 0;
+    for (int i = 0; i < LANES; i++)
+        found |= m[i];
+    return found != 0;
+}
+static inline V root_of(V a)
+{
+    for (int i = 0; i < LANES; i++)
+        a[i] = sqrt(a[i]);
+    return a;
+}
+#else
+static inline V all(double x)
+{
+    return x;
+}
+static inline Mask less(V a, V b)
+{
+    return -(Mask)(a < b);
+}
+static inline Mask is_zero(V a)
+{
+    return -(Mask)(a == 0.0);
+}
+static inline V select(Mask which, V a, V b)
+{
+    return which ? a : b;
+}
+static inline int any(Mask m)
+{
+    return m != 0;
+}
+static inline V root_of(V a)
+{
+    return sqrt(a);
+}
+#endif
+
+static inline V larger(V a, V b)
+{
+    return select(less(b, a), a, b);
+}
+
+static inline V smaller(V a, V b)
+{
+    return select(less(a, b), a, b);
+}
+
+static inline V size_of(V a)
+{
+    return larger(a, -a);
+}
+
+/* a where the mask says so, else 0 */
+static inline V only(Mask which, V a)
+{
+    return select(which, a, all(0.0));
+}
+
+/* a . b of n numbers; two sums at a time do not wait for each other. */
+static inline V dot_product(const V *a, const V *b, int n)
+{
+    V even = all(0.0), odd = even;
+    int i = 0;
+    for (; i + 2 <= n; i += 2)
+        even += a[i] * b[i], odd += a[i + 1] * b[i + 1];
+    if (i < n)
+        even += a[i] * b[i];
+    return even + odd;
+}
+
+#endif
