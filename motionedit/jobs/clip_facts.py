@@ -11,13 +11,12 @@ import numpy as np
 from motionedit.core import ground, kinematics
 from motionedit.core.anatomy import Anatomy, find_anatomy
 from motionedit.core.contacts import find_plants
-from motionedit.core.timeline.alignment import Alignment, align_to
-from motionedit.core.timeline.resample import resample
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
     from motionedit.core.bvh import Clip
     from motionedit.core.kinematics import WorldPoses
+    from motionedit.core.timeline.alignment import Alignment
 
 
 Line = Literal["hips", "feet"]
@@ -72,6 +71,8 @@ class ClipFacts:
 
     def alignment(self, by: Line, *, heading: bool, position: bool, at: float | None) -> Alignment:
         """Return the alignment of a clip on the ground at a frame (None: the first), by the line of hips or feet."""
+        from motionedit.core.timeline.alignment import align_to
+
         poses, frame = self._at(at)
         found = ground.stance_frame(poses, self.anatomy, up=self.up, frame=frame) if by == "feet" else None
         return align_to(found or self.heading_frame(at), heading=heading, position=position)
@@ -80,6 +81,8 @@ class ClipFacts:
         """Return poses and a frame of them: the clip's own, or those of one resampled frame."""
         if at is None:
             return self.poses, self.first
+        from motionedit.core.timeline.resample import resample
+
         motion = self.clip.motion
         return kinematics.forward(resample(motion, np.array([at]), frame_time=motion.frame_time)), 0
 

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motionedit.core.timeline.warp import Timeline, make_warp, round_half_up
+from motionedit.core.timeline import round_half_up
+from motionedit.core.timeline.warp import Timeline, make_warp
 from motionedit.errors import ClipError, MotionEditError
 
 if TYPE_CHECKING:

@@ -15,7 +15,8 @@ from motionedit.core.ground import axis_name
 from motionedit.core.pca.fit import components_for
 from motionedit.core.pca.model_file import read_model
 from motionedit.core.skeleton_match import match_joints
-from motionedit.core.timeline.warp import make_warp, round_half_up
+from motionedit.core.timeline import round_half_up
+from motionedit.core.timeline.warp import make_warp
 from motionedit.errors import ClipError
 from motionedit.jobs import resolve
 from motionedit.jobs.batch import Outcome, plan, run_batch

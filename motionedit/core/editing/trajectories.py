@@ -14,8 +14,7 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.editing.splines import kochanek_bartels
-from motionedit.core.pca.coordinates import unwrapped
-from motionedit.core.timeline.warp import round_half_up
+from motionedit.core.timeline import round_half_up
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -260,6 +259,8 @@ def _arcs(before: FloatArray, after: FloatArray) -> FloatArray:
     The shorter arc is taken half way, where it weighs most. A shorter arc at every frame would change to the other
     side, and the target jump, where the input turns past half a turn from its goal.
     """
+    from motionedit.core.pca.coordinates import unwrapped
+
     shortest = rot.log(rot.multiply(rot.conjugate(before), after))[:, None]
     middle = len(shortest) // 2
     down, up = unwrapped(shortest[middle::-1])[::-1], unwrapped(shortest[middle:])

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
+from motionedit.core.ik import METRES_PER_RADIAN
 from motionedit.core.ik.chain import EffectorState, evaluate
 
 if TYPE_CHECKING:
@@ -15,9 +16,6 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import FloatArray
     from motionedit.core.ik.chain import CoefficientChain
-
-# One radian of orientation weighs as much as this many metres at leg length 0.85 m.
-METRES_PER_RADIAN = 0.3
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,7 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.center_of_mass import Masses, center_of_mass, subtree_centers
-from motionedit.core.ik.goals import METRES_PER_RADIAN
+from motionedit.core.ik import METRES_PER_RADIAN
 from motionedit.core.kinematics import Effector, WorldPoses, effector_positions
 
 if TYPE_CHECKING:

@@ -80,8 +80,3 @@ def make_warp(timeline: Timeline, *, first: int, last: int, events: Mapping[str,
             raise ClipError(message, file=label)
     frames = [0.0, *(float(frame) for _, frame in timeline.events), float(timeline.frames - 1)]
     return TimeWarp(np.array(source), np.array(frames))
-
-
-def round_half_up(value: float) -> int:
-    """Return the nearest integer, halves up: the rule of every time in a spec."""
-    return int(np.floor(value + 0.5))

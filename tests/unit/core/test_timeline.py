@@ -6,10 +6,11 @@ from strokes import TIMELINE, place, stroke
 
 from motionedit.core import kinematics
 from motionedit.core import rotations as rot
+from motionedit.core.timeline import round_half_up
 from motionedit.core.timeline.alignment import aligned, travel_path
 from motionedit.core.timeline.events import Search, find_event
 from motionedit.core.timeline.resample import resample
-from motionedit.core.timeline.warp import Timeline, make_warp, round_half_up
+from motionedit.core.timeline.warp import Timeline, make_warp
 from motionedit.errors import ClipError
 
 
