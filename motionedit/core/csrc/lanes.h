@@ -7,8 +7,9 @@
 #include <math.h>
 #include <stdint.h>
 
-/* V: a number a lane. Mask: -1 or 0 a lane. ONE_LANE asks for plain numbers. */
-#if defined(__AVX2__) && !defined(ONE_LANE)
+/* V: a number a lane. Mask: -1 or 0 a lane. ONE_LANE asks for plain numbers, FOUR_LANES for wider vectors than every
+   processor has. */
+#if defined(FOUR_LANES)
 enum { LANES = 4 };
 typedef double V __attribute__((vector_size(32)));
 typedef int64_t Mask __attribute__((vector_size(32)));
@@ -28,7 +29,7 @@ typedef int64_t Mask;
 #if !defined(VECTORS)
 #define ZEROS 0.0
 #define ONES 1.0
-#elif defined(__AVX2__)
+#elif defined(FOUR_LANES)
 #define ZEROS {0.0, 0.0, 0.0, 0.0}
 #define ONES {1.0, 1.0, 1.0, 1.0}
 #else
