@@ -278,56 +278,6 @@ static V iterate(Batch *batch)
     return larger(turned, apply_step(batch));
 }
 
-/* Give a batch its memory, all in one piece; counts it where there is none yet. */
-static size_t lay_out(Batch *batch, char *memory)
-{
-    const Problem *problem = batch->problem;
-    const size_t nodes = problem->nodes, R = problem->rows, K = problem->columns, H = problem->hinges;
-    batch->unknowns = (int)(3 * (K - H) + H + 3);
-    const size_t n = batch->unknowns;
-    size_t needed = 0;
-    char **from = &memory;
-#define NUMBERS(count) take(from, &needed, sizeof(V) * (count))
-#define MASKS(count) take(from, &needed, sizeof(Mask) * (count))
-#define PLACES(count) take(from, &needed, sizeof(int) * (count))
-    batch->local = NUMBERS(4 * nodes), batch->reference = NUMBERS(4 * K), batch->offsets = NUMBERS(3 * nodes);
-    batch->targets = NUMBERS(4 * problem->tasks);
-    batch->positions = NUMBERS(3 * nodes), batch->rotations = NUMBERS(9 * nodes);
-    batch->mass_moments = NUMBERS(3 * nodes);
-    batch->mass_shares = take(from, &needed, sizeof(double) * nodes);
-    batch->hinge_axes = NUMBERS(3 * H), batch->hinge_angles = NUMBERS(H), batch->hinge_rows = NUMBERS(H * R);
-    batch->hinge_fixed = NUMBERS(H), batch->hinge_free = MASKS(H), batch->hinge_free_before = MASKS(H);
-    batch->errors = NUMBERS(R), batch->G = NUMBERS(R * R), batch->G_frozen = NUMBERS(R * R), batch->M = NUMBERS(R * R);
-    batch->c = NUMBERS(R), batch->Qz = NUMBERS(R), batch->scratch_rows = NUMBERS(5 * R);
-    batch->algebra = NUMBERS(factor_scratch((int)R)), batch->dependent = MASKS(R);
-    batch->z = NUMBERS(n), batch->home = NUMBERS(n), batch->step = NUMBERS(n), batch->fast = NUMBERS(n);
-    batch->home_before = NUMBERS(n), batch->step_before = NUMBERS(n);
-    batch->column_hinge = PLACES(K), batch->column_unknown = PLACES(K);
-    batch->layers = take(from, &needed, sizeof(Layer) * problem->layers);
-    for (int64_t l = 0, t = 0, row = 0; l < problem->layers; l++) {
-        const int64_t first = row;
-        for (; t < problem->tasks && problem->task[t].layer == l; t++)
-            row += problem->task[t].rows;
-        V *B = NUMBERS((row - first) * (row - first));
-        if (memory != NULL)
-            batch->layers[l] = (Layer){.first = (int)first, .rows = (int)(row - first), .B = B, .rank = all(0.0)};
-    }
-#undef NUMBERS
-#undef MASKS
-#undef PLACES
-    if (memory != NULL)
-        for (int64_t k = 0; k < problem->columns; k++)
-            batch->column_hinge[k] = -1;
-    for (int64_t h = 0; h < problem->hinges && memory != NULL; h++)
-        batch->column_hinge[problem->hinge[h].column] = (int)h;
-    for (int64_t k = 0, unknown = 0; k < problem->columns && memory != NULL; k++) {
-        batch->column_unknown[k] = (int)unknown;
-        unknown += batch->column_hinge[k] < 0 ? 3 : 1;
-    }
-    lay_out_tasks(batch, from, &needed);
-    return needed;
-}
-
 /* eq. (4): what the columns move starts where the frame before ended. */
 static void start_where_the_last_ended(const Problem *problem, int64_t at)
 {

@@ -1,4 +1,4 @@
-/* The layered solver, in one piece: compiled for what every processor has here, and for wider ones in solver_avx2.c. */
+/* The layered solver in one piece, compiled for what every processor has, and in solver_avx2.c for wider vectors. */
 
 #include "batch.h"
 #include "rotations.h"
@@ -9,7 +9,8 @@
 
 #include "body.c"
 #include "tasks.c"
-
+#include "rows.c"
 #include "algebra.c"
 #include "layers.c"
+#include "layout.c"
 #include "solve.c"

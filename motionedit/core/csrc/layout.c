@@ -1,0 +1,226 @@
+/* What does not change from frame to frame, and a batch's memory. Part of solver.c. */
+
+/* Give out memory; with no memory yet only count it. */
+static void *take(char **memory, size_t *needed, size_t bytes)
+{
+    void *place = *memory == NULL ? NULL : *memory + *needed;
+    *needed += (bytes + 31) / 32 * 32;
+    return place;
+}
+
+/* The columns from a node up to the root that a task recruits, growing; returns their number. */
+static int chain(const Problem *problem, const Task *task, int64_t node, int *columns)
+{
+    int count = 0;
+    for (int64_t i = node; i >= 0; i = problem->node[i].parent) {
+        const int64_t column = problem->node[i].column;
+        if (column >= 0 && task->recruited[column]) {
+            if (columns != NULL)
+                columns[count] = (int)column;
+            count++;
+        }
+    }
+    for (int i = 0; columns != NULL && i < count / 2; i++) {
+        const int other = columns[i];
+        columns[i] = columns[count - 1 - i], columns[count - 1 - i] = other;
+    }
+    return count;
+}
+
+/* The columns that carry mass. */
+static int carriers(const Problem *problem, const Task *task, int *columns)
+{
+    int count = 0;
+    for (int64_t k = 0; k < problem->columns; k++) {
+        if (!task->recruited[k])
+            continue;
+        if (columns != NULL)
+            columns[count] = (int)k;
+        count++;
+    }
+    return count;
+}
+
+static int part_columns(const Problem *problem, const Task *task, int p, int *columns)
+{
+    if (task->kind == CENTER_OF_MASS)
+        return carriers(problem, task, columns);
+    return chain(problem, task, p == 0 ? task->node : task->base, columns);
+}
+
+/* Whether a task's rows are the world's axes. */
+static int measures_plainly(const Task *task)
+{
+    int plain = task->rows == 3;
+    for (int r = 0; r < 3; r++)
+        for (int a = 0; a < 3; a++)
+            plain &= task->measure[r][a] == (r == a ? 1.0 : 0.0);
+    return plain;
+}
+
+static void lay_out_pull(const Problem *problem, const Task *task, Pull *pull, char **memory, size_t *needed)
+{
+    const int parts = task->base >= 0 ? 2 : 1;
+    for (int p = 0; p < parts; p++) {
+        const int count = part_columns(problem, task, p, NULL);
+        int *columns = take(memory, needed, sizeof *columns * count);
+        V *levers = take(memory, needed, 3 * sizeof *levers * count);
+        if (columns == NULL)
+            continue;
+        part_columns(problem, task, p, columns);
+        memset(levers, 0, 3 * sizeof *levers * count);
+        Part *part = pull->part + p;
+        memset(part, 0, sizeof *part);
+        part->count = count, part->columns = columns, part->levers = levers;
+        part->root = (int)(p == 0 ? task->root : task->base_root);
+        part->has_force = task->kind != ORIENTATION && task->kind != POSTURE;
+        part->has_torque = task->kind != POSITION && task->kind != CENTER_OF_MASS;
+        part->plain = parts == 1 && !part->has_torque && measures_plainly(task);
+        for (int r = 0; r < 3 && part->plain; r++)
+            part->force[r][r] = all(task->weight);
+    }
+    if (pull != NULL)
+        pull->parts = parts;
+}
+
+/* The columns without a hinge that two parts share. */
+static int common(const Batch *batch, const Part *a, const Part *b, int *places)
+{
+    int count = 0;
+    for (int i = 0, j = 0; i < a->count && j < b->count;) {
+        if (a->columns[i] < b->columns[j])
+            i++;
+        else if (a->columns[i] > b->columns[j])
+            j++;
+        else {
+            if (batch->column_hinge[a->columns[i]] < 0) {
+                if (places != NULL)
+                    places[2 * count] = i, places[2 * count + 1] = j;
+                count++;
+            }
+            i++, j++;
+        }
+    }
+    return count;
+}
+
+/* The rows that feel a hinge turn, growing. */
+static void list_felt(Batch *batch, int64_t h)
+{
+    const Problem *problem = batch->problem;
+    int *felt = batch->hinge_felt + h * problem->rows, count = 0;
+    for (int64_t t = 0; t < problem->tasks; t++) {
+        const Pull *pull = batch->pulls + t;
+        int feels = 0;
+        for (int p = 0; p < pull->parts; p++)
+            for (int i = 0; i < pull->part[p].count; i++)
+                feels |= batch->column_hinge[pull->part[p].columns[i]] == h;
+        for (int64_t r = 0; r < problem->task[t].rows && feels; r++)
+            felt[count++] = pull->first_row + (int)r;
+    }
+    batch->hinge_felt_count[h] = count;
+}
+
+/* Lay out what does not change from frame to frame. Called twice: to count the memory, and to fill it. */
+static void lay_out_tasks(Batch *batch, char **memory, size_t *needed)
+{
+    const Problem *problem = batch->problem;
+    const int tasks = (int)problem->tasks;
+    batch->pulls = take(memory, needed, sizeof *batch->pulls * tasks);
+    batch->hinge_felt = take(memory, needed, sizeof *batch->hinge_felt * problem->hinges * problem->rows);
+    batch->hinge_felt_count = take(memory, needed, sizeof *batch->hinge_felt_count * problem->hinges);
+    for (int t = 0; t < tasks; t++)
+        lay_out_pull(problem, problem->task + t, batch->pulls == NULL ? NULL : batch->pulls + t, memory, needed);
+    /* Every pair of parts, two a task at most: room for the longest lists. */
+    const size_t pairs = (size_t)2 * tasks * (tasks + 1);
+    batch->shared = take(memory, needed, sizeof *batch->shared * pairs);
+    int *places = take(memory, needed, 2 * sizeof *places * problem->columns * pairs);
+    if (batch->pulls == NULL)
+        return;
+    for (int t = 0, row = 0; t < tasks; t++) {
+        batch->pulls[t].first_row = row;
+        row += (int)problem->task[t].rows;
+    }
+    for (int64_t h = 0; h < problem->hinges; h++)
+        list_felt(batch, h);
+    batch->weighs = batch->shared_count = 0;
+    for (int t = 0; t < tasks; t++)
+        batch->weighs |= problem->task[t].kind == CENTER_OF_MASS;
+    for (int s = 0; s < tasks; s++)
+        for (int p = 0; p < batch->pulls[s].parts; p++) {
+            const Part *mine = batch->pulls[s].part + p;
+            for (int t = 0; t <= s; t++)
+                for (int q = 0; q < batch->pulls[t].parts; q++) {
+                    const Part *theirs = batch->pulls[t].part + q;
+                    const int count = common(batch, mine, theirs, places);
+                    if (count == 0 && !(mine->root && theirs->root))
+                        continue;
+                    batch->shared[batch->shared_count++] = (Shared){{s, t}, {p, q}, count, places};
+                    places += 2 * count;
+                }
+        }
+}
+
+static void lay_out_layers(Batch *batch, char **memory, size_t *needed)
+{
+    const Problem *problem = batch->problem;
+    batch->layers = take(memory, needed, sizeof *batch->layers * problem->layers);
+    for (int64_t l = 0, t = 0, first = 0; l < problem->layers; l++) {
+        int rows = 0;
+        for (; t < problem->tasks && problem->task[t].layer == l; t++)
+            rows += (int)problem->task[t].rows;
+        V *B = take(memory, needed, sizeof *B * rows * rows);
+        if (batch->layers != NULL)
+            batch->layers[l] = (Layer){.first = (int)first, .rows = rows, .B = B, .rank = all(0.0)};
+        first += rows;
+    }
+}
+
+/* A column's hinge, and its first unknown: a hinge has one, others have three. */
+static void number_unknowns(Batch *batch)
+{
+    const Problem *problem = batch->problem;
+    for (int64_t k = 0; k < problem->columns; k++)
+        batch->column_hinge[k] = -1;
+    for (int64_t h = 0; h < problem->hinges; h++)
+        batch->column_hinge[problem->hinge[h].column] = (int)h;
+    for (int64_t k = 0, unknown = 0; k < problem->columns; k++) {
+        batch->column_unknown[k] = (int)unknown;
+        unknown += batch->column_hinge[k] < 0 ? 3 : 1;
+    }
+}
+
+/* Give a batch its memory, all in one piece; counts it where there is none yet. */
+static size_t lay_out(Batch *batch, char *memory)
+{
+    const Problem *problem = batch->problem;
+    const size_t nodes = problem->nodes, R = problem->rows, K = problem->columns, H = problem->hinges;
+    batch->unknowns = (int)(3 * (K - H) + H + 3);
+    const size_t n = batch->unknowns;
+    size_t needed = 0;
+    char **from = &memory;
+#define NUMBERS(count) take(from, &needed, sizeof(V) * (count))
+#define MASKS(count) take(from, &needed, sizeof(Mask) * (count))
+#define PLACES(count) take(from, &needed, sizeof(int) * (count))
+    batch->local = NUMBERS(4 * nodes), batch->reference = NUMBERS(4 * K), batch->offsets = NUMBERS(3 * nodes);
+    batch->targets = NUMBERS(4 * problem->tasks);
+    batch->positions = NUMBERS(3 * nodes), batch->rotations = NUMBERS(9 * nodes);
+    batch->mass_moments = NUMBERS(3 * nodes);
+    batch->mass_shares = take(from, &needed, sizeof(double) * nodes);
+    batch->hinge_axes = NUMBERS(3 * H), batch->hinge_angles = NUMBERS(H), batch->hinge_rows = NUMBERS(H * R);
+    batch->hinge_fixed = NUMBERS(H), batch->hinge_free = MASKS(H), batch->hinge_free_before = MASKS(H);
+    batch->errors = NUMBERS(R), batch->G = NUMBERS(R * R), batch->G_frozen = NUMBERS(R * R), batch->M = NUMBERS(R * R);
+    batch->c = NUMBERS(R), batch->Qz = NUMBERS(R), batch->scratch_rows = NUMBERS(5 * R);
+    batch->algebra = NUMBERS(factor_scratch((int)R)), batch->dependent = MASKS(R);
+    batch->z = NUMBERS(n), batch->home = NUMBERS(n), batch->step = NUMBERS(n), batch->fast = NUMBERS(n);
+    batch->home_before = NUMBERS(n), batch->step_before = NUMBERS(n);
+    batch->column_hinge = PLACES(K), batch->column_unknown = PLACES(K);
+#undef NUMBERS
+#undef MASKS
+#undef PLACES
+    if (memory != NULL)
+        number_unknowns(batch);
+    lay_out_layers(batch, from, &needed);
+    lay_out_tasks(batch, from, &needed);
+    return needed;
+}
