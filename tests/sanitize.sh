@@ -6,14 +6,13 @@ python=$1
 cd "$(dirname "$0")/.."
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-cp -r motionedit "$folder/"
+cp -r motionedit tests benchmarks pyproject.toml "$folder/"
 rm -f "$folder"/motionedit/core/_compiled*
 headers=$("$python" -c 'import sysconfig; print(sysconfig.get_paths()["include"])')
 gcc -shared -fPIC -std=c11 -O1 -g -Wall -Wextra -Werror -fsanitize=address,undefined -fno-sanitize-recover=all \
   -fno-omit-frame-pointer -I"$headers" motionedit/core/csrc/{module,motion,solver,solver_avx2}.c -o "$folder/motionedit/core/_compiled.abi3.so"
 # Python itself leaks by design; its own allocator would hide overruns.
-export ASAN_OPTIONS=detect_leaks=0 PYTHONMALLOC=malloc PYTHONPATH="$folder"
+export ASAN_OPTIONS=detect_leaks=0 PYTHONMALLOC=malloc
 export LD_PRELOAD="$(gcc -print-file-name=libasan.so)"
 cd "$folder"
-"$python" -c 'import motionedit.core._compiled as c; print(c.__file__)'
-"$python" -m pytest -q -p no:cacheprovider -n 0 "$OLDPWD/tests/unit/core/test_compiled.py" --rootdir "$OLDPWD"
+"$python" -m pytest -q -p no:cacheprovider -n 0 tests/unit/core/test_compiled.py

@@ -2,6 +2,7 @@
 
 import os
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -136,6 +137,10 @@ def test_both_solvers_move_a_body_alike(patch, seed, joints, count, reach):
     assert difference(mine, theirs) < (FEASIBLE if met else INFEASIBLE)
     if met:
         np.testing.assert_array_equal(mine.iterations, theirs.iterations)
+
+
+def test_the_compiled_part_is_that_of_this_tree():
+    assert Path(compiled().__file__).is_relative_to(Path(__file__).resolve().parents[3])
 
 
 class Narrow:
