@@ -128,7 +128,7 @@ class Skeleton:
     @cached_property
     def translation_places(self) -> IntArray:
         """Each joint's place among `translated`, shape (J,); -1 where it has no position channels."""
-        places = np.full(len(self), -1)
+        places = np.full(len(self), -1, dtype=np.int64)
         places[self.translated] = np.arange(len(self.translated))
         return frozen(places)
 

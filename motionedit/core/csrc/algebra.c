@@ -3,32 +3,34 @@
 
 /* As in layers.py: singular values below this share of the largest (or of LEAST_SCALE) are no freedom. */
 #define RANK_TOLERANCE 1e-4
-#define LEAST_SCALE 1e-3
-/* A pivot below this share of the trace is rounding. */
+#define LEAST_SCALE 1e-2
+/* A pivot below this share of the trace is rounding: what is left of a row on a rigid part that has enough rows. */
 #define ROUNDING 1e-13
+/* Squared, of the off-diagonal part to the whole: Jacobi's rotations have come to their end. */
+#define DIAGONAL 1e-28
 #define SWEEPS 30
 
-/* What factoring a layer of k rows takes at most. */
+/* What factoring a layer of k rows takes at most: a damped step, W and N, y and t. */
 static size_t factor_scratch(int k)
 {
-    return (size_t)(3 * k * k + 4 * k);
+    return (size_t)(k + k * k + k * k + k + k);
 }
 
 /* lambda by s = 1 / |A~^+|_F, which the smallest kept singular value exceeds, and the length d of b over b_max. */
 static V damping(V s, V d)
 {
     const V near = root_of(larger(s * (d - s), all(0.0)));
-    return select(less(0.5 * d, s), only(~less(d, s), near), 0.5 * d);
+    return choose(less(0.5 * d, s), only(~less(d, s), near), 0.5 * d);
 }
 
 /* A = L L^T in the lower triangle, in place; A is k x k, positive definite. The diagonal comes out inverted. */
 static void cholesky(V *A, int k)
 {
     for (int j = 0; j < k; j++) {
-        const V pivot = A[j * k + j] - dot_product(A + j * k, A + j * k, j);
+        const V pivot = A[j * k + j] - dot_in_order(A + j * k, A + j * k, j);
         A[j * k + j] = 1.0 / root_of(larger(pivot, all(DBL_MIN)));
         for (int i = j + 1; i < k; i++)
-            A[i * k + j] = (A[i * k + j] - dot_product(A + i * k, A + j * k, j)) * A[j * k + j];
+            A[i * k + j] = (A[i * k + j] - dot_in_order(A + i * k, A + j * k, j)) * A[j * k + j];
     }
 }
 
@@ -36,7 +38,7 @@ static void cholesky(V *A, int k)
 static void cholesky_solve(const V *L, int k, V *x)
 {
     for (int i = 0; i < k; i++)
-        x[i] = (x[i] - dot_product(L + i * k, x, i)) * L[i * k + i];
+        x[i] = (x[i] - dot_in_order(L + i * k, x, i)) * L[i * k + i];
     for (int i = k - 1; i >= 0; i--) {
         x[i] *= L[i * k + i];
         for (int p = 0; p < i; p++)
@@ -72,7 +74,7 @@ static V eliminate(Batch *batch, Layer *layer, V trace, Mask *dependent)
         V *row = M + c * R, *own = layer->B + i * k;
         const V pivot = G[c * R + c] - dot_product(row, row, c);
         dependent[i] = ~less(ROUNDING * trace, pivot);
-        const V scale = only(~dependent[i], 1.0 / root_of(select(dependent[i], all(1.0), pivot)));
+        const V scale = only(~dependent[i], 1.0 / root_of(choose(dependent[i], all(1.0), pivot)));
         row[c] = pivot * scale;
         for (int r = c + 1; r < R; r++)
             M[r * R + c] = (G[r * R + c] - dot_product(M + r * R, row, c)) * scale;
@@ -101,7 +103,7 @@ static void jacobi(double *S, int k, double *U)
         for (int i = 0; i < k; i++)
             for (int j = 0; j < k; j++)
                 whole += S[i * k + j] * S[i * k + j], off += i == j ? 0.0 : S[i * k + j] * S[i * k + j];
-        if (off <= 1e-32 * whole)
+        if (off <= DIAGONAL * whole)
             return;
         for (int p = 0; p < k; p++)
             for (int q = p + 1; q < k; q++) {
@@ -159,23 +161,24 @@ static void factor_by_eigenvectors(Batch *batch, Layer *layer, int lane, const V
     for (int i = 0; i < k; i++) {
         const double s = S[i];
         const int kept = s > tolerance;
-        double along = 0.0;
+        double towards = 0.0;
         for (int r = 0; r < k; r++) {
-            along += U[r * k + i] * LANE(b[r], lane);
+            towards += U[r * k + i] * LANE(b[r], lane);
             LANE(M[(first + r) * R + first + i], lane) = kept ? s * U[r * k + i] : 0.0;
             LANE(layer->B[i * k + r], lane) = kept ? U[r * k + i] / s : 0.0;
         }
-        LANE(c[i], lane) = kept ? along * s / (s * s + lambda * lambda) : 0.0;
+        LANE(c[i], lane) = kept ? towards * s / (s * s + lambda * lambda) : 0.0;
         LANE(layer->rank, lane) += kept;
-        for (int below = first + k; below < R; below++) { /* J_below Q_i */
-            double sum = 0.0;
-            for (int r = 0; r < k && kept; r++) {
-                double rest = LANE(G[below * R + first + r], lane);
-                for (int p = 0; p < first; p++)
-                    rest -= LANE(M[below * R + p], lane) * LANE(M[(first + r) * R + p], lane);
-                sum += U[r * k + i] / s * rest;
-            }
-            LANE(M[below * R + first + i], lane) = sum;
+    }
+    for (int below = first + k; below < R; below++) { /* J_below Q */
+        for (int i = 0; i < k; i++)
+            LANE(M[below * R + first + i], lane) = 0.0;
+        for (int r = 0; r < k; r++) {
+            double rest = LANE(G[below * R + first + r], lane);
+            for (int p = 0; p < first; p++)
+                rest -= LANE(M[below * R + p], lane) * LANE(M[(first + r) * R + p], lane);
+            for (int i = 0; i < k; i++)
+                LANE(M[below * R + first + i], lane) += LANE(layer->B[i * k + r], lane) * rest;
         }
     }
 }
@@ -183,14 +186,15 @@ static void factor_by_eigenvectors(Batch *batch, Layer *layer, int lane, const V
 /* Rows that got no direction, in some lane, as W times those that did: W, shape (rest, k), and I + W W^T = N N^T. In lanes
    where such a row has its own direction W is 0. */
 typedef struct {
-    int rest, *row;
+    int rest;
+    const int *row;
     V *W, *N, *scratch;
 } Dependent;
 
 static Dependent dependent_rows(const Batch *batch, const Layer *layer, const Mask *dependent, V *scratch)
 {
     const int k = layer->rows, R = (int)batch->problem->rows;
-    Dependent found = {.row = (int *)scratch, .W = scratch + k};
+    Dependent found = {.row = batch->dependent_row, .W = scratch};
     for (int r = 0; r < k; r++) {
         if (!any(dependent[r]))
             continue;
@@ -203,7 +207,7 @@ static Dependent dependent_rows(const Batch *batch, const Layer *layer, const Ma
             for (int m = 0; m <= q; m++)
                 w[m] += factor * layer->B[q * k + m];
         }
-        found.row[found.rest++] = r;
+        batch->dependent_row[found.rest++] = r;
     }
     const int rest = found.rest;
     found.N = found.W + rest * k, found.scratch = found.N + rest * rest;
@@ -223,7 +227,7 @@ static V squared_inverse(const Dependent *rows, const Layer *layer, V inverse)
         for (int i = 0; i < rest; i++)
             column[i] = solved[i] = dot_product(rows->W + i * k, layer->B + q * k, q + 1);
         cholesky_solve(rows->N, rest, solved);
-        inverse -= dot_product(column, solved, rest);
+        inverse -= dot_in_order(column, solved, rest);
     }
     return inverse;
 }
@@ -263,7 +267,7 @@ static void solve_damped(const Batch *batch, const Layer *layer, const V *b, V l
             N[i * k + j] = sum;
         }
         N[i * k + i] += lambda * lambda;
-        N[i * k + i] = select(is_zero(N[i * k + i]), all(1.0), N[i * k + i]);
+        N[i * k + i] = choose(is_zero(N[i * k + i]), all(1.0), N[i * k + i]);
     }
     cholesky(N, k);
     cholesky_solve(N, k, c);
@@ -292,7 +296,7 @@ static void factor_layer(Batch *batch, Layer *layer, const V *b, V largest, V *c
     if (any(damps)) {
         solve_damped(batch, layer, b, lambda, damped, scratch);
         for (int i = 0; i < k; i++)
-            c[i] = select(damps, damped[i], c[i]);
+            c[i] = choose(damps, damped[i], c[i]);
     }
     for (int lane = 0; lane < LANES && any(doubtful); lane++)
         if (MASK_LANE(doubtful, lane))

@@ -74,6 +74,7 @@ typedef struct {
     V *c, *Qz;                    /* rank space, shape (R,) */
     V *scratch_rows, *algebra;    /* shape (5, R); a layer's factorization */
     Mask *dependent;              /* shape (R,): a layer's rows that got no direction */
+    int *dependent_row;           /* those of them that got none in some lane */
     V *z, *home, *step, *fast;    /* shape (n,) */
     V *home_before, *step_before; /* shape (n,) */
 } Batch;

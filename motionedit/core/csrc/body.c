@@ -47,9 +47,10 @@ static void store(const Batch *batch, int lane)
     }
 }
 
+static const V IDENTITY[9] = {ONES, ZEROS, ZEROS, ZEROS, ONES, ZEROS, ZEROS, ZEROS, ONES};
+
 static const V *parent_rotation(const Batch *batch, int64_t node)
 {
-    static const V IDENTITY[9] = {ONES, ZEROS, ZEROS, ZEROS, ONES, ZEROS, ZEROS, ZEROS, ONES};
     const int64_t parent = batch->problem->node[node].parent;
     return parent < 0 ? IDENTITY : batch->rotations + 9 * parent;
 }
@@ -187,13 +188,13 @@ static V apply_step(Batch *batch)
         const V size = 1.5 - 0.5 * (turn[0] * turn[0] + dot(turn + 1, turn + 1));
         const Mask stays = is_zero(dot(v, v));
         for (int a = 0; a < 4; a++)
-            q[a] = select(stays, q[a], size * turn[a]);
+            q[a] = choose(stays, q[a], size * turn[a]);
     }
-    if (problem->root < 0)
-        return all(0.0);
     const V *shift = batch->step + batch->unknowns - 3;
-    V own[3];
-    turned_back(parent_rotation(batch, problem->root), shift, own);
-    add(batch->offsets + 3 * problem->root, own);
+    if (problem->root >= 0) {
+        V own[3];
+        turned_back(parent_rotation(batch, problem->root), shift, own);
+        add(batch->offsets + 3 * problem->root, own);
+    }
     return root_of(dot(shift, shift));
 }

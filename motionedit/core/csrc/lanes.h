@@ -54,7 +54,7 @@ static inline Mask is_zero(V a)
 {
     return a == 0.0;
 }
-static inline V select(Mask which, V a, V b)
+static inline V choose(Mask which, V a, V b)
 {
     return (V)((which & (Mask)a) | (~which & (Mask)b));
 }
@@ -84,7 +84,7 @@ static inline Mask is_zero(V a)
 {
     return -(Mask)(a == 0.0);
 }
-static inline V select(Mask which, V a, V b)
+static inline V choose(Mask which, V a, V b)
 {
     return which ? a : b;
 }
@@ -100,12 +100,12 @@ static inline V root_of(V a)
 
 static inline V larger(V a, V b)
 {
-    return select(less(b, a), a, b);
+    return choose(less(b, a), a, b);
 }
 
 static inline V smaller(V a, V b)
 {
-    return select(less(a, b), a, b);
+    return choose(less(a, b), a, b);
 }
 
 static inline V size_of(V a)
@@ -116,7 +116,12 @@ static inline V size_of(V a)
 /* a where the mask says so, else 0 */
 static inline V only(Mask which, V a)
 {
-    return select(which, a, all(0.0));
+    return choose(which, a, all(0.0));
+}
+
+static inline Mask everywhere(void)
+{
+    return is_zero(all(0.0));
 }
 
 /* a . b of n numbers; two sums at a time do not wait for each other. */
@@ -129,6 +134,15 @@ static inline V dot_product(const V *a, const V *b, int n)
     if (i < n)
         even += a[i] * b[i];
     return even + odd;
+}
+
+/* The same in order: zeros between change no bit of it, as where other lanes have numbers. */
+static inline V dot_in_order(const V *a, const V *b, int n)
+{
+    V sum = all(0.0);
+    for (int i = 0; i < n; i++)
+        sum += a[i] * b[i];
+    return sum;
 }
 
 #endif

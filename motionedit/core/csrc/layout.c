@@ -212,6 +212,7 @@ static size_t lay_out(Batch *batch, char *memory)
     batch->errors = NUMBERS(R), batch->G = NUMBERS(R * R), batch->G_frozen = NUMBERS(R * R), batch->M = NUMBERS(R * R);
     batch->c = NUMBERS(R), batch->Qz = NUMBERS(R), batch->scratch_rows = NUMBERS(5 * R);
     batch->algebra = NUMBERS(factor_scratch((int)R)), batch->dependent = MASKS(R);
+    batch->dependent_row = PLACES(R);
     batch->z = NUMBERS(n), batch->home = NUMBERS(n), batch->step = NUMBERS(n), batch->fast = NUMBERS(n);
     batch->home_before = NUMBERS(n), batch->step_before = NUMBERS(n);
     batch->column_hinge = PLACES(K), batch->column_unknown = PLACES(K);

@@ -114,7 +114,7 @@ static inline void q_log(const V *q, V *out)
     /* asin(s) / s by its series in t = s^2; up to t = 0.04, 23 degrees, the next term is below 1e-17 of the whole. */
     static const double series[] = {1.0, 1.0 / 6, 3.0 / 40, 5.0 / 112, 35.0 / 1152, 63.0 / 2816, 231.0 / 13312,
         143.0 / 10240, 6435.0 / 557056, 12155.0 / 1245184, 46189.0 / 5505024, 88179.0 / 12058624};
-    const V t = dot(q + 1, q + 1), sign = select(less(q[0], all(0.0)), all(-1.0), all(1.0));
+    const V t = dot(q + 1, q + 1), sign = choose(less(q[0], all(0.0)), all(-1.0), all(1.0));
     V scale = all(series[11]);
     for (int i = 10; i >= 0; i--)
         scale = series[i] + t * scale;

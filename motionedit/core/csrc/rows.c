@@ -102,13 +102,13 @@ static void add_block(Batch *batch, const Shared *shared)
 static void add_hinge(const Batch *batch, int64_t h, V factor, V *G)
 {
     const int64_t R = batch->problem->rows;
-    const V *along = batch->hinge_rows + h * R;
+    const V *turns = batch->hinge_rows + h * R;
     const int *felt = batch->hinge_felt + h * R;
     for (int i = 0; i < batch->hinge_felt_count[h]; i++) {
-        const V scaled = factor * along[felt[i]];
+        const V scaled = factor * turns[felt[i]];
         V *row = G + felt[i] * R;
         for (int j = 0; j <= i; j++)
-            row[felt[j]] += scaled * along[felt[j]];
+            row[felt[j]] += scaled * turns[felt[j]];
     }
 }
 

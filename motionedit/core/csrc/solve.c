@@ -103,7 +103,7 @@ static int set_on_limits(Batch *batch, V gain, const V *y)
             turn += batch->hinge_rows[h * problem->rows + r] * y[r];
         }
         const Mask leaves = beyond(batch, h, turn, &limited);
-        batch->hinge_fixed[h] = select(leaves, limited - batch->hinge_angles[h], batch->hinge_fixed[h]);
+        batch->hinge_fixed[h] = choose(leaves, limited - batch->hinge_angles[h], batch->hinge_fixed[h]);
         batch->hinge_free[h] &= ~leaves;
         out |= any(leaves);
     }
@@ -118,7 +118,7 @@ static void descend_within_limits(Batch *batch, V gain, V anneal)
     const Problem *problem = batch->problem;
     V *y = scratch(batch, 0), *q = scratch(batch, 1), *Jz = scratch(batch, 2), *step = batch->step;
     for (int64_t h = 0; h < problem->hinges; h++)
-        batch->hinge_free[h] = is_zero(all(0.0)), batch->hinge_fixed[h] = all(0.0);
+        batch->hinge_free[h] = everywhere(), batch->hinge_fixed[h] = all(0.0);
     rows_times(batch, batch->z, Jz);
     for (int round = 0;; round++) {
         descend(batch, anneal);
@@ -159,7 +159,7 @@ static void accelerate(Batch *batch, Mask usable, V gain, V task)
     if (!any(usable))
         return;
     off_layers(batch, batch->fast);
-    share /= select(usable, size, all(1.0));
+    share /= choose(usable, size, all(1.0));
     for (int i = 0; i < n; i++)
         batch->fast[i] = batch->home[i] - share * batch->fast[i];
     const V factor = smaller(all(1.0), LARGEST_FACTOR * home / larger(length(batch->fast, n), all(1e-300)));
@@ -171,7 +171,7 @@ static void accelerate(Batch *batch, Mask usable, V gain, V task)
         usable &= ~beyond(batch, h, *hinge_turn(batch, batch->fast, h), &limited);
     }
     for (int i = 0; i < n; i++)
-        batch->step[i] = select(usable, batch->fast[i], batch->step[i]);
+        batch->step[i] = choose(usable, batch->fast[i], batch->step[i]);
 }
 
 /* Scale the step so that no joint turns further than LARGEST_TURN; returns the largest turn. */
@@ -186,7 +186,7 @@ static V bound_turns(Batch *batch)
     const Mask far = less(all(LARGEST_TURN), largest);
     if (!any(far))
         return largest;
-    const V factor = select(far, LARGEST_TURN / larger(largest, all(LARGEST_TURN)), all(1.0));
+    const V factor = choose(far, LARGEST_TURN / larger(largest, all(LARGEST_TURN)), all(1.0));
     for (int i = 0; i < batch->unknowns; i++)
         batch->step[i] *= factor;
     return smaller(largest, all(LARGEST_TURN));
@@ -209,7 +209,7 @@ static void remember(Batch *batch, V task, int has_home)
 /* Which lanes meet every layer to STOP_ERROR. */
 static Mask are_met(const Batch *batch)
 {
-    Mask met = is_zero(all(0.0));
+    Mask met = everywhere();
     for (int l = 0; l < batch->problem->layers; l++)
         met &= less(length(batch->errors + batch->layers[l].first, batch->layers[l].rows), all(STOP_ERROR));
     return met;
@@ -273,9 +273,9 @@ static V iterate(Batch *batch)
         pull_home(batch);
         accelerate(batch, compares, gain, task);
     }
-    const V turned = bound_turns(batch);
+    const V largest = bound_turns(batch);
     remember(batch, task, compare);
-    return larger(turned, apply_step(batch));
+    return larger(largest, apply_step(batch));
 }
 
 /* eq. (4): what the columns move starts where the frame before ended. */
@@ -338,7 +338,7 @@ static void end_after_iterating(Batch *batch, V moved)
     batch->nearly = less(ratio, all(0.5)) & less(moved * ratio, STOP_LEFT * (1.0 - ratio));
     batch->moved_before = moved;
     for (int lane = 0; lane < LANES; lane++) {
-        batch->iteration[lane]++;
+        batch->iteration[lane] += batch->at[lane] >= 0;
         if (batch->at[lane] >= 0 && LANE(moved, lane) < STOP_STEP) {
             end_frame(batch, lane, 1);
             batch->at[lane] = -1;
@@ -349,12 +349,14 @@ static void end_after_iterating(Batch *batch, V moved)
 int solve_frames(const Problem *problem, int64_t begin, int64_t end)
 {
     Batch batch = {.problem = problem};
+    if (begin == end)
+        return 0;
     char *memory = malloc(lay_out(&batch, NULL) + sizeof(V));
     if (memory == NULL)
         return -1;
     lay_out(&batch, memory + sizeof(V) - (uintptr_t)memory % sizeof(V));
     share_masses(&batch);
-    for (int lane = 0; lane < LANES && begin < end; lane++) {
+    for (int lane = 0; lane < LANES; lane++) {
         load(&batch, lane, begin); /* so that a lane without a frame has numbers, too */
         begin_frame(&batch, lane, -1);
     }

@@ -27,8 +27,6 @@ static void levers_to(const Batch *batch, Part *part, const V *point)
     }
 }
 
-static const V IDENTITY[9] = {ONES, ZEROS, ZEROS, ZEROS, ONES, ZEROS, ZEROS, ZEROS, ONES};
-
 /* e = target - x along the axes; dx = R_b^T (dp - dp_b - w_b x (p - p_b)): the base pulls back at the same point. */
 static void evaluate_position(const Batch *batch, const Task *task, Pull *pull, const V *target, V *e)
 {

@@ -9,8 +9,8 @@ Per frame and iteration, with Q the orthonormal rows of the layers above:
 The damping lambda is in the step, never in the projector, so a layer cannot disturb those above it to first order;
 what it does to second order is annealed away: in the last iterations the steps of lower layers shrink to nothing.
 
-Two solvers do this: `layered_numpy`, the readable reference, with all frames at once, and the compiled one of `csrc`,
-frame by frame. They agree to rounding.
+Two solvers do this: `layered_numpy`, the readable reference, with all frames at once, and the compiled one of `csrc`, a
+few frames side by side. They agree to rounding.
 """
 
 from __future__ import annotations
@@ -114,15 +114,16 @@ def solve_layers(
     done : shape (N,), optional
         Frames that are known to need nothing: they stay as they are, converged, without iterations and ranks.
     in_order : bool
-        The frames follow each other, and each begins where the one before ended, in what the columns move: eq. (4).
+        The frames follow each other without a gap, none is `done`, and each begins where the one before ended, in what
+        the columns move: eq. (4).
     threads : int
         Frames are shared out among so many threads where the compiled solver runs; the result does not depend on it.
     """
     solution = LayeredSolution(
         motion,
-        np.zeros(len(frames), dtype=np.intp),
+        np.zeros(len(frames), dtype=np.int64),
         np.zeros(len(frames), dtype=np.bool_) if done is None else done.copy(),
-        np.zeros((len(frames), len(problem.layers)), dtype=np.intp),
+        np.zeros((len(frames), len(problem.layers)), dtype=np.int64),
     )
     if compiled() is None:
         from motionedit.core.ik import layered_numpy

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 # Singular values below this share of the layer's largest (or of `_LEAST_SCALE`) are no freedom.
 RANK_TOLERANCE = 1e-4
-_LEAST_SCALE = 1e-3
+_LEAST_SCALE = 1e-2
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,8 +19,10 @@ from motionedit.core.editing.prioritized_edit import Body, LayeredSettings, Pape
 from motionedit.core.editing.trajectories import ControlPoint
 from motionedit.core.hinges import Hinge
 from motionedit.core.ik import kernel
+from motionedit.core.ik.layered_solver import HingeColumns, Problem, Reference, WeightedTask, solve_layers
 from motionedit.core.ik.recruiting import RecruitRule
-from motionedit.core.kinematics import Effector, forward
+from motionedit.core.ik.tasks import Columns, Point, PositionTask, Recruited
+from motionedit.core.kinematics import Effector, effector_positions, forward
 from motionedit.core.motion import Motion
 from motionedit.core.skeleton import Skeleton
 
@@ -161,7 +163,8 @@ def test_the_width_of_the_processors_vectors_changes_no_bit(patch, seed, joints,
         narrow = edit_by_priorities(motion, constraints, body, setting)
     np.testing.assert_array_equal(wide.motion.rotations, narrow.motion.rotations)
     np.testing.assert_array_equal(wide.motion.translations, narrow.motion.translations)
-    np.testing.assert_array_equal(wide.ranks, narrow.ranks)
+    for each in ("ranks", "iterations", "converged"):
+        np.testing.assert_array_equal(getattr(wide, each), getattr(narrow, each))
 
 
 @given(seed=st.integers(0, 2**32 - 1), joints=st.integers(3, 16), count=st.integers(1, 5))
@@ -176,6 +179,69 @@ def test_a_frame_comes_out_the_same_whoever_its_neighbours_are(patch, seed, join
     np.testing.assert_array_equal(together.motion.rotations, alone.motion.rotations)
     np.testing.assert_array_equal(together.motion.translations, alone.motion.translations)
     np.testing.assert_array_equal(together.iterations, alone.iterations)
+
+
+def arms_of(seed, frames=8):
+    """Return a problem whose rows depend on each other in some frames alone: many points on one arm, between them one
+    on another arm, whose hinge is on its limit here and there."""
+    rng = np.random.default_rng(seed)
+    rotation = ("Zrotation", "Xrotation", "Yrotation")
+    channels = (("Xposition", "Yposition", "Zposition", *rotation), *(rotation for _ in range(6)))
+    parents = frozen(np.array([-1, 0, 1, 2, 0, 4, 5]))
+    skeleton = Skeleton(tuple("OABCXYZ"), parents, frozen(rng.normal(scale=0.3, size=(7, 3))), channels)
+    turns = rng.normal(scale=0.6, size=(1, 7, 3)) + rng.normal(scale=0.05, size=(frames, 7, 3))
+    motion = Motion(skeleton, rot.exp(turns), np.zeros((frames, 1, 3)), 0.01)
+    columns = Columns(skeleton, np.arange(1, 7), 0)
+    first, second = (Recruited(np.arange(6) // 3 == arm, root=False) for arm in (0, 1))
+
+    def point(effector, recruited, shift):
+        targets = effector_positions(forward(motion), effector) + shift
+        task = PositionTask(Point(columns, effector, recruited), targets, np.eye(3), (0, 1, 2))
+        return WeightedTask(task, float(rng.uniform(0.7, 1.3)))
+
+    shift = rng.normal(scale=0.1, size=(frames, 3))
+    tasks = [point(Effector(3, rng.normal(scale=0.1, size=3)), first, shift) for _ in range(4)]
+    tasks.insert(2, point(Effector(5, np.zeros(3)), second, rng.normal(scale=0.05, size=(frames, 3))))
+    axis = rng.normal(size=3)
+    axis /= np.linalg.norm(axis)
+    angles = rot.log(motion.rotations[:, 4]) @ axis
+    limits = np.array([[angles.min() - 0.05, angles.max() + 0.05], [-3.0, 3.0]])
+    hinges = HingeColumns(np.array([3, 4]), np.stack([axis, axis]), limits)
+    return Problem(
+        columns, moves_root=False, layers=(tuple(tasks),), hinges=hinges, attraction=1.0, max_iterations=12
+    ), motion
+
+
+def solved(problem, motion, frames, **how):
+    """Return a copy of a motion, solved at some frames, and how that went."""
+    own = Motion(motion.skeleton, motion.rotations.copy(), motion.translations.copy(), motion.frame_time)
+    return solve_layers(problem, own, Reference(motion.rotations.copy(), None), frames, **how)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_rows_that_depend_on_each_other_in_a_neighbour_alone_change_no_bit(patch, seed):
+    problem, motion = arms_of(seed)
+    frames = np.arange(len(motion))
+    together = solved(problem, motion, frames)
+    with patch.context() as parted:
+        parted.setattr(kernel, "_LEAST_SHARE", 1)
+        alone = solved(problem, motion, frames, threads=len(motion))
+    np.testing.assert_array_equal(together.motion.rotations, alone.motion.rotations)
+    np.testing.assert_array_equal(together.iterations, alone.iterations)
+
+
+def test_no_frames_are_solved_at_once():
+    problem, motion = arms_of(0)
+    none = replace(
+        problem,
+        layers=tuple(
+            tuple(replace(each, task=replace(each.task, targets=each.task.targets[:0])) for each in layer)
+            for layer in problem.layers
+        ),
+    )
+    solution = solved(none, motion, np.arange(0))
+    np.testing.assert_array_equal(solution.motion.rotations, motion.rotations)
+    assert len(solution.iterations) == 0
 
 
 @pytest.mark.parametrize("smoothing", [Passes(2, 1.5), PaperFilter(2, 10.0)])
