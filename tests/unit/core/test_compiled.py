@@ -152,33 +152,25 @@ class Narrow:
         return getattr(compiled(), "solve_narrow" if name == "solve" else name)
 
 
+def same_bits(one, other):
+    np.testing.assert_array_equal(one.motion.rotations, other.motion.rotations)
+    np.testing.assert_array_equal(one.motion.translations, other.motion.translations)
+    for each in ("ranks", "iterations", "converged"):
+        np.testing.assert_array_equal(getattr(one, each), getattr(other, each))
+
+
 @given(seed=st.integers(0, 2**32 - 1), joints=st.integers(3, 16), count=st.integers(1, 5))
-@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
-def test_the_width_of_the_processors_vectors_changes_no_bit(patch, seed, joints, count):
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_neither_the_width_of_vectors_nor_the_neighbours_change_a_bit(patch, seed, joints, count):
     motion, constraints, body = problem_of(seed, joints, count, 0.1)
     setting = LayeredSettings(smoothing=Passes(0), max_iterations=12)
     wide = edit_by_priorities(motion, constraints, body, setting)
     with patch.context() as narrowed:
         narrowed.setattr(kernel, "compiled", Narrow)
-        narrow = edit_by_priorities(motion, constraints, body, setting)
-    np.testing.assert_array_equal(wide.motion.rotations, narrow.motion.rotations)
-    np.testing.assert_array_equal(wide.motion.translations, narrow.motion.translations)
-    for each in ("ranks", "iterations", "converged"):
-        np.testing.assert_array_equal(getattr(wide, each), getattr(narrow, each))
-
-
-@given(seed=st.integers(0, 2**32 - 1), joints=st.integers(3, 16), count=st.integers(1, 5))
-@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
-def test_a_frame_comes_out_the_same_whoever_its_neighbours_are(patch, seed, joints, count):
-    motion, constraints, body = problem_of(seed, joints, count, 0.1)
-    setting = LayeredSettings(smoothing=Passes(0), max_iterations=12)
-    together = edit_by_priorities(motion, constraints, body, setting)
+        same_bits(edit_by_priorities(motion, constraints, body, setting), wide)
     with patch.context() as parted:
         parted.setattr(kernel, "_LEAST_SHARE", 1)
-        alone = edit_by_priorities(motion, constraints, body, replace(setting, threads=FRAMES))
-    np.testing.assert_array_equal(together.motion.rotations, alone.motion.rotations)
-    np.testing.assert_array_equal(together.motion.translations, alone.motion.translations)
-    np.testing.assert_array_equal(together.iterations, alone.iterations)
+        same_bits(edit_by_priorities(motion, constraints, body, replace(setting, threads=FRAMES)), wide)
 
 
 def arms_of(seed, frames=8):
@@ -225,9 +217,7 @@ def test_rows_that_depend_on_each_other_in_a_neighbour_alone_change_no_bit(patch
     together = solved(problem, motion, frames)
     with patch.context() as parted:
         parted.setattr(kernel, "_LEAST_SHARE", 1)
-        alone = solved(problem, motion, frames, threads=len(motion))
-    np.testing.assert_array_equal(together.motion.rotations, alone.motion.rotations)
-    np.testing.assert_array_equal(together.iterations, alone.iterations)
+        same_bits(solved(problem, motion, frames, threads=len(motion)), together)
 
 
 def test_no_frames_are_solved_at_once():
