@@ -6,6 +6,7 @@ Only the joints on the way to the effector are evaluated. Lengths are normalised
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -59,6 +60,25 @@ class CoefficientChain:
     travel_rows: FloatArray
     offset: FloatArray
 
+    @cached_property
+    def base_frame(self) -> FloatArray:
+        """The base's transform, shape (4, 4)."""
+        frame = np.eye(4)
+        frame[:3, :3], frame[:3, 3] = self.base_rotation, self.base_position
+        return frame
+
+    @cached_property
+    def joint_frames(self) -> FloatArray:
+        """The joints' transforms in their parents where none is turned, shape (c, 4, 4)."""
+        frames = np.tile(np.eye(4), (len(self.translations), 1, 1))
+        frames[:, :3, 3] = self.translations
+        return frames
+
+    @cached_property
+    def world_travel_rows(self) -> FloatArray:
+        """d(position of the first joint) / d(unknowns), shape (3, m), in the world."""
+        return self.base_rotation @ self.travel_rows
+
 
 @dataclass(frozen=True, eq=False)
 class EffectorState:
@@ -83,12 +103,10 @@ def evaluate(chain: CoefficientChain, unknowns: FloatArray) -> EffectorState:
     turns, jacobians = _exp_and_left_jacobian(chain.vectors + chain.rows @ unknowns)
     count = len(turns)
     # Rotation and translation in one product a joint: numpy's calls cost more than its arithmetic here.
-    local, world = np.zeros((count, 4, 4)), np.zeros((count + 1, 4, 4))
+    local, world = chain.joint_frames.copy(), np.empty((count + 1, 4, 4))
     local[:, :3, :3] = chain.references @ turns
-    local[:, :3, 3] = chain.translations
     local[0, :3, 3] += chain.travel_rows @ unknowns
-    local[:, 3, 3] = 1.0
-    world[0, :3, :3], world[0, :3, 3], world[0, 3, 3] = chain.base_rotation, chain.base_position, 1.0
+    world[0] = chain.base_frame
     for parent, own, here in zip(world[:-1], local, world[1:], strict=True):
         np.dot(parent, own, out=here)
     R = world[1:, :3, :3]
@@ -97,7 +115,7 @@ def evaluate(chain: CoefficientChain, unknowns: FloatArray) -> EffectorState:
     levers = ((world[1:, :3, 3] - end) @ _SKEW).reshape(count, 3, 3) @ increments
     rows = chain.rows.reshape(3 * count, -1)
     position_rows = levers.swapaxes(0, 1).reshape(3, -1) @ rows
-    position_rows += chain.base_rotation @ chain.travel_rows
+    position_rows += chain.world_travel_rows
     rotation_rows = increments.swapaxes(0, 1).reshape(3, -1) @ rows
     return EffectorState(end, R[-1], position_rows, rotation_rows)
 

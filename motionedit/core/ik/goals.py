@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -47,6 +48,11 @@ class Goal:
     weight: float
     relative_to: CoefficientChain | None
 
+    @cached_property
+    def measure_rows(self) -> FloatArray:
+        """The axes that count, shape (k, 3)."""
+        return self.measure[list(self.axes)]
+
 
 @dataclass(frozen=True, eq=False)
 class GoalError:
@@ -60,19 +66,25 @@ class GoalError:
 
 def goal_error(goal: Goal, unknowns: FloatArray) -> GoalError:
     """Return the goal's errors, e = g - x(Theta) of eq. (6), and their rows of J(alpha)."""
+    state = _state(goal, unknowns)
+    nothing = np.zeros(0), np.zeros((0, state.position_rows.shape[1]))
+    place = nothing if goal.position is None else _position_error(goal.position, goal, state)
+    turn = nothing if goal.rotation is None else _rotation_error(goal.rotation, state)
+    return GoalError(*place, *turn)
+
+
+def _state(goal: Goal, unknowns: FloatArray) -> EffectorState:
     state = evaluate(goal.chain, unknowns)
-    if goal.relative_to is not None:
-        state = _seen_from(evaluate(goal.relative_to, unknowns), state)
-    count = state.position_rows.shape[1]
-    e_p, J_p, e_r, J_r = np.zeros(0), np.zeros((0, count)), np.zeros(0), np.zeros((0, count))
-    if goal.position is not None:
-        axes = list(goal.axes)
-        e_p = goal.position[axes] - goal.measure[axes] @ state.position
-        J_p = goal.measure[axes] @ state.position_rows
-    if goal.rotation is not None:
-        e_r = rot.log(rot.from_matrix(goal.rotation @ state.rotation.T))
-        J_r = state.rotation_rows
-    return GoalError(e_p, J_p, e_r, J_r)
+    return state if goal.relative_to is None else _seen_from(evaluate(goal.relative_to, unknowns), state)
+
+
+def _position_error(position: FloatArray, goal: Goal, state: EffectorState) -> tuple[FloatArray, FloatArray]:
+    rows = goal.measure_rows
+    return position[list(goal.axes)] - rows @ state.position, rows @ state.position_rows
+
+
+def _rotation_error(rotation: FloatArray, state: EffectorState) -> tuple[FloatArray, FloatArray]:
+    return rot.log(rot.from_matrix(rotation @ state.rotation.T)), state.rotation_rows
 
 
 def _seen_from(reference: EffectorState, state: EffectorState) -> EffectorState:
@@ -94,8 +106,13 @@ def stacked_errors(goals: Sequence[Goal], unknowns: FloatArray) -> tuple[FloatAr
     """Return all goals' weighted errors, shape (p,), and J(alpha), shape (p, m), in metres."""
     errors, rows = [], []
     for goal in goals:
-        each = goal_error(goal, unknowns)
-        turn = goal.weight * METRES_PER_RADIAN
-        errors += [goal.weight * each.position, turn * each.rotation]
-        rows += [goal.weight * each.position_jacobian, turn * each.rotation_jacobian]
+        state, turn = _state(goal, unknowns), goal.weight * METRES_PER_RADIAN
+        if goal.position is not None:
+            e, J = _position_error(goal.position, goal, state)
+            errors.append(goal.weight * e)
+            rows.append(goal.weight * J)
+        if goal.rotation is not None:
+            e, J = _rotation_error(goal.rotation, state)
+            errors.append(turn * e)
+            rows.append(turn * J)
     return np.concatenate(errors), np.concatenate(rows)
