@@ -4,6 +4,8 @@
 /* As in layers.py: singular values below this share of the largest (or of LEAST_SCALE) are no freedom. */
 #define RANK_TOLERANCE 1e-4
 #define LEAST_SCALE 1e-2
+/* Metres, as in layers.py: a stretched limb. */
+#define LIMB 1.0
 /* A pivot below this share of the trace is rounding: what is left of a row on a rigid part that has enough rows. */
 #define ROUNDING 1e-13
 /* Squared, of the off-diagonal part to the whole: Jacobi's rotations have come to their end. */
@@ -131,12 +133,12 @@ static void jacobi(double *S, int k, double *U)
 
 /* Where the rank is in doubt: the singular triples one by one, as the reference has them. For one lane: a column of M is
    s u, a row of B u / s; scratch: 2 k^2 plain numbers. */
-static void factor_by_eigenvectors(Batch *batch, Layer *layer, int lane, const V *b, double largest, V *c, double *S)
+static void factor_by_eigenvectors(Batch *batch, Layer *layer, int lane, const V *b, V d, V *c, double *S)
 {
     const int k = layer->rows, first = layer->first, R = (int)batch->problem->rows;
     const V *G = batch->G_free;
     V *M = batch->M;
-    double *U = S + k * k, most = 0.0, inverse = 0.0, length = 0.0;
+    double *U = S + k * k, most = 0.0, inverse = 0.0;
     for (int r = 0; r < k; r++)
         for (int s = 0; s <= r; s++) {
             const V *mine = M + (first + r) * R, *other = M + (first + s) * R;
@@ -149,13 +151,12 @@ static void factor_by_eigenvectors(Batch *batch, Layer *layer, int lane, const V
     for (int i = 0; i < k; i++) {
         S[i] = sqrt(fmax(S[i * k + i], 0.0)); /* from here on the singular values, in the first row */
         most = fmax(most, S[i]);
-        length += LANE(b[i], lane) * LANE(b[i], lane);
     }
-    const double tolerance = RANK_TOLERANCE * fmax(most, LEAST_SCALE), d = sqrt(length) / largest;
+    const double tolerance = RANK_TOLERANCE * fmax(most, LEAST_SCALE);
     for (int i = 0; i < k; i++)
         inverse += S[i] > tolerance ? 1.0 / (S[i] * S[i]) : 0.0;
-    const V damped = damping(all(inverse > 0.0 ? 1.0 / sqrt(inverse) : INFINITY), all(d));
-    const double lambda = LANE(damped, 0);
+    const V damped = damping(all(inverse > 0.0 ? 1.0 / sqrt(inverse) : INFINITY), d);
+    const double lambda = LANE(damped, lane);
     layer->full = 1;
     LANE(layer->rank, lane) = 0.0;
     for (int i = 0; i < k; i++) {
@@ -275,13 +276,16 @@ static void solve_damped(const Batch *batch, const Layer *layer, const V *b, V l
 
 /* Factor a layer, those above it being factored.
 
-   b: shape (k,). largest: b_max. Out: the layer's rank, B and columns of M, and c, shape (k,): its step is dm = Q^T c. */
+   b: shape (k,). largest: b_max. Out: the layer's rank, B and columns of M, and c, shape (k,): its step is dm = Q^T c.
+
+   d is |b| / b_max, and in a steady lane at least such that lambda^2 >= |b| limb / 2: see layers.py. */
 static void factor_layer(Batch *batch, Layer *layer, const V *b, V largest, V *c)
 {
     const int k = layer->rows;
     V *damped = batch->algebra, *scratch = damped + k;
     Mask *dependent = batch->dependent;
-    const V d = root_of(dot_product(b, b, k)) / largest, trace = remaining_trace(batch, layer);
+    const V size = root_of(dot_product(b, b, k)), trace = remaining_trace(batch, layer);
+    const V d = larger(size / largest, only(batch->steady, root_of(2.0 * LIMB * size)));
     const V inverse = eliminate(batch, layer, trace, dependent);
     /* 1 / |B| is a lower bound of the least singular value, the root of the trace an upper one of the largest. */
     const V bound = only(less(all(0.0), inverse), 1.0 / root_of(inverse));
@@ -300,5 +304,5 @@ static void factor_layer(Batch *batch, Layer *layer, const V *b, V largest, V *c
     }
     for (int lane = 0; lane < LANES && any(doubtful); lane++)
         if (MASK_LANE(doubtful, lane))
-            factor_by_eigenvectors(batch, layer, lane, b, LANE(largest, lane), c, (double *)scratch);
+            factor_by_eigenvectors(batch, layer, lane, b, d, c, (double *)scratch);
 }

@@ -52,6 +52,8 @@ typedef struct {
     const Problem *problem;
     int64_t at[LANES], iteration[LANES]; /* which of the N frames a lane has, or -1; and its iteration */
     V moved_before;                      /* rad or m, in the iteration before */
+    V gain, anneal;                      /* of the attraction; of it and of the lower layers, at the end */
+    Mask steady;                         /* where what is left may be out of reach */
     Mask nearly, remembers;
     V *local, *reference, *offsets; /* quaternions of nodes and columns; where nodes are in their parents */
     V reference_root[3], *targets;  /* shape (T, 4) */

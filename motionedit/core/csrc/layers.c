@@ -37,7 +37,7 @@ static void free_gram(Batch *batch)
 }
 
 /* One pass: c, the steps of all layers in rank space, and for each layer its rank, B and columns of M. */
-static void descend(Batch *batch, V anneal)
+static void descend(Batch *batch)
 {
     const int64_t R = batch->problem->rows;
     V *fixed = batch->scratch_rows, *b = fixed + R;
@@ -49,7 +49,7 @@ static void descend(Batch *batch, V anneal)
             add_hinge_row(batch, h, batch->hinge_fixed[h], fixed);
     for (int l = 0; l < batch->problem->layers; l++) {
         Layer *layer = batch->layers + l;
-        const V largest = l == 0 ? all(LARGEST_ERROR) : LARGEST_ERROR * anneal;
+        const V largest = l == 0 ? all(LARGEST_ERROR) : LARGEST_ERROR * batch->anneal;
         remaining_error(batch, layer, fixed, largest, b);
         factor_layer(batch, layer, b, largest, batch->c + layer->first);
     }

@@ -7,6 +7,7 @@
 #define STOP_ERROR 1e-5
 #define FULL_GAIN_ITERATIONS 8
 #define GAIN_DECAY 0.85
+#define HASTY_ITERATIONS 8
 #define ANNEALED_ITERATIONS 10
 #define LIMIT_ROUNDS 4
 #define ON_LIMIT 1e-12
@@ -92,12 +93,12 @@ static Mask beyond(const Batch *batch, int64_t h, V turn, V *limited)
 }
 
 /* Set on their limits the hinges that gain z + J^T y would take beyond them; returns whether there were any. */
-static int set_on_limits(Batch *batch, V gain, const V *y)
+static int set_on_limits(Batch *batch, const V *y)
 {
     const Problem *problem = batch->problem;
     int out = 0;
     for (int64_t h = 0; h < problem->hinges; h++) {
-        V turn = gain * *hinge_turn(batch, batch->z, h), limited;
+        V turn = batch->gain * *hinge_turn(batch, batch->z, h), limited;
         for (int i = 0; i < batch->hinge_felt_count[h]; i++) {
             const int r = batch->hinge_felt[h * problem->rows + i];
             turn += batch->hinge_rows[h * problem->rows + r] * y[r];
@@ -113,7 +114,7 @@ static int set_on_limits(Batch *batch, V gain, const V *y)
 /* Descend, and again with hinges that would leave their limits set on them; Q z and the step come out:
 
    step = fixed hinges + gain z + Q^T (c - gain Q z) = fixed hinges + gain z + J^T y */
-static void descend_within_limits(Batch *batch, V gain, V anneal)
+static void descend_within_limits(Batch *batch)
 {
     const Problem *problem = batch->problem;
     V *y = scratch(batch, 0), *q = scratch(batch, 1), *Jz = scratch(batch, 2), *step = batch->step;
@@ -121,16 +122,16 @@ static void descend_within_limits(Batch *batch, V gain, V anneal)
         batch->hinge_free[h] = everywhere(), batch->hinge_fixed[h] = all(0.0);
     rows_times(batch, batch->z, Jz);
     for (int round = 0;; round++) {
-        descend(batch, anneal);
+        descend(batch);
         pull_in_rank_space(batch, Jz);
         for (int64_t p = 0; p < problem->rows; p++)
-            q[p] = batch->c[p] - gain * batch->Qz[p];
+            q[p] = batch->c[p] - batch->gain * batch->Qz[p];
         out_of_rank_space(batch, q, y);
-        if (round == LIMIT_ROUNDS || !set_on_limits(batch, gain, y))
+        if (round == LIMIT_ROUNDS || !set_on_limits(batch, y))
             break;
     }
     for (int i = 0; i < batch->unknowns; i++)
-        step[i] = gain * batch->z[i];
+        step[i] = batch->gain * batch->z[i];
     add_rows_transposed(batch, y, step);
     for (int64_t h = 0; h < problem->hinges; h++)
         *hinge_turn(batch, step, h) += batch->hinge_fixed[h];
@@ -145,7 +146,7 @@ static V task_length(const Batch *batch)
 }
 
 /* homing.py: a secant step for the pull where it applies and leaves every hinge within its limits. */
-static void accelerate(Batch *batch, Mask usable, V gain, V task)
+static void accelerate(Batch *batch, Mask usable, V task)
 {
     const int n = batch->unknowns;
     V size = all(0.0), share = size;
@@ -165,7 +166,7 @@ static void accelerate(Batch *batch, Mask usable, V gain, V task)
     const V factor = smaller(all(1.0), LARGEST_FACTOR * home / larger(length(batch->fast, n), all(1e-300)));
     /* step + gain (fast - home) */
     for (int i = 0; i < n; i++)
-        batch->fast[i] = batch->step[i] + gain * (factor * batch->fast[i] - batch->home[i]);
+        batch->fast[i] = batch->step[i] + batch->gain * (factor * batch->fast[i] - batch->home[i]);
     for (int64_t h = 0; h < batch->problem->hinges; h++) {
         V limited;
         usable &= ~beyond(batch, h, *hinge_turn(batch, batch->fast, h), &limited);
@@ -247,23 +248,30 @@ static void end_frame(Batch *batch, int lane, int converged)
     store(batch, lane);
 }
 
+/* How each lane goes about its iteration. */
+static void set_pace(Batch *batch)
+{
+    const Problem *problem = batch->problem;
+    for (int lane = 0; lane < LANES; lane++) {
+        const int64_t iteration = batch->iteration[lane];
+        const int64_t left_over = problem->max_iterations - ANNEALED_ITERATIONS - iteration - 1;
+        LANE(batch->anneal, lane) = left_over < 0 ? ldexp(1.0, (int)left_over) : 1.0;
+        LANE(batch->gain, lane) = problem->attraction * LANE(batch->anneal, lane);
+        for (int64_t i = FULL_GAIN_ITERATIONS; i < iteration + 1; i++)
+            LANE(batch->gain, lane) *= GAIN_DECAY;
+        MASK_LANE(batch->steady, lane) = iteration >= HASTY_ITERATIONS ? -1 : 0;
+    }
+}
+
 /* One iteration of every lane: what it moves. */
 static V iterate(Batch *batch)
 {
     const Problem *problem = batch->problem;
-    V anneal, gain;
-    for (int lane = 0; lane < LANES; lane++) {
-        const int64_t iteration = batch->iteration[lane];
-        const int64_t left_over = problem->max_iterations - ANNEALED_ITERATIONS - iteration - 1;
-        LANE(anneal, lane) = left_over < 0 ? ldexp(1.0, (int)left_over) : 1.0;
-        LANE(gain, lane) = problem->attraction * LANE(anneal, lane);
-        for (int64_t i = FULL_GAIN_ITERATIONS; i < iteration + 1; i++)
-            LANE(gain, lane) *= GAIN_DECAY;
-    }
+    set_pace(batch);
     attraction(batch);
     drop_rounding(batch);
     gram(batch);
-    descend_within_limits(batch, gain, anneal);
+    descend_within_limits(batch);
     const V task = task_length(batch);
     Mask compares = batch->remembers;
     for (int64_t h = 0; h < problem->hinges; h++)
@@ -271,7 +279,7 @@ static V iterate(Batch *batch)
     const int compare = any(compares);
     if (compare) {
         pull_home(batch);
-        accelerate(batch, compares, gain, task);
+        accelerate(batch, compares, task);
     }
     const V largest = bound_turns(batch);
     remember(batch, task, compare);

@@ -6,6 +6,7 @@ All frames iterate together; those that have converged leave.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,7 +19,7 @@ from motionedit.core.kinematics import WorldPoses, forward
 from motionedit.core.motion import Motion
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.ik.layered_solver import LayeredSolution, Problem, WeightedTask
@@ -35,6 +36,8 @@ STOP_LEFT, STOP_ERROR = 2e-5, 1e-5
 # The gain of the attraction: 1 at first, then this factor per iteration.
 FULL_GAIN_ITERATIONS = 8
 GAIN_DECAY = 0.85
+# After so many iterations what is left may be out of reach, and steps are kept from swinging.
+HASTY_ITERATIONS = 8
 # Over so many last iterations the lower layers' largest error and the gain are halved each time.
 ANNEALED_ITERATIONS = 10
 # A hinge that leaves its limits is set on them and leaves the system; this many times at most.
@@ -176,8 +179,9 @@ def _step(block: _Block, pose: _Pose, hinges: _Hinges, iteration: int) -> tuple[
     z = hinges.on_axes(z[:, None])[:, 0]
     largest_errors = [LARGEST_ERROR * (1.0 if level == 0 else anneal) for level in range(len(evaluated))]
     everything = np.ones(z.shape, dtype=np.bool_)
-    descent = descend(evaluated, z, fixed=np.zeros_like(z), free=everything, largest_errors=largest_errors)
-    hinges.keep_limits(evaluated, z, descent, largest_errors, gain)
+    down = partial(descend, largest_errors=largest_errors, steady=iteration >= HASTY_ITERATIONS)
+    descent = down(evaluated, z, fixed=np.zeros_like(z), free=everything)
+    hinges.keep_limits(evaluated, z, descent, down, gain)
     step = descent.tasks + gain * descent.home
     home = accelerated(block.memory, pose.frames - block.first, descent)
     fast = descent.tasks + gain * home
@@ -242,10 +246,10 @@ class _Hinges:
         evaluated: Sequence[tuple[FloatArray, FloatArray]],
         z: FloatArray,
         descent: Descent,
-        largest_errors: Sequence[float],
+        down: Callable[..., Descent],
         gain: float,
     ) -> None:
-        """Set hinges that would leave their limits on them, take them out of the system, and descend again."""
+        """Set hinges that would leave their limits on them, take them out of the system, and go `down` again."""
         if not len(self.places):
             return
         fixed, free = np.zeros_like(z), descent.free.copy()
@@ -261,7 +265,7 @@ class _Hinges:
                 fixed[rows, self.blocks[h, 0]] = onto[rows, h]
                 free[rows[:, None], self.blocks[h]] = False
             part = [(e[again], J[again]) for e, J in evaluated]
-            new = descend(part, z[again], fixed=fixed[again], free=free[again], largest_errors=largest_errors)
+            new = down(part, z[again], fixed=fixed[again], free=free[again])
             descent.replace_rows(again, new)
 
     def _after(self, step: FloatArray) -> FloatArray:

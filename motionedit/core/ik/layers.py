@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 # Singular values below this share of the layer's largest (or of `_LEAST_SCALE`) are no freedom.
 RANK_TOLERANCE = 1e-4
 _LEAST_SCALE = 1e-2
+# Metres at leg length 0.85 m: a stretched limb. A turn t of it takes its end t^2 / 2 of this off its tangent.
+_LIMB = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +62,7 @@ def descend(
     fixed: FloatArray,
     free: BoolArray,
     largest_errors: Sequence[float],
+    steady: bool,
 ) -> Descent:
     """Return one pass down the layers.
 
@@ -74,6 +77,8 @@ def descend(
     free : shape (N, n)
     largest_errors : L numbers
         b_max of each layer: a longer error is clamped to it, all rows by one factor.
+    steady : bool
+        Whether errors may be out of reach: see `_damped_step`.
     """
     tasks = fixed.copy()
     ranks = np.zeros((len(z), len(evaluated)), dtype=np.intp)
@@ -84,7 +89,7 @@ def descend(
         b = clamped - (J @ tasks[..., None])[..., 0]
         A = J * free[:, None]
         A = A - (A @ np.swapaxes(Q, 1, 2)) @ Q
-        change, rows, ranks[:, level] = _damped_step(A, b, largest)
+        change, rows, ranks[:, level] = _damped_step(A, b, largest, steady=steady)
         tasks += change
         Q = np.concatenate((Q, rows), axis=1)
     return Descent(tasks, off_layers(Q, z * free), Q, free, ranks)
@@ -96,11 +101,17 @@ def off_layers(Q: FloatArray, v: FloatArray) -> FloatArray:
     return rest
 
 
-def _damped_step(A: FloatArray, b: FloatArray, largest: float) -> tuple[FloatArray, FloatArray, IntArray]:
+def _damped_step(
+    A: FloatArray, b: FloatArray, largest: float, *, steady: bool
+) -> tuple[FloatArray, FloatArray, IntArray]:
     """Return the layer's step (N, n), its orthonormal rows (N, k, n; zero where not kept), and its rank (N,).
 
     lambda follows the length of b and s = 1 / |A~^+|_F, a little less than the smallest kept singular value and found
-    without a search for it: none where the step is safe.
+    without a search for it: none where the step is safe, half of d where s is nothing.
+
+    Where b is out of reach it stays, and limbs stand stretched: the error's second derivative along a turn is |b| times
+    a limb, and a step along its gradient over lambda^2 swings to and fro unless lambda^2 >= |b| limb / 2. `steady` sees
+    to that by d. Where b can be reached it shrinks, and costs steps.
     """
     values, vectors = np.linalg.eigh(A @ np.swapaxes(A, 1, 2))
     s = np.sqrt(np.maximum(values, 0.0))
@@ -109,7 +120,8 @@ def _damped_step(A: FloatArray, b: FloatArray, largest: float) -> tuple[FloatArr
     rows = np.where(kept, 1.0 / safe, 0.0)[..., None] * (np.swapaxes(vectors, 1, 2) @ A)
     inverse = np.sqrt(np.sum(np.where(kept, 1.0 / safe, 0.0) ** 2, axis=1))
     least = np.where(inverse > 0.0, 1.0 / np.where(inverse > 0.0, inverse, 1.0), 0.0)
-    d = np.linalg.norm(b, axis=1) / largest
+    size = np.linalg.norm(b, axis=1)
+    d = np.maximum(size / largest, np.sqrt(2.0 * _LIMB * size)) if steady else size / largest
     damping = np.where(least <= 0.5 * d, 0.5 * d, np.sqrt(np.maximum(least * (d - least), 0.0)))
     damping = np.where(least <= d, damping, 0.0)
     along = (np.swapaxes(vectors, 1, 2) @ b[..., None])[..., 0]
