@@ -150,7 +150,8 @@ class ComConstraint(Recruiting, ConstraintItem):
         default=None, description="Joints the body stands on, the set A; default: feet and toes found in the skeleton."
     )
     relative_to: Annotated[Literal["support", "world"], kinds.word("support", "world")] = Field(
-        default="support", description="support: moves as the support does; world: the input's own path."
+        default="support",
+        description="support: moves as the other constraints move the support; world: the input's own path.",
     )
     frame: Annotated[kinds.Frame, kinds.FRAME] = Field(
         default="world", description="Axes of shifts: world, or the character's heading."

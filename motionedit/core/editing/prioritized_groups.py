@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motionedit.core.ik.layered_solver import HingeColumns, Problem, WeightedTask
-from motionedit.core.ik.tasks import CenterOfMassTask
+from motionedit.core.ik.layered_solver import HingeColumns, Problem
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from motionedit.core.arrays import IntArray
-    from motionedit.core.editing.constraints import Targets
     from motionedit.core.hinges import Hinge
 
 
@@ -28,28 +26,11 @@ class Group:
     levels : shape (L,)
         Where the problem's layers stand among those of the whole edit.
     problem : Problem
-    following : pairs of (layer, place in the layer) and constraint
-        Tasks whose targets depend on the edited motion.
     """
 
     frames: IntArray
     levels: IntArray
     problem: Problem
-    following: tuple[tuple[int, int, int], ...]
-
-    def with_targets(self, targets: Sequence[Targets]) -> Problem:
-        """Return the problem with new targets for the tasks that follow the edited motion."""
-        if not self.following:
-            return self.problem
-        layers = [list(layer) for layer in self.problem.layers]
-        for layer, place, constraint in self.following:
-            each, new = layers[layer][place], targets[constraint]
-            if isinstance(each.task, CenterOfMassTask) and new.positions is not None:
-                task = replace(each.task, targets=new.positions[self.frames - new.first])
-                layers[layer][place] = WeightedTask(task, each.weight)
-        problem = replace(self.problem, layers=tuple(map(tuple, layers)))
-        layout = self.problem.layout
-        return problem if layout is None else replace(problem, layout=layout.with_targets(problem))
 
 
 def hinge_columns(hinges: Sequence[Hinge], joints: IntArray) -> HingeColumns:

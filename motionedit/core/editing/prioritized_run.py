@@ -42,20 +42,18 @@ _PLACED = frozenset({"position", "orientation", "pose"})
 
 @dataclass(frozen=True, eq=False)
 class Solved:
-    """A motion with every frame solved, how it went frame by frame, and the targets it was solved for."""
+    """A motion with every frame solved, and how it went frame by frame."""
 
     motion: Motion
     iterations: IntArray
     converged: BoolArray
     ranks: IntArray
-    targets: tuple[Targets, ...]
 
 
 @dataclass(frozen=True, eq=False)
-class Next:
-    """What a solve leaves for the next: its targets, frames (F,) that are done, and their ranks (F, L)."""
+class Known:
+    """What a solve leaves for the next: frames (F,) that need nothing, and their ranks (F, L)."""
 
-    targets: tuple[Targets, ...]
     done: BoolArray
     ranks: IntArray
 
@@ -76,15 +74,34 @@ class Run:
 
     @cached_property
     def targets(self) -> tuple[Targets, ...]:
-        """The targets of all constraints, supports where they are in the input."""
+        """The targets of all constraints, from the input; members of a support without goals are where they end up.
+
+        That is where the other constraints alone put them. Were it where this very edit puts them, a center of mass
+        would chase feet that it moves itself.
+        """
         sight = self._sight(self.motion)
         curve, found = self.settings.curve, list(self._bound_targets(sight))
+        balanced = [i for i, each in enumerate(self.constraints) if each.kind == "com"]
+        free = any(self.constraints[i].support and not self._has_goals(self.constraints[i], found) for i in balanced)
+        now = self._sight(self._unbalanced()) if free else sight
+        for i in balanced:
+            found[i] = self._com_targets(self.constraints[i], sight, now, found)
         for i, constraint in enumerate(self.constraints):
-            if constraint.kind == "com":
-                found[i] = self._com_targets(constraint, sight, sight, found)
-            elif constraint.kind == "aim":
+            if constraint.kind == "aim":
                 found[i] = aim_targets(constraint, sight.poses, curve=curve)
         return tuple(found)
+
+    def _unbalanced(self) -> Motion:
+        """Return the motion that all but the centers of mass ask for, solved once."""
+        others = [i for i, each in enumerate(self.constraints) if each.kind != "com"]
+        if not others:
+            return self.motion
+        run = replace(
+            self,
+            constraints=tuple(self.constraints[i] for i in others),
+            recruits=tuple(self.recruits[i] for i in others),
+        )
+        return run.solve(self.motion, reference=self.motion, pull_root=False).motion
 
     def _bound_targets(self, sight: Sight) -> Iterator[Targets]:
         """Yield the targets of what is bound to the input alone, and intervals for the others."""
@@ -113,15 +130,9 @@ class Run:
                 goals[joint][each.first : each.last + 1] = places @ other.measure
         return goals
 
-    @cached_property
-    def _following(self) -> frozenset[int]:
-        """Constraints whose targets follow the edited motion: a `com` over a support that has no goals of its own."""
-        return frozenset(
-            i for i, c in enumerate(self.constraints) if c.kind == "com" and c.support and not self._has_goals(c)
-        )
-
-    def _has_goals(self, constraint: Constraint) -> bool:
-        goals, (first, last) = self._support_goals(constraint, self.targets), constraint.active(len(self.motion))
+    def _has_goals(self, constraint: Constraint, targets: Sequence[Targets]) -> bool:
+        """Return whether every member of a support has a goal wherever the constraint is active."""
+        goals, (first, last) = self._support_goals(constraint, targets), constraint.active(len(self.motion))
         return all(
             joint in goals and not np.isnan(goals[joint][first : last + 1]).any() for joint in constraint.support
         )
@@ -150,12 +161,10 @@ class Run:
         joints = np.array(sorted(set().union(*(self.recruits[i].joints for i in members))), dtype=np.intp)
         columns = Columns(self.motion.skeleton, joints, self.body.travel)
         priorities = order_of_layers([self.constraints[i].priority for i in members])
-        layers: list[tuple[WeightedTask, ...]] = []
-        following = []
-        for level, priority in enumerate(priorities):
-            here = [i for i in members if self.constraints[i].priority == priority]
-            layers.append(tuple(self._task(i, frames, columns) for i in here))
-            following += [(level, place, i) for place, i in enumerate(here) if i in self._following]
+        layers = [
+            tuple(self._task(i, frames, columns) for i in members if self.constraints[i].priority == priority)
+            for priority in priorities
+        ]
         problem = Problem(
             columns=columns,
             moves_root=any(self.recruits[i].root for i in members),
@@ -166,7 +175,7 @@ class Run:
         )
         laid_out = replace(problem, layout=None if compiled() is None else Layout.of(problem))
         levels = np.array([self.levels.index(priority) for priority in priorities])
-        return Group(frames, levels, laid_out, tuple(following))
+        return Group(frames, levels, laid_out)
 
     def _task(self, i: int, frames: IntArray, columns: Columns) -> WeightedTask:
         constraint = self.constraints[i]
@@ -195,38 +204,28 @@ class Run:
             np.zeros(count, dtype=np.intp),
             np.ones(count, dtype=np.bool_),
             np.zeros((count, len(self.levels)), dtype=np.intp),
-            self.targets,
         )
 
-    def after(self, previous: Solved, start: Motion) -> Next:
-        """Return the targets of a solve from `start` that follows another, and the frames that it may leave alone.
+    def after(self, previous: Solved, start: Motion) -> Known:
+        """Return what a solve from `start` that follows another may leave alone.
 
-        Supports without goals stand on the edited motion. Frames that were left as in the input, and that start from
-        there again, need nothing.
+        Frames that were left as in the input, and that start from there again, need nothing.
         """
-        if self._following:
-            before, now = self._sight(self.motion), self._sight(previous.motion)
-            moved = {i: self._com_targets(self.constraints[i], before, now, self.targets) for i in self._following}
-            targets = tuple(moved.get(i, each) for i, each in enumerate(self.targets))
-            return Next(targets, np.zeros(len(start), dtype=np.bool_), previous.ranks)
         done = _same(start, self.motion) & _same(previous.motion, self.motion) & previous.converged
-        return Next(self.targets, done, previous.ranks)
+        return Known(done, previous.ranks)
 
-    def solve(self, start: Motion, *, reference: Motion, pull_root: bool, known: Next | None = None) -> Solved:
+    def solve(self, start: Motion, *, reference: Motion, pull_root: bool, known: Known | None = None) -> Solved:
         """Return the motion with every frame solved from `start`, attracted to `reference`.
 
         Parameters
         ----------
-        known : Next, optional
+        known : Known, optional
             What is known from the solve before.
         """
-        targets = self.targets if known is None else known.targets
-        solved = replace(self.untouched(start), targets=targets)
+        solved = self.untouched(start)
         for group in self.groups:
-            problem = group.with_targets(targets)
-            frames = group.frames
-            done = None if known is None else known.done[frames]
-            self._solve_frames(solved, group, problem, frames, reference, done=done, pull_root=pull_root)
+            done = None if known is None else known.done[group.frames]
+            self._solve_frames(solved, group, group.problem, group.frames, reference, done=done, pull_root=pull_root)
         if known is not None:
             solved.ranks[known.done] = known.ranks[known.done]
         return solved
@@ -302,11 +301,11 @@ class Run:
         return self._group(members, frames).problem
 
     def errors(self, solved: Solved) -> tuple[ConstraintErrors, ...]:
-        """Return what is left of every constraint, against the targets of the last pass, by forward kinematics."""
+        """Return what is left of every constraint, by forward kinematics."""
         sight = self._sight(solved.motion)
         return tuple(
             errors_of(c, t, sight, solved.motion, reference=self.motion)
-            for c, t in zip(self.constraints, solved.targets, strict=True)
+            for c, t in zip(self.constraints, self.targets, strict=True)
         )
 
 

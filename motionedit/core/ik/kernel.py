@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -48,10 +48,6 @@ class Layout:
     def of(cls, problem: Problem) -> Layout:
         """Return the layout of a problem."""
         return _layout(problem)
-
-    def with_targets(self, problem: Problem) -> Layout:
-        """Return the layout of a problem that differs in its targets alone."""
-        return replace(self, targets=_targets(problem))
 
 
 def solve(

@@ -84,6 +84,34 @@ def test_feasible_layers_are_met(motion, body):
     assert np.median(edit.iterations) <= 8
 
 
+def balance(priority=1):
+    support = tuple(joint(name) for name in ("LeftFoot", "LeftToeBase", "RightFoot", "RightToeBase"))
+    return Constraint("com", "com", priority, 1.0, Effector(0, np.zeros(3)), support=support)
+
+
+def furthest(motion, edit, name):
+    """Return how far a joint is moved at most (mm)."""
+    before, after = (kinematics.forward(each).positions[:, joint(name)] for each in (motion, edit.motion))
+    return np.linalg.norm(after - before, axis=1).max() / MM
+
+
+def test_a_center_of_mass_does_not_chase_feet_that_nothing_holds(motion, body):
+    hand, passes = held("RightHand", (0.1, 0.1, 0.15), priority=4), LayeredSettings(smoothing=Passes(3, 1.5))
+    alone, balanced = (run(motion, more, body, passes) for more in ([hand], [hand, balance()]))
+    assert max(errors(balanced)) < 0.01
+    assert furthest(motion, balanced, "LeftFoot") < 1.5 * furthest(motion, alone, "LeftFoot")
+
+
+def test_a_center_of_mass_goes_with_a_body_that_is_moved(motion, body):
+    hips = held("Hips", (0.5, 0.0, 0.0), priority=4)
+    edit = run(motion, [hips, balance()], body)
+    assert max(errors(edit)) < 0.01
+    assert furthest(motion, edit, "LeftFoot") == pytest.approx(furthest(motion, edit, "RightFoot"), abs=100.0)
+    bent = rot.angle_between(edit.motion.rotations, motion.rotations).max()
+    upright = run(motion, [hips, Constraint("com", "com", 1, 1.0, Effector(0, np.zeros(3)))], body)
+    assert bent < 0.5 * rot.angle_between(upright.motion.rotations, motion.rotations).max()
+
+
 def test_an_unreachable_hand_leaves_the_feet_where_they_are(motion, body):
     edit = run(motion, [*feet(), held("RightHand", (3.0, 2.0, 1.0), priority=4)], body)
     *of_feet, of_hand = errors(edit)
