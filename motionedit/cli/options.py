@@ -100,7 +100,7 @@ _BEFORE = (
     click.option(
         "--update",
         is_flag=True,
-        help="Skip outputs newer than their clip, the spec, the model and the event files.",
+        help="Skip outputs newer than their clip, the spec, the model and the event files, whatever --set says.",
     ),
     overwrite_option,
 )

@@ -41,7 +41,7 @@ def match_joints(reference: Skeleton, other: Skeleton, *, height: float, label: 
         if missing:
             parts.append(f"lacks {_listed(missing)}")
         if extra:
-            parts.append(f"has {_listed(extra)} more")
+            parts.append(f"also has {_listed(extra)}")
         difference = " and ".join(parts) or f"has {len(other)} joints, not {len(reference)}"
         raise ClipError(f"another skeleton than {against}: {difference}", file=label)
     joint_map = _same_names(reference, other)

@@ -39,7 +39,9 @@ class ConstraintItem(Item):
     tolerance: Annotated[Tolerance | None, kinds.TOLERANCE] = Field(
         default=None,
         description="How near is met: clip units, degrees for orientation, aim and posture, {position, angle} for "
-        "pose; off: may give way and is not counted by --strict. Default 1 mm and 0.1 degree at leg length 0.85 m.",
+        "pose; off: may give way. Default 1 mm and 0.1 degree at leg length 0.85 m. Where none is given, --strict "
+        "counts places and turns that have an at or a hold; com, aim, posture, and what has no points or only during, "
+        "warn alone.",
     )
     ease_in: Annotated[Duration, kinds.DURATION] = Field(
         default=EASE, description="Ramp from the input's trajectory before the first point (see defaults)."

@@ -109,7 +109,7 @@ def test_joints_are_matched_by_name_whatever_their_order(run, tmp_path):
     [
         ({"frames": 9}, "b.bvh: 9 frames, a.bvh has 8"),
         ({"frame_time": 1 / 29.97}, "b.bvh: 29.97 frames per second, a.bvh has 30"),
-        ({"names": ("Hips", "LeftArm", "Hand")}, "lacks 'LeftForeArm' and has 'Hand'"),
+        ({"names": ("Hips", "LeftArm", "Hand")}, "lacks 'LeftForeArm' and also has 'Hand'"),
         ({"names": ("Hips", "LeftForeArm", "LeftArm")}, "hangs on"),
         ({"names": ("Hips", "LeftArm")}, "lacks 'LeftForeArm'"),
     ],
