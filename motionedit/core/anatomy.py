@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy as np
 from motionedit.core.arrays import median
 from motionedit.core.limbs import LimbPair, Tree, find_limb_pairs
 from motionedit.core.sides import leg_or_arm, side_of_chains, side_of_toes
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray

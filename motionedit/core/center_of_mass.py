@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,6 +10,7 @@ from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
 from motionedit.core.body_segments import lay_by_length, lay_given, lay_human
 from motionedit.core.kinematics import WorldPoses
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -8,7 +8,6 @@ choices are a running exclusive or, the whole turns a running sum.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -16,6 +15,7 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.motion import position_columns
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen, median
 from motionedit.core.limbs import zero_pose
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from motionedit.core.anatomy import Anatomy

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from motionedit.core.anatomy import Anatomy

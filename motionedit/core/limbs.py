@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
 from itertools import combinations
 from typing import TYPE_CHECKING, NamedTuple
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from motionedit.core.sides import side_of_names
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

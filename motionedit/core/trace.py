@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,6 +10,7 @@ from motionedit.core.arrays import frozen
 from motionedit.core.center_of_mass import center_of_mass
 from motionedit.core.kinematics import WorldPoses, forward
 from motionedit.core.quality import JerkMeter
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

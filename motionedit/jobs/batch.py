@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from contextlib import closing
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from motionedit.dataclass import dataclass
 from motionedit.errors import (
     EXIT_CLIP_FAILED,
     EXIT_DONE,

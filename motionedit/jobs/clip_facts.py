@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
@@ -11,6 +10,7 @@ import numpy as np
 from motionedit.core import ground, kinematics
 from motionedit.core.anatomy import Anatomy, find_anatomy
 from motionedit.core.contacts import find_plants
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray

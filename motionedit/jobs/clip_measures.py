@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from motionedit.core.ground import axis_name
 from motionedit.core.skeleton_match import match_joints
+from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError, MotionEditError
 from motionedit.jobs import resolve
 from motionedit.jobs.batch import read_task

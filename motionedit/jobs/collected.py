@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, TypeVar
 
+from motionedit.dataclass import dataclass
 from motionedit.errors import MotionEditError, MotionEditErrors
 
 if TYPE_CHECKING:

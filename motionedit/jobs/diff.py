@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -11,6 +10,7 @@ from motionedit.core import rotations as rot
 from motionedit.core.anatomy import find_anatomy
 from motionedit.core.kinematics import forward
 from motionedit.core.skeleton_match import match_joints
+from motionedit.dataclass import dataclass
 from motionedit.errors import (
     EXIT_DONE,
     EXIT_OUT_OF_TOLERANCE,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +16,7 @@ from motionedit.core.pca.model_file import read_model
 from motionedit.core.skeleton_match import match_joints
 from motionedit.core.timeline import round_half_up
 from motionedit.core.timeline.warp import make_warp
+from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError
 from motionedit.jobs import resolve
 from motionedit.jobs.batch import Outcome, plan, run_batch

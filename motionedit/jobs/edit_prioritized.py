@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,6 +18,7 @@ from motionedit.core.editing.prioritized_edit import (
 )
 from motionedit.core.motion import Motion
 from motionedit.core.trace import blocks_of, forward_blocks, frame_blocks
+from motionedit.dataclass import dataclass
 from motionedit.jobs import resolve
 from motionedit.jobs.batch import Outcome, plan, run_batch
 from motionedit.jobs.clip_facts import facts_of

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +15,7 @@ from motionedit.core.pca.model import DatabaseClip
 from motionedit.core.pca.model_file import model_bytes
 from motionedit.core.pca.streaming import MOST_COMPONENTS
 from motionedit.core.skeleton_match import match_joints
+from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError, ModelError, MotionEditError, MotionEditErrors
 from motionedit.jobs import resolve
 from motionedit.jobs.batch import ClipTask, atomic_write, clean_leftovers, read_task, values_in_order

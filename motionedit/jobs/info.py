@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from motionedit.core import ground
 from motionedit.core.contacts import STANDARD_LEG, find_plants
 from motionedit.core.hinges import find_hinges
 from motionedit.core.quality import find_defects, foot_slide_max, jerk_rms
+from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError, MotionEditError, MotionEditErrors
 from motionedit.jobs.batch import read_task
 from motionedit.jobs.clip_facts import ClipFacts, facts_of

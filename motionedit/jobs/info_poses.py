@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.euler import angles_near
 from motionedit.core.kinematics import Effector, effector_positions
+from motionedit.dataclass import dataclass
 from motionedit.errors import MotionEditError, UsageError
 from motionedit.jobs import resolve
 from motionedit.spec.faults import FaultyValueError

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from motionedit.core.center_of_mass import center_of_mass, find_masses
 from motionedit.core.kinematics import Effector, effector_positions
+from motionedit.dataclass import dataclass
 from motionedit.errors import UsageError
 from motionedit.jobs.bodies import upright
 from motionedit.report.preview.marks import Curve, Edit, Mark, Span

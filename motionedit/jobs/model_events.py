@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any
 
+from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError, MotionEditError
 from motionedit.jobs import resolve
 from motionedit.jobs.events import event_frames

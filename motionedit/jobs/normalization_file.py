@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from motionedit.core.timeline.warp import Timeline
+from motionedit.dataclass import dataclass
 from motionedit.errors import ModelError
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ Two phases: every clip is measured, the means are taken, then every clip is resa
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,6 +16,7 @@ from motionedit.core.quality import find_defects
 from motionedit.core.timeline.alignment import aligned
 from motionedit.core.timeline.resample import resample
 from motionedit.core.timeline.warp import Timeline, make_warp
+from motionedit.dataclass import dataclass
 from motionedit.errors import (
     EXIT_CLIP_FAILED,
     EXIT_USAGE,

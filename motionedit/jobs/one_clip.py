@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import sys
 import time
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
+from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError, MotionEditError, MotionEditErrors
 from motionedit.jobs.files import atomic_write
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.editing.coefficient_edit import GoalRequest
 from motionedit.core.kinematics import effector_positions
+from motionedit.dataclass import dataclass
 from motionedit.jobs import resolve
 
 if TYPE_CHECKING:

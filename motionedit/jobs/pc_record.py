@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from motionedit.dataclass import dataclass
 from motionedit.jobs.effector_record import effector_record
 from motionedit.jobs.pc_goals import ClipGoal, goal_place, goal_record, is_met
 

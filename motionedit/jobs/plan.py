@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import contextlib
 import os
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from motionedit.dataclass import dataclass
 from motionedit.errors import UsageError
 from motionedit.jobs.files import identity
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,6 +13,7 @@ from motionedit.core.contacts import STANDARD_LEG
 from motionedit.core.editing.prioritized_edit import Body
 from motionedit.core.hinges import OFF_AXIS_ENERGY, Hinge, find_hinges, hinge_of
 from motionedit.core.motion import Motion, scaled
+from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError
 from motionedit.jobs import resolve
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +12,7 @@ from motionedit.core.editing.constraints import Constraint, in_metres, recruits_
 from motionedit.core.editing.trajectories import ControlPoint, active_interval
 from motionedit.core.ik.recruiting import RecruitRule
 from motionedit.core.kinematics import Effector
+from motionedit.dataclass import dataclass
 from motionedit.jobs import resolve
 from motionedit.jobs.collected import Faults
 from motionedit.spec.faults import listed

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy as np
 from motionedit.core.arrays import median
 from motionedit.core.editing.constraints import order_of_layers
 from motionedit.core.editing.prioritized_edit import LayeredSettings, PaperFilter
+from motionedit.dataclass import dataclass
 from motionedit.jobs.effector_record import effector_record
 from motionedit.jobs.prioritized_recruits import recruited_names
 

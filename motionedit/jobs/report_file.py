@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from motionedit.dataclass import dataclass
 from motionedit.errors import UsageError
 from motionedit.jobs.files import identity
 from motionedit.report.record import SCHEMA

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Protocol
 
@@ -11,6 +10,7 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
 from motionedit.core.kinematics import Effector
+from motionedit.dataclass import dataclass
 from motionedit.spec.faults import did_you_mean, listed
 
 if TYPE_CHECKING:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import io
 import warnings
-from dataclasses import dataclass
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from motionedit.dataclass import dataclass
 from motionedit.errors import UsageError
 from motionedit.report.sheet_shapes import pose_shapes
 

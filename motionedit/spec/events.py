@@ -1,13 +1,14 @@
 """Events of a spec: instants with names, given by frame, by clip, by a CSV file, or found by a rule."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Annotated, Any, Literal, get_args
 
 from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
+from motionedit.dataclass import dataclass
 from motionedit.spec import kinds, scalars
 from motionedit.spec.faults import Fault, FaultyValueError, faulty, show
 from motionedit.spec.model import Context, Kind, SpecModel

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar, overload
 
+from motionedit.dataclass import dataclass
 from motionedit.errors import MotionEditError, MotionEditErrors, SpecError
 from motionedit.spec import SPEC_COMMANDS, model_of, schema_name
 from motionedit.spec.faults import Fault, Keys, dotted

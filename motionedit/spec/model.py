@@ -1,7 +1,6 @@
 """What all spec models share: kinds of values with their JSON Schema, and all faults of a mapping reported at once."""
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 from itertools import combinations
 from pathlib import Path
 from typing import Any, ClassVar, Self
@@ -18,6 +17,7 @@ from pydantic import (
 )
 from pydantic_core import CoreSchema, core_schema
 
+from motionedit.dataclass import dataclass
 from motionedit.spec.faults import Fault, FaultyValueError, Keys, faulty, nearest, show
 from motionedit.spec.values import unknown_key
 

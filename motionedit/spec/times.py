@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from motionedit.dataclass import dataclass
 from motionedit.spec.faults import Fault, FaultyValueError, did_you_mean, faulty, listed, show
 
 if TYPE_CHECKING:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, Literal
 
+from motionedit.dataclass import dataclass
 from motionedit.spec.faults import Fault, FaultyValueError, did_you_mean, faulty, listed, show
 from motionedit.spec.scalars import (
     Vector,

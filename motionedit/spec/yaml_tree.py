@@ -7,11 +7,12 @@ aliases counted as often as they are used, are checked while they grow: no text 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, Any
 
 import yaml
 
+from motionedit.dataclass import dataclass
 from motionedit.spec.faults import Fault, FaultyValueError, Keys, show
 from motionedit.spec.syntax import DEEPEST, syntax_fault
 

@@ -7,7 +7,6 @@ this package's own reader has accepted. It is imported where it is used, for it 
 from __future__ import annotations
 
 import warnings
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +20,7 @@ from motionedit.core.kinematics import forward
 from motionedit.core.motion import Motion
 from motionedit.core.rotations import normalize
 from motionedit.core.skeleton import EndSite, Skeleton
+from motionedit.dataclass import dataclass
 from motionedit.errors import BvhError
 
 if TYPE_CHECKING:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import lru_cache
 from typing import TYPE_CHECKING, NoReturn
 
@@ -12,6 +12,7 @@ import numpy as np
 from motionedit.core.arrays import frozen
 from motionedit.core.bvh.scan import WORD_LENGTH, number, quoted, refusal, text_of
 from motionedit.core.skeleton import EndSite, Skeleton
+from motionedit.dataclass import dataclass
 from motionedit.errors import BvhError
 
 if TYPE_CHECKING:

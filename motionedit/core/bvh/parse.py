@@ -7,7 +7,6 @@ exactly, so one division rounds it correctly. The integer is read eight digits a
 from __future__ import annotations
 
 import warnings
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,6 +14,7 @@ import numpy as np
 from motionedit.core.arrays import frozen
 from motionedit.core.bvh.scan import WORD_LENGTH, number
 from motionedit.core.bvh.scan import decimals as decimals_of
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -13,6 +12,7 @@ from motionedit.core.bvh.header import Header, read_header
 from motionedit.core.bvh.rows import Rows, read_rows, row_capacity, values_between
 from motionedit.core.bvh.scan import refusal
 from motionedit.core.motion import Motion, write_poses
+from motionedit.dataclass import dataclass
 from motionedit.errors import BvhError
 
 if TYPE_CHECKING:

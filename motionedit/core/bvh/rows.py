@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy as np
 from motionedit.core.arrays import frozen
 from motionedit.core.bvh.parse import FaultyWord, parse_block
 from motionedit.core.bvh.scan import line_blocks, line_breaks, quoted, refusal, words_between
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
 from io import BytesIO
 from typing import TYPE_CHECKING
@@ -15,6 +14,7 @@ from motionedit.core.bvh.scan import words_between
 from motionedit.core.bvh.write import check_finite, decimals_of_edits, head_bytes, rows_text
 from motionedit.core.euler import joint_pieces, piece_angles, runs
 from motionedit.core.motion import position_columns
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator

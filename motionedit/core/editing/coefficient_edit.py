@@ -10,7 +10,7 @@ met exactly in the output. `residual="drop"` gives the paper's eq. (3) alone.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -22,6 +22,7 @@ from motionedit.core.ik.chain import CoefficientChain
 from motionedit.core.ik.coefficient_solver import CoefficientSolution, solve_damped, solve_goals
 from motionedit.core.ik.goals import Goal, goal_error
 from motionedit.core.timeline.interpolation import low_pass, natural_spline
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

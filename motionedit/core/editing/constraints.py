@@ -5,7 +5,7 @@ Lengths are normalised metres: the motion has been scaled before it comes here.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -27,6 +27,7 @@ from motionedit.core.ik.tasks import (
     moved_by,
 )
 from motionedit.core.kinematics import Effector, WorldPoses, effector_positions
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -17,6 +17,7 @@ from motionedit.core.editing.continuity import NO_DISPLACEMENT, smoothed_displac
 from motionedit.core.editing.prioritized_run import Run, Solved
 from motionedit.core.ik.recruiting import Breach, Recruits, breaches, expanded
 from motionedit.core.trace import frame_blocks
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from operator import itemgetter
 from typing import TYPE_CHECKING
@@ -28,6 +28,7 @@ from motionedit.core.ik.layered_solver import Problem, Reference, WeightedTask, 
 from motionedit.core.ik.recruiting import Recruits
 from motionedit.core.ik.tasks import Columns
 from motionedit.core.motion import Motion
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

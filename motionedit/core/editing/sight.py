@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,6 +10,7 @@ from motionedit.core.center_of_mass import Masses, center_of_mass
 from motionedit.core.kinematics import WorldPoses, forward
 from motionedit.core.motion import Motion
 from motionedit.core.trace import frame_blocks
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

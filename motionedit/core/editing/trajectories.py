@@ -6,7 +6,6 @@ where some point gives a position, the path itself is. Inside a hold the target 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Literal
 
@@ -15,6 +14,7 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.editing.splines import kochanek_bartels
 from motionedit.core.timeline import round_half_up
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

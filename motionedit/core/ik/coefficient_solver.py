@@ -5,13 +5,13 @@ All solve for the change beta = alpha - alpha_0 and home to beta = 0, so that wh
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from motionedit.core.ik.goals import stacked_errors
 from motionedit.core.ik.penalty_search import PenaltySearch
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

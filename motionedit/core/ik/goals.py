@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -11,6 +10,7 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.ik import METRES_PER_RADIAN
 from motionedit.core.ik.chain import EffectorState, evaluate
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -7,7 +7,6 @@ factor; the secant through them ends in one step what would take many.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,6 +14,7 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.ik.layers import Descent, off_layers
 from motionedit.core.ik.tasks import posture_error
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray

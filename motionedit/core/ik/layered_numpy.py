@@ -5,7 +5,7 @@ All frames iterate together; those that have converged leave.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -17,6 +17,7 @@ from motionedit.core.ik.layered_solver import Reference
 from motionedit.core.ik.layers import Descent, descend
 from motionedit.core.kinematics import WorldPoses, forward
 from motionedit.core.motion import Motion
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -15,13 +15,13 @@ few frames side by side. They agree to rounding.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from motionedit.core.compiled import compiled
 from motionedit.core.ik import kernel
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray

@@ -7,7 +7,6 @@ Lengths are normalised metres; radians of orientation rows count as `METRES_PER_
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -16,6 +15,7 @@ from motionedit.core import rotations as rot
 from motionedit.core.center_of_mass import Masses, center_of_mass, subtree_centers
 from motionedit.core.ik import METRES_PER_RADIAN
 from motionedit.core.kinematics import Effector, WorldPoses, effector_positions
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray

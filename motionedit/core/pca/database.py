@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,6 +22,7 @@ from motionedit.core.pca.streaming import Streamed, stream_components
 from motionedit.core.pca.tracks import MeanRotations, make_consistent
 from motionedit.core.pca.vectors import CentredVectors, MotionVectors, VectorsInFile, VectorsInMemory, motion_vectors
 from motionedit.core.timeline.alignment import NO_ALIGNMENT, travel_path
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -7,7 +7,6 @@ of the data, the largest first. How far each still is from one is known exactly,
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,6 +21,7 @@ from motionedit.core.pca.fit import (
     refuse_no_variance,
     signs_of,
 )
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray

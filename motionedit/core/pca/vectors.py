@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import tempfile
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, BinaryIO, Protocol, Self
 
 import numpy as np
 
+from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError
 
 if TYPE_CHECKING:

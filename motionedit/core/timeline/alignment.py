@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +11,7 @@ from motionedit.core.arrays import frozen
 from motionedit.core.ground import reference_axes
 from motionedit.core.kinematics import forward_of
 from motionedit.core.motion import Motion
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from motionedit.core.timeline.interpolation import monotone_cubic
+from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError
 
 if TYPE_CHECKING:

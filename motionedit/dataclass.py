@@ -1,0 +1,59 @@
+"""Frozen dataclasses that are quick to make.
+
+The library writes and compiles the methods of every class anew, five of them for a frozen one: for a program of a
+hundred such classes that takes a sixth of a short edit. Here a frozen class gets its own `__init__` from the library,
+and shares the other methods with all.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import TYPE_CHECKING, Any, NoReturn
+
+if TYPE_CHECKING:
+    from dataclasses import dataclass
+else:
+
+    def dataclass(cls: type | None = None, /, *, frozen: bool = False, eq: bool = True) -> Any:  # noqa: ANN401
+        """Return the class as `dataclasses.dataclass` makes it."""
+
+        def made(cls: type) -> type:
+            if not frozen:
+                return dataclasses.dataclass(cls, eq=eq)
+            cls = dataclasses.dataclass(cls, eq=False, repr=False)
+            cls.__setattr__, cls.__delattr__, cls.__repr__ = _set_once, _refuse, _shown
+            if eq:
+                cls.__eq__, cls.__hash__ = _equals, _hashed
+            return cls
+
+        return made if cls is None else made(cls)
+
+
+def _set_once(self: Any, name: str, value: object) -> None:  # noqa: ANN401  any of the classes
+    if name in vars(self) or name not in self.__dataclass_fields__:
+        _refuse(self, name)
+    vars(self)[name] = value
+
+
+def _refuse(_self: object, name: str) -> NoReturn:
+    raise dataclasses.FrozenInstanceError(f"cannot assign to field {name!r}")
+
+
+def _shown(self: Any) -> str:  # noqa: ANN401
+    values = ", ".join(f"{each.name}={getattr(self, each.name)!r}" for each in dataclasses.fields(self))
+    return f"{type(self).__qualname__}({values})"
+
+
+def _compared(self: Any) -> tuple[object, ...]:  # noqa: ANN401
+    return tuple(getattr(self, each.name) for each in dataclasses.fields(self) if each.compare)
+
+
+def _equals(self: object, other: object) -> bool:
+    return _compared(self) == _compared(other) if other.__class__ is self.__class__ else NotImplemented
+
+
+def _hashed(self: object) -> int:
+    return hash(_compared(self))
+
+
+__all__ = ["dataclass"]

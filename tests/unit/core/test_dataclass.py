@@ -1,0 +1,67 @@
+"""Quick frozen dataclasses are those of the library in all but the time they take."""
+
+import pickle
+from dataclasses import FrozenInstanceError, dataclass, field, fields, replace
+from functools import cached_property
+
+import pytest
+
+from motionedit import dataclass as quick
+
+MAKERS = pytest.mark.parametrize("make", [dataclass, quick.dataclass], ids=["library", "ours"])
+
+
+def made(make, *, eq=True):
+    @make(frozen=True, eq=eq)
+    class Point:
+        """A point."""
+
+        x: int
+        y: list = field(default_factory=list)
+        note: str = field(default="", compare=False)
+
+        @cached_property
+        def double(self):
+            return 2 * self.x
+
+    return Point
+
+
+@quick.dataclass(frozen=True)
+class Sent:
+    """What goes from process to process."""
+
+    name: str
+
+
+@MAKERS
+def test_it_is_frozen(make):
+    point = made(make)(1)
+    for change in (lambda: setattr(point, "x", 2), lambda: setattr(point, "z", 2), lambda: delattr(point, "x")):
+        with pytest.raises(FrozenInstanceError):
+            change()
+    assert point.x == 1
+    assert point.double == 2
+    assert replace(point, x=3).double == 6
+    assert [each.name for each in fields(point)] == ["x", "y", "note"]
+
+
+@MAKERS
+def test_it_shows_and_compares_its_fields(make):
+    Point = made(make)
+    assert repr(Point(1, note="a")).endswith("Point(x=1, y=[], note='a')")
+    assert Point(1, [2], "a") == Point(1, [2], "b") != Point(1, [3])
+    assert Point(1) != 1
+    assert hash(Point(1, (2,), "a")) == hash(Point(1, (2,), "b"))
+
+
+@MAKERS
+def test_without_eq_it_is_itself_alone(make):
+    Point = made(make, eq=False)
+    point = Point(1)
+    assert point != Point(1)
+    assert len({point, point, Point(1)}) == 2
+
+
+def test_it_goes_through_a_pickle():
+    assert pickle.loads(pickle.dumps(Sent("a"))) == Sent("a")  # noqa: S301  its own
