@@ -267,6 +267,7 @@ class Run:
         state = self._in_order()
         iterations = state.iterations.copy()
         frozen = replace(self, recruits=tuple(Recruits(each.joints, root=False) for each in self.recruits))
+        vars(frozen)["targets"] = self.targets  # what is asked for is the same
         for number in range(smoothing.count):
             if number == 0:
                 filtered = filtered_root(

@@ -102,6 +102,12 @@ def test_a_center_of_mass_does_not_chase_feet_that_nothing_holds(motion, body):
     assert furthest(motion, balanced, "LeftFoot") < 1.5 * furthest(motion, alone, "LeftFoot")
 
 
+def test_every_pass_of_the_paper_asks_for_the_same_center_of_mass(motion, body):
+    asked = [held("RightHand", (0.1, 0.1, 0.15), priority=4), balance()]
+    edit = run(motion, asked, body, LayeredSettings(smoothing=PaperFilter(2, 3.0)))
+    assert max(errors(edit)) < 0.01
+
+
 def test_a_center_of_mass_goes_with_a_body_that_is_moved(motion, body):
     hips = held("Hips", (0.5, 0.0, 0.0), priority=4)
     edit = run(motion, [hips, balance()], body)
