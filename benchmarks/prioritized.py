@@ -20,10 +20,9 @@ from motionedit.core.editing.prioritized_edit import (
     Passes,
     PrioritizedEdit,
     edit_by_priorities,
-    recruit,
+    prepare,
     solve_in_passes,
 )
-from motionedit.core.editing.prioritized_run import Run
 from motionedit.core.ik import layered_numpy
 from motionedit.core.motion import Motion
 from motionedit.jobs.edit_prioritized import EditByPriorities
@@ -61,8 +60,7 @@ class Case:
 
     def solve(self, passes: int = 0) -> Callable[[], object]:
         """Return a function that solves every frame, and again after each pass: targets and layout are made before."""
-        recruits, _ = recruit(self.constraints, self.motion, self.body, rule="expand")
-        run = Run(self.motion, tuple(self.constraints), tuple(recruits), self.body, self.settings)
+        run, _ = prepare(self.motion, self.constraints, self.body, self.settings)
         run.solve(self.motion, reference=self.motion, pull_root=False)
         return lambda: solve_in_passes(run, self._passes(passes))
 
@@ -243,8 +241,8 @@ def _above_the_unmet(edit: PrioritizedEdit) -> float:
 
 
 def _unknowns(each: Case) -> int:
-    recruits, _ = recruit(each.constraints, each.motion, each.body, rule="expand")
-    return 3 * len(frozenset().union(*(r.joints for r in recruits))) + 3
+    run, _ = prepare(each.motion, each.constraints, each.body, each.settings)
+    return 3 * len(frozenset().union(*(r.joints for r in run.recruits))) + 3
 
 
 def _task_rows(edit: PrioritizedEdit) -> int:

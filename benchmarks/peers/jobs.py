@@ -21,9 +21,8 @@ from motionedit.core.editing.prioritized_edit import (
     Passes,
     PrioritizedEdit,
     edit_by_priorities,
-    recruit,
+    prepare,
 )
-from motionedit.core.editing.prioritized_run import Run
 from motionedit.core.editing.trajectories import ControlPoint, position_targets
 from motionedit.core.ground import travel_joint
 from motionedit.core.hinges import find_hinges
@@ -91,9 +90,7 @@ class Job:
     def solver(self, body: Body | None = None) -> Callable[[], object]:
         """Return a function that solves every frame by this project; as the peers', its targets are made before."""
         settings = LayeredSettings(smoothing=Passes(0, 1.0), max_iterations=self.cap)
-        bones = body or self.body
-        recruits, _ = recruit(self.constraints, self.motion, bones, rule="expand")
-        run = Run(self.motion, self.constraints, tuple(recruits), bones, settings)
+        run, _ = prepare(self.motion, self.constraints, body or self.body, settings)
         run.solve(self.motion, reference=self.motion, pull_root=False)
         return lambda: run.solve(self.motion, reference=self.motion, pull_root=False)
 

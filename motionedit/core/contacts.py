@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.arrays import percentile
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -65,7 +66,7 @@ def plants_of(tracks: FloatArray, anatomy: Anatomy, *, up: FloatArray, first: in
     places = tracks[first:]
     speed = np.linalg.norm(np.gradient(places, frame_time, axis=0), axis=-1)
     height = places @ up
-    low = _percentile(height, _LOW_PERCENTILE) + _LOW * metre
+    low = percentile(height, _LOW_PERCENTILE) + _LOW * metre
     planted = (speed < _SLOW * metre) & (height < low)
     plants = [
         Plant(side, joint, first + start, first + stop)
@@ -84,16 +85,3 @@ def _runs(planted: BoolArray) -> list[tuple[int, int]]:
     keep_starts = np.concatenate((starts[:1], starts[1:][wide]))
     keep_stops = np.concatenate((stops[:-1][wide], stops[-1:]))
     return [(int(a), int(b) - 1) for a, b in zip(keep_starts, keep_stops, strict=True)]
-
-
-def _percentile(rows: FloatArray, share: float) -> FloatArray:
-    """Return a percentile (0 to 100) of each column, shape (D,), linear between rows.
-
-    Not np.percentile: it imports numpy.ma, a tenth of the start of a short edit.
-    """
-    ordered = np.sort(rows, axis=0)
-    place = share / 100.0 * (len(rows) - 1)
-    below = int(place)
-    above = min(below + 1, len(rows) - 1)
-    between: FloatArray = ordered[below] + (place - below) * (ordered[above] - ordered[below])
-    return between

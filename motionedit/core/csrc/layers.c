@@ -15,8 +15,7 @@ static void less_above(const Batch *batch, const Layer *layer, const V *rows, co
 static void remaining_error(const Batch *batch, const Layer *layer, const V *fixed, V largest, V *b)
 {
     const V *e = batch->errors + layer->first;
-    const V size = root_of(dot_product(e, e, layer->rows)), whole = all(1.0);
-    const V factor = choose(less(largest, size), largest / larger(size, largest), whole);
+    const V factor = largest / larger(root_of(dot_product(e, e, layer->rows)), largest);
     for (int r = 0; r < layer->rows; r++)
         b[r] = factor * e[r] - fixed[layer->first + r];
     less_above(batch, layer, b, batch->c, b);

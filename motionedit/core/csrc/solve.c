@@ -184,10 +184,9 @@ static V bound_turns(Batch *batch)
         largest = larger(largest, batch->column_hinge[k] < 0 ? dot(w, w) : w[0] * w[0]);
     }
     largest = root_of(largest);
-    const Mask far = less(all(LARGEST_TURN), largest);
-    if (!any(far))
+    if (!any(less(all(LARGEST_TURN), largest)))
         return largest;
-    const V factor = choose(far, LARGEST_TURN / larger(largest, all(LARGEST_TURN)), all(1.0));
+    const V factor = LARGEST_TURN / larger(largest, all(LARGEST_TURN));
     for (int i = 0; i < batch->unknowns; i++)
         batch->step[i] *= factor;
     return smaller(largest, all(LARGEST_TURN));

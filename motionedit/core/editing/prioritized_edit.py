@@ -147,6 +147,14 @@ def _body_joints(body: Body, motion: Motion) -> set[int]:
     return joints
 
 
+def prepare(
+    motion: Motion, constraints: Sequence[Constraint], body: Body, settings: LayeredSettings
+) -> tuple[Run, list[Breach]]:
+    """Return an edit that is ready to be solved, and the breaches of the recruiting rule; raises as `recruit`."""
+    recruits, found = recruit(constraints, motion, body, rule=settings.recruiting_rule)
+    return Run(motion, tuple(constraints), tuple(recruits), body, settings), found
+
+
 def edit_by_priorities(
     motion: Motion, constraints: Sequence[Constraint], body: Body, settings: LayeredSettings
 ) -> PrioritizedEdit:
@@ -164,8 +172,7 @@ def edit_by_priorities(
     RecruitingError
         As `recruit`.
     """
-    recruits, found = recruit(constraints, motion, body, rule=settings.recruiting_rule)
-    run = Run(motion, tuple(constraints), tuple(recruits), body, settings)
+    run, found = prepare(motion, constraints, body, settings)
     if isinstance(settings.smoothing, Passes):
         state, iterations = solve_in_passes(run, settings.smoothing)
     else:
@@ -179,7 +186,7 @@ def edit_by_priorities(
         iterations=iterations,
         converged=state.converged,
         ranks=state.ranks,
-        recruits=tuple(recruits),
+        recruits=run.recruits,
         breaches=tuple(found),
     )
 

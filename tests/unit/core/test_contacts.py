@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from human import ANKLE_HEIGHT, HIPS_HEIGHT, skeleton_of, standing
 
-from motionedit.core import contacts
 from motionedit.core.anatomy import find_anatomy
+from motionedit.core.arrays import percentile
 from motionedit.core.contacts import find_plants
 from motionedit.core.ground import axis_vector
 from motionedit.core.kinematics import WorldPoses, forward
@@ -111,4 +111,4 @@ def test_a_body_without_legs_or_a_take_of_one_frame_has_no_plants():
 @pytest.mark.parametrize("rows", [2, 3, 50, 51, 145])
 def test_the_low_percentile_is_numpys(rows):
     heights = np.random.default_rng(rows).normal(size=(rows, 4))
-    np.testing.assert_allclose(contacts._percentile(heights, 2.0), np.percentile(heights, 2.0, axis=0), rtol=1e-13)
+    np.testing.assert_allclose(percentile(heights, 2.0), np.percentile(heights, 2.0, axis=0), rtol=1e-13)
