@@ -19,7 +19,7 @@ help:  ## list the targets
 
 install: $(STAMP)  ## set up a virtual environment in .venv with everything that the other targets need
 
-$(STAMP): pyproject.toml $(wildcard motionedit/core/csrc/*)
+$(STAMP): pyproject.toml $(wildcard motionedit/core/priorities/csrc/*)
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade pip
 	$(BIN)/python -m pip install --quiet --editable '.[plot,dev]'

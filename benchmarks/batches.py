@@ -11,8 +11,9 @@ from clock import Row, best_of, duration
 from data.generator.golf import make_swing
 from data.generator.players import random_swings
 from motionedit.core.bvh import new_bytes, read_clip
-from motionedit.jobs import fit_pca, normalize
-from motionedit.jobs.batch import RunOptions
+from motionedit.jobs import fit_pca
+from motionedit.jobs.batch.run import RunOptions
+from motionedit.jobs.normalize import job as normalize
 from motionedit.spec.load import load_spec
 
 if TYPE_CHECKING:

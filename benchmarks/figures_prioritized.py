@@ -10,10 +10,10 @@ import numpy as np
 from lab import jerk
 
 from motionedit.core import rotations as rot
-from motionedit.core.anatomy import find_anatomy
+from motionedit.core.body.anatomy import find_anatomy
+from motionedit.core.body.contacts import find_plants
+from motionedit.core.body.ground import find_up, rest_pose_frames
 from motionedit.core.bvh import read_clip
-from motionedit.core.contacts import find_plants
-from motionedit.core.ground import find_up, rest_pose_frames
 from motionedit.core.kinematics import forward
 from motionedit.spec.load import load_spec
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from lab import Edited, Lab
 
-    from motionedit.core.contacts import Plant
+    from motionedit.core.body.contacts import Plant
 
 ROOT = Path(__file__).resolve().parents[1]
 HEADINGS = (

@@ -14,14 +14,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.ground import axis_vector
+from motionedit.core.body.ground import axis_vector
 from motionedit.core.motion import Motion
-from motionedit.core.pca import database, vectors
+from motionedit.core.pca import vectors
 from motionedit.core.pca.database import DatabaseMotion, FitSettings, build_model
 from motionedit.core.pca.fit import ComponentCount
 from motionedit.core.pca.model import DatabaseClip
 from motionedit.core.skeleton import Skeleton
 from motionedit.core.timeline.warp import Timeline
+from motionedit.core.units import STANDARD_LEG
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -82,7 +83,7 @@ def main() -> None:
         timeline=Timeline(FRAMES, 25.0),
         travel=0,
         up=axis_vector("y"),
-        leg_length=database.LEG_METRES,
+        leg_length=STANDARD_LEG,
         settings=FitSettings(components=ComponentCount(components)),
         rules={},
     )

@@ -13,8 +13,11 @@ from motionedit.core import kinematics
 from motionedit.core.bvh import Clip, read_clip, resampled_bytes
 from motionedit.core.kinematics import Effector
 from motionedit.core.motion import Motion
-from motionedit.jobs import edit_pc, edit_prioritized, fit_pca, normalize
-from motionedit.jobs.batch import RunOptions
+from motionedit.jobs import fit_pca
+from motionedit.jobs.batch.run import RunOptions
+from motionedit.jobs.edit_pc import job as edit_pc
+from motionedit.jobs.edit_prioritized import job as edit_prioritized
+from motionedit.jobs.normalize import job as normalize
 from motionedit.spec.load import load_spec
 
 if TYPE_CHECKING:

@@ -10,18 +10,18 @@ import yaml
 from clock import Row, at_most, best_of, longer, process
 from lab import Lab
 
-from motionedit.core.editing import coefficient_edit
-from motionedit.core.ik.coefficient_solver import solve_goals
-from motionedit.core.ik.goals import stacked_errors
-from motionedit.jobs import edit_pc
-from motionedit.jobs.batch import RunOptions
+from motionedit.core.coefficients import edit as coefficient_edit
+from motionedit.core.coefficients.goals import stacked_errors
+from motionedit.core.coefficients.solver import solve_goals
+from motionedit.jobs.batch.run import RunOptions
+from motionedit.jobs.edit_pc import job as edit_pc
 from motionedit.spec.load import load_spec
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from motionedit.core.ik.coefficient_solver import CoefficientSolution
-    from motionedit.core.ik.goals import Goal
+    from motionedit.core.coefficients.goals import Goal
+    from motionedit.core.coefficients.solver import CoefficientSolution
 
 ROOT = Path(__file__).resolve().parents[1]
 CLIP = ROOT / "data" / "golf" / "swing04.bvh"

@@ -14,7 +14,9 @@ from figures_prioritized import config, foot_plants, reach
 
 from motionedit.core.bvh import read_clip
 from motionedit.core.compiled import CHOICE, solver_name
-from motionedit.core.editing.prioritized_edit import (
+from motionedit.core.motion import Motion
+from motionedit.core.priorities import numpy_solver as layered_numpy
+from motionedit.core.priorities.edit import (
     Body,
     LayeredSettings,
     Passes,
@@ -23,17 +25,15 @@ from motionedit.core.editing.prioritized_edit import (
     prepare,
     solve_in_passes,
 )
-from motionedit.core.ik import layered_numpy
-from motionedit.core.motion import Motion
-from motionedit.jobs.edit_prioritized import EditByPriorities
-from motionedit.jobs.plan import ClipTask
+from motionedit.jobs.batch.plan import ClipTask
+from motionedit.jobs.edit_prioritized.job import EditByPriorities
 from motionedit.spec.load import load_spec
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from contextlib import AbstractContextManager
 
-    from motionedit.core.editing.constraints import Constraint
+    from motionedit.core.priorities.constraints import Constraint
 
 ROOT = Path(__file__).resolve().parents[1]
 WALK = ROOT / "data" / "walk.bvh"

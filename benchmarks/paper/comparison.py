@@ -10,10 +10,10 @@ import numpy as np
 from figures_prioritized import plants_of
 from lab import joint_positions
 
-from motionedit.core.anatomy import find_anatomy
+from motionedit.core.body.anatomy import find_anatomy
+from motionedit.core.body.quality import jerk_rms
 from motionedit.core.bvh import read_clip
 from motionedit.core.capsules import clearances, limb_pairs
-from motionedit.core.quality import jerk_rms
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

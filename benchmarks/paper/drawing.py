@@ -14,8 +14,8 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from motionedit.core.bvh import read_clip
-from motionedit.jobs.bodies import body_of
-from motionedit.jobs.clip_facts import facts_of
+from motionedit.jobs.clip.facts import facts_of
+from motionedit.jobs.preview.bodies import body_of
 from motionedit.report.sheet_shapes import pose_shapes
 
 if TYPE_CHECKING:

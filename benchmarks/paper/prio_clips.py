@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.body.center_of_mass import center_of_mass, find_masses
+from motionedit.core.body.contacts import find_plants
+from motionedit.core.body.quality import foot_drift
 from motionedit.core.bvh import read_clip
-from motionedit.core.center_of_mass import center_of_mass, find_masses
-from motionedit.core.contacts import find_plants
-from motionedit.core.quality import foot_drift
-from motionedit.jobs.clip_facts import facts_of
+from motionedit.jobs.clip.facts import facts_of
 from paper.drawing import GREY, INK, body, hull, outside
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from motionedit.core.arrays import FloatArray
-    from motionedit.jobs.clip_facts import ClipFacts
+    from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.report.preview.body import Body
     from paper.drawing import Stage
 

@@ -6,7 +6,7 @@ import time
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from motionedit.core.editing import coefficient_edit
+from motionedit.core.coefficients import edit as coefficient_edit
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -13,12 +13,12 @@ from clock import best_of, duration, process
 from jobs import COM, places
 from others import PeerError, ask, command, versions
 
-from motionedit.core.anatomy import find_anatomy
+from motionedit.core.body.anatomy import find_anatomy
+from motionedit.core.body.center_of_mass import find_masses
 from motionedit.core.bvh import new_bytes, read_clip
-from motionedit.core.center_of_mass import find_masses
-from motionedit.core.editing.trajectories import ControlPoint, position_targets
 from motionedit.core.kinematics import forward
 from motionedit.core.motion import Motion
+from motionedit.core.priorities.trajectories import ControlPoint, position_targets
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -11,11 +11,15 @@ import numpy as np
 from robot import mjcf
 
 from motionedit.core import rotations as rot
-from motionedit.core.anatomy import find_anatomy
+from motionedit.core.body.anatomy import find_anatomy
+from motionedit.core.body.center_of_mass import center_of_mass, find_masses
+from motionedit.core.body.ground import travel_joint
+from motionedit.core.body.hinges import find_hinges
 from motionedit.core.bvh import read_clip
-from motionedit.core.center_of_mass import center_of_mass, find_masses
-from motionedit.core.editing.constraints import Constraint
-from motionedit.core.editing.prioritized_edit import (
+from motionedit.core.kinematics import Effector, WorldPoses, forward
+from motionedit.core.motion import Motion, scaled
+from motionedit.core.priorities.constraints import Constraint
+from motionedit.core.priorities.edit import (
     Body,
     LayeredSettings,
     Passes,
@@ -23,17 +27,13 @@ from motionedit.core.editing.prioritized_edit import (
     edit_by_priorities,
     prepare,
 )
-from motionedit.core.editing.trajectories import ControlPoint, position_targets
-from motionedit.core.ground import travel_joint
-from motionedit.core.hinges import find_hinges
-from motionedit.core.kinematics import Effector, WorldPoses, forward
-from motionedit.core.motion import Motion, scaled
+from motionedit.core.priorities.trajectories import ControlPoint, position_targets
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
-    from motionedit.core.center_of_mass import Masses
+    from motionedit.core.body.center_of_mass import Masses
 
 # Stands for a joint where a task is the center of mass, as in protocol.py.
 COM = -1

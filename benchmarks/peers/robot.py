@@ -10,7 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from motionedit.core.center_of_mass import Masses
+    from motionedit.core.body.center_of_mass import Masses
     from motionedit.core.skeleton import Skeleton
 
 # Kilograms of a joint that carries no mass: simulators refuse a moving body without any.

@@ -62,7 +62,7 @@ def show_unexpected(error: Exception, *, verbosity: int) -> None:
 def _explained(error: Exception) -> tuple[list[str], int]:
     """Return the lines that say what went wrong, and the exit code."""
     if isinstance(error, MotionEditErrors):
-        from motionedit.jobs.batch import flatten
+        from motionedit.jobs.batch.run import flatten
 
         errors = flatten(error)
         return [str(one) for one in errors], max(one.exit_code for one in errors)

@@ -20,7 +20,7 @@ from motionedit.cli.options import (
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from motionedit.jobs.plan import RunOptions
+    from motionedit.jobs.batch.plan import RunOptions
 
 
 @click.command(
@@ -53,7 +53,7 @@ def command(
     CLIPS are BVH files, folders of them, or '-' for standard input.
     """
     from motionedit.cli.finish import finish_batch
-    from motionedit.jobs import edit_pc
+    from motionedit.jobs.edit_pc import job as edit_pc
     from motionedit.spec.load import load_spec
 
     loaded = load_spec(spec_path, "edit-pc", overrides=overrides)

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from motionedit.jobs.batch import BatchResult
-    from motionedit.jobs.plan import RunOptions
+    from motionedit.jobs.batch.plan import RunOptions
+    from motionedit.jobs.batch.run import BatchResult
 
 
 def finish_batch(result: BatchResult, options: RunOptions, *, command: str, spec: Mapping[str, Any] | None) -> int:
@@ -63,7 +63,7 @@ def show_failures(failures: Sequence[MotionEditError]) -> None:
 
 def write_report(report: bytes, path: Path, *, dry_run: bool = False) -> None:
     """Write a report to its file, or to standard output for ``-``."""
-    from motionedit.jobs.files import atomic_write, clean_leftovers
+    from motionedit.jobs.batch.files import atomic_write, clean_leftovers
 
     if str(path) == "-":
         write_stdout(report)

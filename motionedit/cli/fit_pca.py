@@ -58,7 +58,7 @@ def command(
     from motionedit.cli.boundary import warn
     from motionedit.cli.finish import write_report
     from motionedit.jobs import fit_pca
-    from motionedit.jobs.plan import RunOptions, refuse_existing
+    from motionedit.jobs.batch.plan import RunOptions, refuse_existing
     from motionedit.report.record import report_bytes
     from motionedit.report.table import text_table
     from motionedit.spec.load import load_spec

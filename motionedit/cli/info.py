@@ -50,8 +50,8 @@ def command(
     """
     from motionedit.cli.finish import show_failures, write_report
     from motionedit.errors import EXIT_CLIP_FAILED, EXIT_DONE
-    from motionedit.jobs import info
-    from motionedit.jobs.plan import find_clips, refuse_overwriting
+    from motionedit.jobs.batch.plan import find_clips, refuse_overwriting
+    from motionedit.jobs.info import job as info
     from motionedit.report.record import report_bytes
 
     if bool(at) != bool(joints):

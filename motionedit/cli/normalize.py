@@ -10,7 +10,7 @@ import click
 from motionedit.cli.options import clips_argument, output_option, run_options, set_option, spec_option
 
 if TYPE_CHECKING:
-    from motionedit.jobs.plan import RunOptions
+    from motionedit.jobs.batch.plan import RunOptions
 
 
 @click.command(
@@ -37,7 +37,7 @@ def command(
     if output == "-" or output.lower().endswith(".bvh"):
         raise click.UsageError(f"-o {output}: normalize writes several files; give a folder")
     from motionedit.cli.finish import finish_batch
-    from motionedit.jobs import normalize
+    from motionedit.jobs.normalize import job as normalize
     from motionedit.spec.load import load_spec
 
     loaded = load_spec(spec_path, "normalize", overrides=overrides)

@@ -149,7 +149,7 @@ def run_options(*, keep_going: bool) -> Decorator:
     def decorate(function: Function) -> Function:
         @functools.wraps(function)
         def collected(**values: Any) -> Any:  # noqa: ANN401  the command's own value
-            from motionedit.jobs.plan import RunOptions
+            from motionedit.jobs.batch.plan import RunOptions
 
             if str(values["report"]) == str(values.get("output")) == "-":
                 raise click.UsageError("-o - and --report - cannot both have standard output")

@@ -45,8 +45,8 @@ def command(
 
     CLIPS are BVH files, folders of them, or '-' for standard input.
     """
-    from motionedit.jobs import preview
-    from motionedit.jobs.plan import refuse_existing
+    from motionedit.jobs.batch.plan import refuse_existing
+    from motionedit.jobs.preview import job as preview
 
     if not overwrite:
         refuse_existing([Path(output)])

@@ -12,8 +12,8 @@ from motionedit.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from motionedit.core.anatomy import Anatomy
     from motionedit.core.arrays import FloatArray
+    from motionedit.core.body.anatomy import Anatomy
 
 # Radii in leg lengths: of a lean body, half way along each limb. Hands and feet are left out: they may touch.
 _UPPER_ARM, _FOREARM, _THIGH, _SHIN, _TRUNK = 0.048, 0.036, 0.075, 0.050, 0.11

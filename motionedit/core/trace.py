@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.arrays import frozen
-from motionedit.core.center_of_mass import center_of_mass
+from motionedit.core.body.center_of_mass import center_of_mass
+from motionedit.core.body.quality import JerkMeter
 from motionedit.core.kinematics import WorldPoses, forward
-from motionedit.core.quality import JerkMeter
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from motionedit.core.arrays import FloatArray
-    from motionedit.core.center_of_mass import Masses
+    from motionedit.core.body.center_of_mass import Masses
     from motionedit.core.motion import Motion
 
 # Frames of a block, whose arrays stay near the processor.

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.anatomy import find_anatomy
+from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.kinematics import forward
 from motionedit.core.skeleton_match import match_joints
 from motionedit.dataclass import dataclass
@@ -19,15 +19,15 @@ from motionedit.errors import (
     MotionEditError,
     UsageError,
 )
-from motionedit.jobs.batch import read_task
-from motionedit.jobs.plan import find_clips, folder_clips, refuse_missing, refuse_overwriting
+from motionedit.jobs.batch.plan import find_clips, folder_clips, refuse_missing, refuse_overwriting
+from motionedit.jobs.batch.run import read_task
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from motionedit.core.arrays import FloatArray
     from motionedit.core.bvh import Clip
-    from motionedit.jobs.plan import ClipTask
+    from motionedit.jobs.batch.plan import ClipTask
 
 Status = Literal["same", "different", "missing", "not_comparable"]
 

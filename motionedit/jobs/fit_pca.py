@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from motionedit.core.anatomy import find_anatomy
-from motionedit.core.ground import axis_vector, travel_joint
+from motionedit.core.body.anatomy import find_anatomy
+from motionedit.core.body.ground import axis_vector, travel_joint
 from motionedit.core.pca.database import DatabaseMotion, FitSettings, build_model
 from motionedit.core.pca.fit import AllTheSameError, ComponentCount, TooFewComponentsError
 from motionedit.core.pca.model import DatabaseClip
@@ -17,9 +17,9 @@ from motionedit.core.pca.streaming import MOST_COMPONENTS
 from motionedit.core.skeleton_match import match_joints
 from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError, ModelError, MotionEditError, MotionEditErrors
-from motionedit.jobs import resolve
-from motionedit.jobs.batch import ClipTask, atomic_write, clean_leftovers, read_task, values_in_order
-from motionedit.jobs.normalization_file import NAME, Normalization, NormalizedClip, read_normalization
+from motionedit.jobs.batch.run import ClipTask, atomic_write, clean_leftovers, read_task, values_in_order
+from motionedit.jobs.clip import resolve
+from motionedit.jobs.normalize.normalization_file import NAME, Normalization, NormalizedClip, read_normalization
 from motionedit.spec.fit_pca import FitPcaSpec
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from motionedit.core.motion import Motion
     from motionedit.core.pca.database import FittedModel
     from motionedit.core.skeleton import Skeleton
-    from motionedit.jobs.batch import RunOptions
+    from motionedit.jobs.batch.run import RunOptions
     from motionedit.spec.load import LoadedSpec
 
 HEADINGS = ("component", "variance", "share %", "sum %")

@@ -30,7 +30,7 @@ HOMES = {
     "yaml": ("spec/",),
     "pydantic": ("spec/",),
     "bvhio": ("core/bvh/",),
-    "distributed": ("jobs/pool.py",),
+    "distributed": ("jobs/batch/pool.py",),
     "matplotlib": ("report/",),
     "scipy": (),
     "bvh": (),
@@ -85,5 +85,5 @@ def test_a_short_edit_loads_nothing_that_takes_longer_than_its_work(clip, spec, 
     code += "print('LOADED', *sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     loaded = set(done.stdout.rpartition("LOADED")[2].split())
-    assert "motionedit.core.editing.prioritized_edit" in loaded
+    assert "motionedit.core.priorities.edit" in loaded
     assert not loaded & {"scipy", "matplotlib", "bvhio", "multiprocessing", "numpy.ma", "numpy.fft"}

@@ -13,7 +13,7 @@ sys.path[:0] = [str(HERE), str(HERE.parent / "unit" / "report")]
 from devtools import Page, find_chromium  # noqa: E402  found by the line above
 from mannequin import bvh_text  # noqa: E402  the same
 
-from motionedit.jobs import preview  # noqa: E402  after them
+from motionedit.jobs.preview import job as preview  # noqa: E402  after them
 
 
 @pytest.fixture(scope="session")

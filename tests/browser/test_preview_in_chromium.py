@@ -4,7 +4,7 @@ import pytest
 
 from motionedit.core.bvh import read_clip
 from motionedit.core.kinematics import Effector, effector_positions, forward
-from motionedit.jobs import preview
+from motionedit.jobs.preview import job as preview
 
 PICTURE = "document.getElementById('scene').toDataURL()"
 COLORS = """(() => {

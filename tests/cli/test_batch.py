@@ -7,7 +7,7 @@ import pytest
 
 from motionedit.core.bvh import VerifyResult, unedited_bytes
 from motionedit.errors import ClipError, MotionEditErrors, SpecError
-from motionedit.jobs.batch import Outcome, RunOptions, map_tasks, plan, run_batch
+from motionedit.jobs.batch.run import Outcome, RunOptions, map_tasks, plan, run_batch
 
 
 @dataclass(frozen=True)

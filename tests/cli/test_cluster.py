@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from motionedit.errors import UsageError
-from motionedit.jobs.plan import RunOptions
-from motionedit.jobs.pool import results_in_order
+from motionedit.jobs.batch.plan import RunOptions
+from motionedit.jobs.batch.pool import results_in_order
 
 distributed = pytest.importorskip("distributed", reason="needs the extra motionedit[cluster]")
 
@@ -38,7 +38,7 @@ def test_the_workers_own_folder_does_not_matter(run, clip, copy_spec, address):
 
 
 def test_an_address_without_a_scheduler_is_a_usage_error(monkeypatch):
-    monkeypatch.setattr("motionedit.jobs.pool._SECONDS_TO_CONNECT", 0.5)
+    monkeypatch.setattr("motionedit.jobs.batch.pool._SECONDS_TO_CONNECT", 0.5)
     for nobody in ("tcp://127.0.0.1:1", "nonsense://x", "???"):
         with pytest.raises(UsageError, match="no Dask scheduler answers"):
             list(results_in_order(abs, [1], options=RunOptions(scheduler=nobody)))

@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from motionedit.jobs.files import atomic_write, clean_leftovers, identity
+from motionedit.jobs.batch.files import atomic_write, clean_leftovers, identity
 
 STUCK_WRITER = """
 import sys, time
 from pathlib import Path
-from motionedit.jobs.files import atomic_write
+from motionedit.jobs.batch.files import atomic_write
 def stuck(self, target):
     print("written", flush=True)
     time.sleep(60)

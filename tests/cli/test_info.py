@@ -14,8 +14,8 @@ from motionedit.core.bvh import new_bytes, read_clip
 from motionedit.core.kinematics import forward
 from motionedit.core.motion import motion_from_channels
 from motionedit.core.skeleton import EndSite, Skeleton
-from motionedit.jobs.info import likely_unit
-from motionedit.jobs.info_text import flow, shown_name
+from motionedit.jobs.info.job import likely_unit
+from motionedit.jobs.info.text import flow, shown_name
 from motionedit.spec.edit_pc import PcGoal
 
 ROOT = ("Xposition", "Yposition", "Zposition", "Zrotation", "Xrotation", "Yrotation")

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from motionedit.jobs import batch
-from motionedit.jobs.plan import ClipTask
+from motionedit.jobs.batch import run as batch
+from motionedit.jobs.batch.plan import ClipTask
 
 ROOT = Path(__file__).resolve().parents[2]
 WALK = ROOT / "data" / "walk.bvh"
@@ -294,6 +294,6 @@ def test_nothing_of_the_page_is_loaded_unless_it_is_asked_for_and_never_a_plotti
         [sys.executable, "-c", f"{code}print('LOADED', *sys.modules)"], capture_output=True, text=True, check=True
     )
     loaded = set(done.stdout.rpartition("LOADED")[2].split())
-    pages = {"motionedit.jobs.preview", "motionedit.jobs.marks", "motionedit.report.preview.page"}
+    pages = {"motionedit.jobs.preview.job", "motionedit.jobs.preview.marks", "motionedit.report.preview.page"}
     assert loaded & pages == (pages if asked else set())
     assert "matplotlib" not in loaded

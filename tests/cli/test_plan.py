@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from motionedit.errors import UsageError
-from motionedit.jobs.plan import RunOptions, find_clips, plan
+from motionedit.jobs.batch.plan import RunOptions, find_clips, plan
 
 OPTIONS = RunOptions()
 

@@ -12,9 +12,9 @@ from functools import partial
 import pytest
 
 from motionedit.errors import UsageError
-from motionedit.jobs import pool
-from motionedit.jobs.plan import RunOptions
-from motionedit.jobs.pool import WorkerDiedError, results_in_order
+from motionedit.jobs.batch import pool
+from motionedit.jobs.batch.plan import RunOptions
+from motionedit.jobs.batch.pool import WorkerDiedError, results_in_order
 
 
 def slow_first(item):
@@ -98,8 +98,8 @@ def test_closing_early_leaves_no_worker():
 def test_workers_end_when_their_parent_is_killed():
     code = """
 import os, time
-from motionedit.jobs.plan import RunOptions
-from motionedit.jobs.pool import results_in_order
+from motionedit.jobs.batch.plan import RunOptions
+from motionedit.jobs.batch.pool import results_in_order
 def work(item):
     os.write(1, f"{os.getpid()}\\n".encode())
     time.sleep(60)

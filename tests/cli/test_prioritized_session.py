@@ -14,8 +14,9 @@ from motionedit.core.bvh import new_bytes, read_clip
 from motionedit.core.kinematics import forward
 from motionedit.core.motion import Motion, motion_from_channels, scaled
 from motionedit.core.skeleton import EndSite, Skeleton
-from motionedit.jobs import clip_facts, edit_prioritized
-from motionedit.jobs.clip_facts import facts_of
+from motionedit.jobs.clip import facts as clip_facts
+from motionedit.jobs.clip.facts import facts_of
+from motionedit.jobs.edit_prioritized import job as edit_prioritized
 
 DATA = Path(__file__).resolve().parents[2] / "data"
 WALK = DATA / "walk.bvh"

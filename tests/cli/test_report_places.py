@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from lab import Lab
 
+from motionedit.core.body.center_of_mass import center_of_mass, find_masses
 from motionedit.core.bvh import read_clip
-from motionedit.core.center_of_mass import center_of_mass, find_masses
 from motionedit.core.kinematics import Effector, effector_positions, forward
-from motionedit.jobs.clip_facts import facts_of
+from motionedit.jobs.clip.facts import facts_of
 from motionedit.report.record import plain
 
 DATA = Path(__file__).resolve().parents[2] / "data"

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from motionedit.core import rotations as rot
-from motionedit.core.ik.chain import CoefficientChain, _exp_and_left_jacobian, evaluate
-from motionedit.core.ik.goals import Goal, goal_error, stacked_errors
+from motionedit.core.coefficients.chain import CoefficientChain, _exp_and_left_jacobian, evaluate
+from motionedit.core.coefficients.goals import Goal, goal_error, stacked_errors
 
 STEP = 1e-6
 

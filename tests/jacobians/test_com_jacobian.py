@@ -7,8 +7,8 @@ import pytest
 from human import BONES, skeleton_of, split
 
 from motionedit.core import rotations as rot
-from motionedit.core.anatomy import find_anatomy
-from motionedit.core.center_of_mass import center_of_mass, com_jacobian, find_masses
+from motionedit.core.body.anatomy import find_anatomy
+from motionedit.core.body.center_of_mass import center_of_mass, com_jacobian, find_masses
 from motionedit.core.kinematics import forward
 from motionedit.core.motion import Motion
 

@@ -5,9 +5,11 @@ import pytest
 from human import skeleton_of
 
 from motionedit.core import rotations as rot
-from motionedit.core.anatomy import find_anatomy
-from motionedit.core.center_of_mass import find_masses
-from motionedit.core.ik.tasks import (
+from motionedit.core.body.anatomy import find_anatomy
+from motionedit.core.body.center_of_mass import find_masses
+from motionedit.core.kinematics import Effector, WorldPoses, forward
+from motionedit.core.motion import Motion
+from motionedit.core.priorities.tasks import (
     AimTask,
     CenterOfMassTask,
     Columns,
@@ -18,8 +20,6 @@ from motionedit.core.ik.tasks import (
     PostureTask,
     Recruited,
 )
-from motionedit.core.kinematics import Effector, WorldPoses, forward
-from motionedit.core.motion import Motion
 
 STEP = 1e-6
 FRAMES = 3

@@ -9,7 +9,7 @@ from paper.pc_pose_space import by_poses
 from paper.study import Study
 
 from motionedit.core.bvh import read_clip
-from motionedit.core.ik.chain import evaluate
+from motionedit.core.coefficients.chain import evaluate
 from motionedit.core.pca.model_file import read_model
 
 BALLS = Path(__file__).resolve().parents[2] / "data" / "golf" / "balls.tsv"
@@ -84,7 +84,7 @@ def test_an_edited_swing_keeps_its_style(golf):
 
 def test_the_jacobian_has_as_many_columns_as_there_are_components(model):
     # Figure 1: p x m in place of p x n.
-    from motionedit.core.ik.chain import CoefficientChain
+    from motionedit.core.coefficients.chain import CoefficientChain
 
     count = len(model.components.explained_variance)
     chain = CoefficientChain(

@@ -10,8 +10,8 @@ from lab import DIRECTIONS, Lab, effector_path, jerk
 
 from motionedit.core.bvh import parse_clip, read_clip, unedited_bytes
 from motionedit.errors import BvhError
-from motionedit.jobs import normalize
-from motionedit.jobs.batch import RunOptions
+from motionedit.jobs.batch.run import RunOptions
+from motionedit.jobs.normalize import job as normalize
 from motionedit.spec.load import load_spec
 
 FOLDER = Path(os.environ.get("MOTIONEDIT_CLIPS", "."))

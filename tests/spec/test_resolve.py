@@ -6,8 +6,8 @@ from scipy.spatial.transform import Rotation
 
 from motionedit.core.skeleton import EndSite, Skeleton
 from motionedit.errors import SpecError
-from motionedit.jobs import resolve
-from motionedit.jobs.resolve import Place
+from motionedit.jobs.clip import resolve
+from motionedit.jobs.clip.resolve import Place
 from motionedit.spec.values import EffectorSpec, parse_orientation
 
 ROTATION = ("Zrotation", "Xrotation", "Yrotation")

@@ -22,6 +22,7 @@ from motionedit.core.pca.streaming import Streamed, stream_components
 from motionedit.core.pca.tracks import MeanRotations, make_consistent
 from motionedit.core.pca.vectors import CentredVectors, MotionVectors, VectorsInFile, VectorsInMemory, motion_vectors
 from motionedit.core.timeline.alignment import NO_ALIGNMENT, travel_path
+from motionedit.core.units import STANDARD_LEG
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -31,9 +32,6 @@ if TYPE_CHECKING:
     from motionedit.core.motion import Motion
     from motionedit.core.skeleton import Skeleton
     from motionedit.core.timeline.warp import Timeline
-
-# Every default solve takes lengths as if the leg were this long (m).
-LEG_METRES = 0.85
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,7 +117,7 @@ def build_model(
         (`TooFewComponentsError`).
     """
     with motion_vectors(count) as vectors:
-        scale = LEG_METRES / leg_length
+        scale = STANDARD_LEG / leg_length
         skeleton, space, clips = _gather(database, vectors, travel=travel, scale=scale, settings=settings)
         strays = make_consistent(vectors, space.references, frames=timeline.frames)
         components, streamed = _components(vectors, settings.components)

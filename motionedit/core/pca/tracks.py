@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.pca.coordinates import relabelled, rotation_tracks
+from motionedit.core.pca.coordinates import rotation_tracks
+from motionedit.core.rotation_vectors import relabelled
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -8,14 +8,14 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
-from motionedit.core.ground import reference_axes
+from motionedit.core.body.ground import reference_axes
 from motionedit.core.kinematics import forward_of
 from motionedit.core.motion import Motion
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
-    from motionedit.core.ground import Frame
+    from motionedit.core.body.ground import Frame
 
 
 @dataclass(frozen=True, eq=False)

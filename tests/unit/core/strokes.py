@@ -3,9 +3,10 @@
 import numpy as np
 from human import HIPS_HEIGHT, skeleton_of
 
-from motionedit.core import ground, kinematics
+from motionedit.core import kinematics
 from motionedit.core import rotations as rot
-from motionedit.core.anatomy import find_anatomy
+from motionedit.core.body import ground
+from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.motion import Motion
 from motionedit.core.pca.database import DatabaseMotion, FitSettings, build_model
 from motionedit.core.pca.model import DatabaseClip

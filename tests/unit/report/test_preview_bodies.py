@@ -3,8 +3,8 @@ import pytest
 from mannequin import bvh_text
 
 from motionedit.core.bvh import parse_clip
-from motionedit.jobs.bodies import body_of, upright
-from motionedit.jobs.clip_facts import facts_of
+from motionedit.jobs.clip.facts import facts_of
+from motionedit.jobs.preview.bodies import body_of, upright
 
 
 def made(**options):

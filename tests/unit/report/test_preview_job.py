@@ -6,8 +6,8 @@ import pytest
 from mannequin import bvh_text
 
 from motionedit.errors import BvhError, MotionEditErrors, UsageError
-from motionedit.jobs import preview
-from motionedit.jobs.plan import find_clips
+from motionedit.jobs.batch.plan import find_clips
+from motionedit.jobs.preview import job as preview
 
 
 @pytest.fixture

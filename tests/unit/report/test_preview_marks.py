@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from mannequin import bvh_text
 
+from motionedit.core.body.center_of_mass import center_of_mass, find_masses
 from motionedit.core.bvh import parse_clip
-from motionedit.core.center_of_mass import center_of_mass, find_masses
 from motionedit.core.kinematics import Effector, effector_positions
 from motionedit.errors import UsageError
-from motionedit.jobs import preview
-from motionedit.jobs.marks import edit_of
+from motionedit.jobs.preview import job as preview
+from motionedit.jobs.preview.marks import edit_of
 
 HAND = {"joint": "LeftHand", "offset": [0.0, 0.0, 0.0]}
 

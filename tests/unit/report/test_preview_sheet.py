@@ -7,8 +7,8 @@ import pytest
 from mannequin import bvh_text
 
 from motionedit.core.bvh import parse_clip
-from motionedit.jobs.bodies import body_of
-from motionedit.jobs.clip_facts import facts_of
+from motionedit.jobs.clip.facts import facts_of
+from motionedit.jobs.preview.bodies import body_of
 
 pytest.importorskip("matplotlib", reason="sheets need the extra motionedit[plot]")
 

@@ -1,0 +1,140 @@
+"""The center of mass of a body over all frames, the centres of its subtrees, and its Jacobian ([PRIO] section 4.3)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core import rotations as rot
+from motionedit.core.arrays import frozen
+from motionedit.core.body.segments import lay_by_length, lay_given, lay_human
+from motionedit.core.kinematics import WorldPoses
+from motionedit.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from motionedit.core.arrays import FloatArray, IntArray
+    from motionedit.core.body.anatomy import Anatomy
+    from motionedit.core.skeleton import Skeleton
+
+_BLOCK_FRAMES = 1 << 10
+_NOT_HUMAN = (
+    "the skeleton is not a human's: for the center of mass each bone weighs as much as it is long; "
+    "'masses' in the spec takes kilograms by joint"
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Masses:
+    """How a body's mass is spread over J joints.
+
+    Attributes
+    ----------
+    skeleton : Skeleton
+        Whose joints these are.
+    shares : shape (J,)
+        Mass that moves with each joint over the whole; they sum to 1.
+    points : shape (J, 3), clip units
+        Its centre in the joint's frame.
+    is_human : bool
+        Whether the table of body segments could be laid on the skeleton.
+    warnings : tuple of str
+        Lines for the user.
+    """
+
+    skeleton: Skeleton
+    shares: FloatArray
+    points: FloatArray
+    is_human: bool
+    warnings: tuple[str, ...] = ()
+
+
+def find_masses(skeleton: Skeleton, anatomy: Anatomy, *, given: Mapping[int, float] | None = None) -> Masses:
+    """Return the masses of a skeleton's joints.
+
+    On a human skeleton the segments of de Leva (1996), mean of women and men, laid on by the tree alone; names and
+    what a hand holds do not matter. On others in proportion to bone length, with a warning.
+
+    Parameters
+    ----------
+    given : mapping from joints to kg, optional
+        Replaces the table: joints that are not in it weigh nothing. Each mass sits where the table has that joint's,
+        or in the middle of the joint's bones where the table has none.
+
+    Raises
+    ------
+    ValueError
+        When the given masses are negative, not finite, or all zero.
+    """
+    by_length = lay_by_length(skeleton)
+    human = lay_human(skeleton, anatomy)
+    laid = by_length if human is None else human
+    if given:
+        weights = np.array(list(given.values()))
+        if not (np.all(np.isfinite(weights)) and np.all(weights >= 0.0) and np.any(weights > 0.0)):
+            raise ValueError("masses must be 0 or more, and not 0 for all joints")
+        laid = lay_given(laid, given, elsewhere=by_length)
+    return Masses(
+        skeleton=skeleton,
+        shares=frozen(laid.mass / laid.mass.sum()),
+        points=laid.points,
+        is_human=human is not None,
+        warnings=() if human is not None or given else (_NOT_HUMAN,),
+    )
+
+
+def center_of_mass(poses: WorldPoses, masses: Masses) -> FloatArray:
+    """Return c = sum m_j (p_j + R_j c_j) / M, the center of mass in the world, shape (F, 3), clip units."""
+    carriers = np.flatnonzero(masses.shares)
+    center = np.empty((len(poses.positions), 3))
+    # Block by block: what is carried takes more memory on its way than the world transforms of a long motion.
+    for start in range(0, len(center), _BLOCK_FRAMES):
+        block = slice(start, start + _BLOCK_FRAMES)
+        part = WorldPoses(poses.positions[block], poses.rotations[block])
+        center[block] = masses.shares[carriers] @ _carried(part, masses, carriers)
+    return center
+
+
+def subtree_centers(poses: WorldPoses, masses: Masses) -> tuple[FloatArray, FloatArray]:
+    """Return the centre of all mass at and below each joint, and its share of the whole.
+
+    Returns
+    -------
+    centers : shape (F, J, 3), clip units
+        In the world; the joint's own position where nothing at or below it weighs.
+    shares : shape (J,)
+        1 at the root.
+    """
+    walk = masses.skeleton.level_order
+    shares = masses.shares[walk.joints]
+    carriers = np.flatnonzero(shares)
+    # Joint by joint first, so that a level is added to its parents in whole rows.
+    moments = np.zeros((len(shares), len(poses.positions), 3))
+    moments[carriers] = _carried(poses, masses, walk.joints[carriers]).swapaxes(0, 1) * shares[carriers, None, None]
+    for start, stop in reversed(walk.levels):
+        np.add.at(moments, walk.parents[start:stop], moments[start:stop])
+        np.add.at(shares, walk.parents[start:stop], shares[start:stop])
+    heavy = np.flatnonzero(shares)
+    centers = poses.positions.copy()
+    centers[:, walk.joints[heavy]] = (moments[heavy] / shares[heavy, None, None]).swapaxes(0, 1)
+    below = np.empty_like(shares)
+    below[walk.joints] = shares
+    return centers, below
+
+
+def com_jacobian(poses: WorldPoses, masses: Masses, *, joints: IntArray) -> FloatArray:
+    """Return d(center of mass)/d(w) for world-axis increments w of the given joints, shape (F, 3, 3 K).
+
+    Column a of joint j is (m_sub / M) e_a x (c_sub - p_j), in clip units per radian, with the mass m_sub and the
+    centre c_sub of all that is at and below j. Increments of the root's translation have the identity.
+    """
+    centers, shares = subtree_centers(poses, masses)
+    levers = shares[joints, None] * (centers[:, joints] - poses.positions[:, joints])
+    return np.swapaxes(-rot.skew(levers), 1, 2).reshape(len(levers), 3, 3 * len(joints))
+
+
+def _carried(poses: WorldPoses, masses: Masses, joints: IntArray) -> FloatArray:
+    """Return the centres in the world of what moves with each of K joints, shape (F, K, 3)."""
+    return poses.positions[:, joints] + rot.rotate(poses.rotations[:, joints], masses.points[joints])

@@ -1,0 +1,69 @@
+"""Hinges: knees and elbows that bend about one axis in the input, with the limits they keep to."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core import rotations as rot
+from motionedit.core.arrays import frozen
+from motionedit.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from motionedit.core.arrays import FloatArray
+    from motionedit.core.body.anatomy import Anatomy
+    from motionedit.core.motion import Motion
+
+OFF_AXIS_ENERGY = 0.005  # of the whole: above it a joint is no hinge
+FULL_BEND = float(np.radians(150.0))  # where a knee or an elbow ends, unless the input bends it further
+_STRAIGHT = float(np.radians(1.0))  # root mean square: a joint that hardly bends shows no axis
+
+
+@dataclass(frozen=True, eq=False)
+class Hinge:
+    """A joint that turns about one axis fixed in its own frame.
+
+    Attributes
+    ----------
+    axis : shape (3,)
+        Unit vector, signed so that the input's mean angle is positive.
+    limits : (low, high), rad
+        [min(0, the input's least), max(150 degrees, the input's largest)].
+    off_axis : float
+        Share of the rotation's energy that is not about the axis, 0 to 1.
+    """
+
+    joint: int
+    axis: FloatArray
+    limits: tuple[float, float]
+    off_axis: float
+
+
+def find_hinges(motion: Motion, anatomy: Anatomy, *, first: int) -> list[Hinge]:
+    """Return the knees and elbows that are hinges, left before right, knees first.
+
+    Frames before `first`, a rest pose, are left out.
+    """
+    joints = [leg.knee for leg in anatomy.legs or ()] + [arm.elbow for arm in anatomy.arms or ()]
+    found = (hinge_of(motion, joint, first=first) for joint in joints)
+    return [hinge for hinge in found if hinge is not None and hinge.off_axis < OFF_AXIS_ENERGY]
+
+
+def hinge_of(motion: Motion, joint: int, *, first: int) -> Hinge | None:
+    """Return the hinge that fits a joint best, however badly; None where it does not bend.
+
+    Uncentred PCA of v = log q(t): the axis is the first eigenvector of sum v v^T.
+    """
+    v = rot.log(motion.rotations[first:, joint])
+    energies, axes = np.linalg.eigh(v.T @ v)
+    total = float(energies.sum())
+    if total < len(v) * _STRAIGHT**2:
+        return None
+    axis = axes[:, -1]
+    angles = v @ axis
+    if angles.sum() < 0.0:
+        axis, angles = -axis, -angles
+    limits = min(0.0, float(angles.min())), max(FULL_BEND, float(angles.max()))
+    off_axis = float(np.clip(1.0 - energies[-1] / total, 0.0, 1.0))
+    return Hinge(joint, frozen(axis), limits, off_axis)

@@ -1,0 +1,260 @@
+"""Pairs of limbs found in a skeleton's tree: two branches of one joint whose bones are of like lengths."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from itertools import combinations
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from motionedit.core.body.sides import side_of_names
+from motionedit.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from motionedit.core.arrays import BoolArray, FloatArray
+    from motionedit.core.skeleton import Skeleton
+
+# Captured bones differ between left and right (CMU's hips by 11 %); a spine differs from a leg by far more.
+_LENGTH_TOLERANCE = 0.3
+_LENGTH_FLOOR = 0.02  # of the height: below it any two bones are alike
+_LONGEST_CHAIN = 24  # joints: longer ones are ropes and tails, and every three joints of a chain are tried
+_SHORTEST_LIMB = 0.1  # of the height: fingers and faces come in pairs too
+_RATIO_LIMIT = 2.5  # upper to lower bone; CMU's upper arm is up to 1.9 forearms
+# Costs against |log(upper / lower)|. A bone is taken as cut in pieces only where that explains the limb, and hardly
+# ever at a joint that branches or that is bent in the zero pose: that one is a hand or a foot.
+_COST_OF_A_CUT = 0.15
+_COST_OF_AN_ODD_CUT = 0.6
+_STRAIGHT = 0.85  # cosine between the bones on both sides of a cut
+_COST_ABOVE = 0.1  # per mean bone of length from the chain's first joint to the limb
+_COST_BELOW = 0.2  # per mean bone from the limb to the farthest end
+_COST_OF_ONE_PLACE = 1.0  # where both limbs would start at the same place, as CMU's hip joints and collars do
+_APART = 0.25  # mean bones between the tops of two limbs in the zero pose; hips are 0.35 apart
+_LONGEST_ABOVE = 1.5  # mean bones: a collar may be in two pieces
+_LONGEST_BELOW = 1.2  # mean bones: a hand is 0.85 forearms
+
+
+class Match(NamedTuple):
+    """How far two branches are alike: bone length matched in all, and along the longest chain; that chain's joints."""
+
+    total: float
+    longest: float
+    chain: tuple[tuple[int, int], ...]
+
+
+_NO_MATCH = Match(0.0, 0.0, ())
+
+
+class Triple(NamedTuple):
+    """The joints at the top, bend and end of a limb: thigh, knee, ankle or shoulder, elbow, wrist."""
+
+    top: int
+    bend: int
+    end: int
+
+
+@dataclass(frozen=True)
+class LimbPair:
+    """Two limbs that hang on joint `base`: their chains of matched joints, and the three joints that bend."""
+
+    base: int
+    chains: tuple[tuple[int, ...], tuple[int, ...]]
+    triples: tuple[Triple, Triple]
+    length: float
+
+    def swapped(self) -> LimbPair:
+        """Return the same pair in the other order."""
+        return LimbPair(self.base, self.chains[::-1], self.triples[::-1], self.length)
+
+
+@lru_cache(maxsize=4)
+def find_limb_pairs(skeleton: Skeleton) -> tuple[LimbPair, ...]:
+    """Return the pairs of limbs, the longest first, none inside another; empty where there are none."""
+    tree = Tree(skeleton)
+    found = [
+        pair
+        for base, children in enumerate(skeleton.children)
+        for a, b in combinations(children, 2)
+        if (pair := _limb_pair(tree, base, (a, b))) is not None
+    ]
+    kept: list[LimbPair] = []
+    taken: set[int] = set()
+    for pair in sorted(found, key=lambda pair: -pair.length):
+        joints = tree.below(pair.chains[0][0]) | tree.below(pair.chains[1][0])
+        if not joints & taken:
+            kept.append(pair)
+            taken |= joints
+    return tuple(kept)
+
+
+def zero_pose(skeleton: Skeleton) -> FloatArray:
+    """Return the positions of all joints with every rotation zero, by OFFSET alone, shape (J, 3), clip units."""
+    positions = skeleton.offsets.copy()
+    for j in range(1, len(skeleton)):
+        positions[j] += positions[skeleton.parents[j]]
+    return positions
+
+
+class Tree:
+    """Lengths and paths in a skeleton's tree; all lengths in clip units, by |OFFSET|."""
+
+    def __init__(self, skeleton: Skeleton) -> None:
+        self.skeleton = skeleton
+        self.lengths: FloatArray = np.linalg.norm(skeleton.offsets, axis=-1)
+        self._ends: dict[int, float] = {}
+        for site in skeleton.end_sites:
+            self._ends[site.joint] = max(self._ends.get(site.joint, 0.0), float(np.linalg.norm(site.offset)))
+        self.places = zero_pose(skeleton)
+        self.reach = self._reaches()
+        self.height = self._height()
+        self._matches: dict[tuple[int, int], Match] = {}
+
+    def below(self, joint: int) -> frozenset[int]:
+        """Return a joint and all its descendants."""
+        found, waiting = [joint], [joint]
+        while waiting:
+            children = self.skeleton.children[waiting.pop()]
+            found += children
+            waiting += children
+        return frozenset(found)
+
+    def branches(self, joint: int) -> int:
+        """Return how many bones leave a joint: its children, and its end sites together as one."""
+        return len(self.skeleton.children[joint]) + (joint in self._ends)
+
+    def is_bent(self, chain: Sequence[tuple[int, int]], place: int) -> bool:
+        """Tell whether a pair of chains bends at one of its joints in the zero pose, on both sides."""
+        if place + 1 == len(chain):
+            return False
+        lengths, offsets = self.lengths, self.skeleton.offsets
+        pieces = zip(chain[place], chain[place + 1], strict=True)
+        return all(offsets[a] @ offsets[b] < _STRAIGHT * lengths[a] * lengths[b] for a, b in pieces)
+
+    def longest_way(self, joint: int) -> list[int]:
+        """Return the joints from `joint` (in) to the farthest end below it."""
+        way = [joint]
+        while children := self.skeleton.children[way[-1]]:
+            way.append(max(children, key=lambda c: (self.lengths[c] + self.reach[c], -c)))
+        return way
+
+    def spread(self, joints: tuple[int, ...]) -> FloatArray:
+        """Return the distance from each joint to the farthest end below it in the zero pose, shape (N,).
+
+        Not along the bones: fingers that fan out from one point of the palm would make it longer than a forearm.
+        """
+        below = [sorted(self.below(j)) for j in joints]
+        return np.array(
+            [
+                max(np.linalg.norm(self.places[d] - self.places[j]) + self._ends.get(d, 0.0) for d in down)
+                for j, down in zip(joints, below, strict=True)
+            ]
+        )
+
+    def match(self, a: int, b: int, *, level: int = 1) -> Match:
+        """Return how far two branches are alike, nothing where their first bones already differ.
+
+        What only one side has, such as a club in one hand, is left out.
+        """
+        if (a, b) not in self._matches:
+            self._matches[a, b] = self._match(a, b, level)
+        return self._matches[a, b]
+
+    def _match(self, a: int, b: int, level: int) -> Match:
+        la, lb = float(self.lengths[a]), float(self.lengths[b])
+        if abs(la - lb) > _LENGTH_TOLERANCE * max(la, lb) + _LENGTH_FLOOR * self.height:
+            return _NO_MATCH
+        total, longest = 0.0, 0.0
+        chain: tuple[tuple[int, int], ...] = ((a, b),)
+        used: set[int] = set()
+        for c, d, below in self._options(a, b, level):
+            if below.chain and c not in used and d not in used:
+                used |= {c, d}
+                total += below.total
+                if below.longest > longest or len(chain) == 1:
+                    longest, chain = below.longest, ((a, b), *below.chain)
+        mean = 0.5 * (la + lb)
+        return Match(mean + total, mean + longest, chain)
+
+    def _options(self, a: int, b: int, level: int) -> list[tuple[int, int, Match]]:
+        """Return the pairs of children of two joints, the likeliest first; names settle which toe is which."""
+        if level == _LONGEST_CHAIN:
+            return []
+        names, children = self.skeleton.names, self.skeleton.children
+        options = [(c, d, self.match(c, d, level=level + 1)) for c in children[a] for d in children[b]]
+        return sorted(options, key=lambda o: (side_of_names(names[o[0]], names[o[1]]) == 0, -o[2].total, o[0], o[1]))
+
+    def _reaches(self) -> FloatArray:
+        """Return the length of the longest way from each joint down to an end, shape (J,)."""
+        reach = np.zeros(len(self.skeleton))
+        for j in range(len(self.skeleton) - 1, -1, -1):
+            below = [self.lengths[c] + reach[c] for c in self.skeleton.children[j]]
+            reach[j] = max([*below, self._ends.get(j, 0.0)])
+        return reach
+
+    def _height(self) -> float:
+        """Return the longest path between two ends, or from the root where there is one end only."""
+        longest = float(self.reach[0])
+        for j, children in enumerate(self.skeleton.children):
+            branches = [float(self.lengths[c] + self.reach[c]) for c in children]
+            branches += [self._ends[j]] if j in self._ends else []
+            if len(branches) > 1:
+                longest = max(longest, sum(sorted(branches)[-2:]))
+        return longest
+
+
+def _limb_pair(tree: Tree, base: int, first: tuple[int, int]) -> LimbPair | None:
+    chain = tree.match(*first).chain
+    if len(chain) < 3:
+        return None
+    chains = (tuple(a for a, _ in chain), tuple(b for _, b in chain))
+    lengths = 0.5 * (tree.lengths[list(chains[0])] + tree.lengths[list(chains[1])])
+    # What hangs below each joint, on the side where less does: a club in one hand is no hand.
+    rest = np.minimum(tree.spread(chains[0]), tree.spread(chains[1]))
+    odd = np.array([tree.is_bent(chain, i) or min(map(tree.branches, chain[i])) > 1 for i in range(len(chain))])
+    apart = np.linalg.norm(tree.places[list(chains[0])] - tree.places[list(chains[1])], axis=-1)
+    places = _bending_joints(np.cumsum(lengths) - lengths[0], rest=rest, apart=apart, odd=odd)
+    if places is None:
+        return None
+    length = float(np.sum(lengths[places[0] + 1 : places[2] + 1]))
+    if length < _SHORTEST_LIMB * tree.height:
+        return None
+    triples = (Triple(*(chains[0][i] for i in places)), Triple(*(chains[1][i] for i in places)))
+    return LimbPair(base, chains, triples, length)
+
+
+def _bending_joints(
+    at: FloatArray, *, rest: FloatArray, apart: FloatArray, odd: BoolArray
+) -> tuple[int, int, int] | None:
+    """Return the places in a chain of a limb's top, bend and end.
+
+    A limb has two bones of like lengths, each in one piece or cut by twist joints; what is above them in the chain
+    and what is below is shorter than they are.
+
+    Parameters
+    ----------
+    at : shape (N,)
+        Length along the chain from its first joint.
+    rest : shape (N,)
+        Distance from each joint to the farthest end below it.
+    apart : shape (N,)
+        Distance from each joint to its twin on the other side in the zero pose.
+    odd : shape (N,)
+        Whether a joint is bent or branches, so that no bone is cut there.
+    """
+    cut_cost = np.where(odd, _COST_OF_AN_ODD_CUT, _COST_OF_A_CUT)
+    best: tuple[float, tuple[int, int, int]] | None = None
+    for i, j, k in combinations(range(len(at)), 3):
+        upper, lower = at[j] - at[i], at[k] - at[j]
+        mean = 0.5 * (upper + lower)
+        if min(upper, lower) <= 0.0 or max(upper, lower) > _RATIO_LIMIT * min(upper, lower):
+            continue
+        if at[i] > _LONGEST_ABOVE * mean or rest[k] > _LONGEST_BELOW * mean:
+            continue
+        cost = abs(float(np.log(upper / lower))) + float(np.sum(cut_cost[i + 1 : k]) - cut_cost[j])
+        cost += float(_COST_ABOVE * at[i] + _COST_BELOW * rest[k]) / mean
+        cost += _COST_OF_ONE_PLACE * (apart[i] < _APART * mean)
+        if best is None or cost < best[0] - 1e-12:
+            best = cost, (i, j, k)
+    return None if best is None else best[1]

@@ -1,0 +1,135 @@
+"""Measures of a motion's quality, jerk and sliding feet, and its capture defects."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core import rotations as rot
+from motionedit.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from motionedit.core.arrays import FloatArray
+    from motionedit.core.body.contacts import Plant
+    from motionedit.core.motion import Motion
+
+_DEFECT_STEP = 1.0  # rad between two frames: no joint turns so fast
+_DEFECT_COSINE = float(np.cos(0.5 * _DEFECT_STEP)) + 1e-6  # of half the step; more by far than rounding
+_FLIP = float(np.radians(150.0))  # a step this near to half a turn is a flip, not a fast motion
+
+
+@dataclass(frozen=True)
+class Defect:
+    """A joint that jumps between frames.
+
+    Attributes
+    ----------
+    frames : tuple of int
+        The frames into which it jumps: the step is from the frame before.
+    worst, angle : int, float
+        The frame of the largest step, and that step (rad).
+    flips : int
+        How many of the steps are about half a turn.
+    """
+
+    joint: int
+    frames: tuple[int, ...]
+    worst: int
+    angle: float
+    flips: int
+
+
+def jerk_rms(positions: FloatArray, *, frame_time: float, first: int = 0) -> float:
+    """Return the root mean square third difference of all joint positions over time, clip units / s^3.
+
+    sqrt(mean over frames and joints of |p(f+3) - 3 p(f+2) + 3 p(f+1) - p(f)|^2) / dt^3; 0 below four frames.
+
+    Parameters
+    ----------
+    positions : shape (F, J, 3)
+    first : int
+        The first frame after a rest pose; earlier ones are left out.
+    """
+    meter = JerkMeter(first)
+    meter.add(positions)
+    return meter.rms(frame_time=frame_time)
+
+
+class JerkMeter:
+    """The jerk of positions that come in blocks of frames, in order; see `jerk_rms`."""
+
+    def __init__(self, first: int) -> None:
+        self._skip = first
+        self._last: FloatArray | None = None
+        self._sum, self._count = 0.0, 0
+
+    def add(self, positions: FloatArray) -> None:
+        """Take the positions, shape (F, J, 3), of the frames that follow those before."""
+        skipped = min(self._skip, len(positions))
+        self._skip -= skipped
+        positions = positions[skipped:]
+        if self._last is not None:
+            positions = np.concatenate((self._last, positions))
+        third = np.diff(positions, n=3, axis=0)
+        if third.size:
+            third *= third
+            self._sum += float(np.sum(np.sum(third, axis=-1)))
+            self._count += third.shape[0] * third.shape[1]
+        self._last = positions[-3:].copy()
+
+    def rms(self, *, frame_time: float) -> float:
+        """Return the root mean square third difference over time, clip units / s^3; 0 below four frames."""
+        return float(np.sqrt(self._sum / self._count)) / frame_time**3 if self._count else 0.0
+
+
+def foot_slide_max(positions: FloatArray, plants: Sequence[Plant], *, up: FloatArray, frame_time: float) -> float:
+    """Return the fastest horizontal speed of a planted point from frame to frame, clip units / s; 0 without plants.
+
+    `positions` has shape (F, J, 3). For an edit the plants are those of its input.
+    """
+    fastest = 0.0
+    for joint in {plant.joint for plant in plants}:
+        step = np.diff(positions[:, joint], axis=0)
+        level = step - (step @ up)[:, None] * up
+        way = np.linalg.norm(level, axis=-1)
+        here = [plant for plant in plants if plant.joint == joint]
+        fastest = max(fastest, *(float(way[plant.start : plant.stop].max(initial=0.0)) for plant in here))
+    return fastest / frame_time
+
+
+def foot_drift(before: FloatArray, after: FloatArray, plants: Sequence[Plant]) -> float:
+    """Return the largest distance between a planted point in two motions, clip units; 0 without plants.
+
+    Both have shape (F, J, 3), the same frames and joints; the plants are those of the first.
+    """
+    return max(
+        (
+            float(np.linalg.norm(after[span, plant.joint] - before[span, plant.joint], axis=-1).max())
+            for plant in plants
+            for span in [slice(plant.start, plant.stop + 1)]
+        ),
+        default=0.0,
+    )
+
+
+def find_defects(motion: Motion, *, first: int = 0) -> list[Defect]:
+    """Return the joints with a true (geodesic) rotation step above 1 rad, in the skeleton's order.
+
+    Another Euler branch is no step. Frames before `first`, a rest pose, are left out, and so is the step out of it.
+    """
+    q = motion.rotations[first:]
+    # A cosine of half the step costs less than the step, and nearly all joints are let off by it.
+    cosines = np.abs(np.einsum("fji,fji->fj", q[:-1], q[1:]))
+    defects = []
+    for joint in np.flatnonzero((cosines < _DEFECT_COSINE).any(axis=0)):
+        steps = rot.angle_between(q[:-1, joint], q[1:, joint])
+        at = np.flatnonzero(steps > _DEFECT_STEP)
+        if len(at):
+            worst = int(at[np.argmax(steps[at])])
+            flips = int(np.count_nonzero(steps[at] > _FLIP))
+            frames = tuple(int(f) + first + 1 for f in at)
+            defects.append(Defect(int(joint), frames, worst + first + 1, float(steps[worst]), flips))
+    return defects

@@ -1,0 +1,261 @@
+"""The segments of a human body, their masses and centres, and how they lie on a skeleton's joints."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from motionedit.core.arrays import frozen
+from motionedit.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from motionedit.core.arrays import FloatArray
+    from motionedit.core.body.anatomy import Anatomy, Arm, Leg
+    from motionedit.core.skeleton import Skeleton
+
+
+class Part(NamedTuple):
+    """A stretch of a path, from `start` to `stop` of its length, with its mass (percent of the body's).
+
+    `center` is the place of its centre of mass, as a share of the stretch from its start; between 1/3 and 2/3, so
+    that a density linear along the stretch has it.
+    """
+
+    start: float
+    stop: float
+    mass: float
+    center: float
+
+
+# P. de Leva, Adjustments to Zatsiorsky-Seluyanov's segment inertia parameters, J. Biomechanics 29 (1996), table 4:
+# the mean of its values for women and for men, since a clip does not say. Limbs from the joint nearer to the trunk.
+UPPER_ARM = (Part(0.0, 1.0, 0.5 * (2.55 + 2.71), 0.5 * (0.5754 + 0.5772)),)
+FOREARM = (Part(0.0, 1.0, 0.5 * (1.38 + 1.62), 0.5 * (0.4559 + 0.4574)),)
+THIGH = (Part(0.0, 1.0, 0.5 * (14.78 + 14.16), 0.5 * (0.3612 + 0.4095)),)
+SHANK = (Part(0.0, 1.0, 0.5 * (4.81 + 4.33), 0.5 * (0.4352 + 0.4395)),)
+# From the middle of the hips up to the seventh cervical vertebra; the borders are navel and lower end of the sternum.
+_NAVEL, _STERNUM = 163.6 / 609.05, 374.0 / 609.05
+TRUNK = (
+    Part(0.0, _NAVEL, 0.5 * (12.47 + 11.17), 1.0 - 0.5 * (0.4920 + 0.6115)),
+    Part(_NAVEL, _STERNUM, 0.5 * (14.65 + 16.33), 1.0 - 0.5 * (0.4512 + 0.4502)),
+    Part(_STERNUM, 1.0, 0.5 * (15.45 + 15.96), 1.0 - 0.5 * (0.5050 + 0.5066)),
+)
+HEAD_MASS = 0.5 * (6.68 + 6.94)
+HAND_MASS = 0.5 * (0.56 + 0.61)
+FOOT_MASS = 0.5 * (1.29 + 1.37)
+
+# Ends of a skeleton are where its author liked, so these are the table's own lengths, in leg lengths (834.8 mm).
+_HEAD_CENTER = 0.5 * (0.4841 * 243.7 + 0.5002 * 242.9) / 834.8  # down from the crown
+_HEAD_LENGTH = 243.3 / 834.8  # from the neck's base to the crown
+_NECK_LENGTH = 100.0 / 834.8  # from its base to the joint below the skull, about 143 mm under the crown
+_HAND_CENTER = 0.5 * (0.3427 * 170.1 + 0.3624 * 187.9) / 834.8  # from the wrist to the tip of the middle finger
+# The foot's centre stands at 42 % from heel to tip. The ankle is over 24 % of it, the toe joint over 70 %, so:
+_FOOT_CENTER_TO_TOE = 0.4
+_FOOT_CENTER_TO_TIP = 0.24
+
+# A body of other proportions is not a human's: a dog's trunk is 1.4 hind legs, a human's 0.7, CMU's shortest 0.5.
+_TRUNK_TO_LEG = (0.25, 1.15)
+_ARM_TO_LEG = (0.25, 1.15)
+
+
+@dataclass(frozen=True, eq=False)
+class Laid:
+    """Masses laid on J joints: `mass` (J,), any unit, and `points` (J, 3), their centres in the joints' frames."""
+
+    mass: FloatArray
+    points: FloatArray
+
+
+class Carrier(NamedTuple):
+    """A straight piece of a path that moves with a joint: from `entry` to `leave`, shape (3,), in its frame."""
+
+    joint: int
+    entry: FloatArray
+    leave: FloatArray
+
+
+def lay_human(skeleton: Skeleton, anatomy: Anatomy) -> Laid | None:
+    """Return the body's segments laid on a human skeleton, in percent; None where it is none.
+
+    Where a segment has several joints (twist joints, a spine), each carries the part between it and the next one.
+    """
+    trunk = _trunk(skeleton, anatomy)
+    if anatomy.legs is None or anatomy.arms is None or trunk is None or not _is_human(skeleton, anatomy, trunk):
+        return None
+    lumps: list[tuple[int, float, FloatArray]] = _lumps(TRUNK, trunk)
+    lumps.append(_head(skeleton, anatomy, trunk))
+    for leg in anatomy.legs:
+        lumps += _lumps(THIGH, _limb(skeleton, leg.thigh, leg.knee))
+        lumps += _lumps(SHANK, _limb(skeleton, leg.knee, leg.ankle))
+        lumps.append(_foot(skeleton, leg))
+    for arm in anatomy.arms:
+        lumps += _lumps(UPPER_ARM, _limb(skeleton, arm.shoulder, arm.elbow))
+        lumps += _lumps(FOREARM, _limb(skeleton, arm.elbow, arm.wrist))
+        lumps.append(_hand(skeleton, arm, anatomy.leg_length))
+    return _gathered(len(skeleton), lumps)
+
+
+def lay_by_length(skeleton: Skeleton) -> Laid:
+    """Return masses as long as the bones: each joint carries those to its children and ends, at their middles.
+
+    A bone that position channels move has no length of its own. A skeleton without any length weighs at its root.
+    """
+    moved = set(skeleton.translated.tolist())
+    bones = [(int(skeleton.parents[j]), skeleton.offsets[j]) for j in range(1, len(skeleton)) if j not in moved]
+    bones += [(site.joint, site.offset) for site in skeleton.end_sites]
+    lumps = [(joint, float(np.linalg.norm(offset)), 0.5 * offset) for joint, offset in bones]
+    if sum(mass for _, mass, _ in lumps) <= 0.0:
+        lumps = [(0, 1.0, np.zeros(3))]
+    return _gathered(len(skeleton), lumps)
+
+
+def lay_given(laid: Laid, given: Mapping[int, float], *, elsewhere: Laid) -> Laid:
+    """Return given masses (by joint), at the centres of `laid`, or of `elsewhere` where `laid` has no mass."""
+    mass = np.zeros_like(laid.mass)
+    mass[list(given)] = list(given.values())
+    points = np.where(laid.mass[:, None] > 0.0, laid.points, elsewhere.points)
+    return Laid(frozen(mass), frozen(points))
+
+
+def _gathered(joints: int, lumps: Sequence[tuple[int, float, FloatArray]]) -> Laid:
+    mass, moments = np.zeros(joints), np.zeros((joints, 3))
+    for joint, weight, point in lumps:
+        mass[joint] += weight
+        moments[joint] += weight * point
+    points = np.divide(moments, mass[:, None], out=np.zeros_like(moments), where=mass[:, None] > 0.0)
+    return Laid(frozen(mass), frozen(points))
+
+
+def _lumps(parts: Sequence[Part], path: Sequence[Carrier]) -> list[tuple[int, float, FloatArray]]:
+    """Return (joint, mass, centre) of a segment's parts spread along a path by length."""
+    lengths = np.array([np.linalg.norm(piece.leave - piece.entry) for piece in path])
+    ends = np.concatenate(([0.0], np.cumsum(lengths))) / lengths.sum()
+    lumps = []
+    for piece, (start, stop) in zip(path, pairwise(ends.tolist()), strict=True):
+        for part in parts:
+            low, high = max(start, part.start), min(stop, part.stop)
+            if high > low:
+                mass, place = _slice(part, low, high)
+                share = (place - start) / (stop - start)
+                lumps.append((piece.joint, mass, piece.entry + share * (piece.leave - piece.entry)))
+    return lumps
+
+
+def _slice(part: Part, low: float, high: float) -> tuple[float, float]:
+    """Return mass and centre of the slice of a part between two places, all as shares of the path.
+
+    The density over the part, s from 0 to 1, is 1 + k (2 s - 1), whose centre is 1/2 + k/6.
+    """
+    k, width = 6.0 * part.center - 3.0, part.stop - part.start
+    s = (np.array([low, high]) - part.start) / width
+    mass = float(np.diff(s + k * (s**2 - s))[0])
+    moment = float(np.diff(0.5 * s**2 + k * (2.0 / 3.0 * s**3 - 0.5 * s**2))[0])
+    return part.mass * mass, part.start + width * moment / mass
+
+
+def _limb(skeleton: Skeleton, top: int, end: int) -> list[Carrier]:
+    """Return the path from one joint of a limb down to another."""
+    way = skeleton.chain(end).tolist()
+    return [Carrier(joint, np.zeros(3), skeleton.offsets[below]) for joint, below in pairwise(way[way.index(top) :])]
+
+
+def _trunk(skeleton: Skeleton, anatomy: Anatomy) -> list[Carrier] | None:
+    """Return the path from the middle of the hips to the base of the neck, whichever way the tree goes."""
+    if anatomy.pelvis is None or anatomy.chest is None or anatomy.legs is None or anatomy.arms is None:
+        return None
+    hips = [_place_below(skeleton, anatomy.pelvis, leg.thigh) for leg in anatomy.legs]
+    entry = 0.5 * (hips[0] + hips[1])
+    last, neck = _neck_base(skeleton, anatomy, anatomy.chest)
+    up = skeleton.chain(anatomy.pelvis).tolist()
+    down = skeleton.chain(last).tolist()
+    fork = max(j for j in up if j in set(down))
+    path = []
+    for joint in reversed(up[up.index(fork) + 1 :]):
+        path.append(Carrier(joint, entry, np.zeros(3)))
+        entry = skeleton.offsets[joint]
+    below = down[down.index(fork) + 1 :]
+    for joint, child in zip([fork, *below], [*below, None], strict=True):
+        path.append(Carrier(joint, entry, neck if child is None else skeleton.offsets[child]))
+        entry = np.zeros(3)
+    return path
+
+
+def _neck_base(skeleton: Skeleton, anatomy: Anatomy, chest: int) -> tuple[int, FloatArray]:
+    """Return the joint that carries the base of the neck, and its place in that joint's frame.
+
+    Of the joints between chest and head the one that is a neck's length from the head; where there is none, a point
+    beside the shoulders on the way to the head.
+    """
+    shoulders = [_place_below(skeleton, chest, arm.shoulder) for arm in anatomy.arms or ()]
+    beside: FloatArray = np.mean(shoulders, axis=0)
+    way = [] if anatomy.head is None else skeleton.chain(anatomy.head).tolist()
+    if anatomy.head is None or chest not in way:
+        return chest, beside
+    between = way[way.index(chest) + 1 : -1]
+    if between:
+        lengths = [_length(_limb(skeleton, joint, anatomy.head)) for joint in between]
+        errors = np.abs(np.array(lengths) - _NECK_LENGTH * anatomy.leg_length)
+        base = between[int(np.argmin(errors))]
+        return int(skeleton.parents[base]), skeleton.offsets[base]
+    head = skeleton.offsets[anatomy.head]
+    along = float(beside @ head) / max(float(head @ head), np.finfo(float).tiny)
+    place: FloatArray = min(max(along, 0.0), 1.0) * head
+    return chest, place
+
+
+def _head(skeleton: Skeleton, anatomy: Anatomy, trunk: Sequence[Carrier]) -> tuple[int, float, FloatArray]:
+    """Return the head with the neck: a lump on the head's joint, on the chest where there is none."""
+    last, entry, neck = trunk[-1]
+    center = (_HEAD_LENGTH - _HEAD_CENTER) * anatomy.leg_length
+    if anatomy.head is None or last not in skeleton.chain(anatomy.head):
+        return last, HEAD_MASS, neck + center * _unit(neck - entry)
+    up = _place_below(skeleton, last, anatomy.head) - neck
+    return anatomy.head, HEAD_MASS, max(center - float(np.linalg.norm(up)), 0.0) * _unit(up)
+
+
+def _hand(skeleton: Skeleton, arm: Arm, leg_length: float) -> tuple[int, float, FloatArray]:
+    """Return the hand: on the wrist, towards the mean direction of what hangs there, else as the forearm goes."""
+    ahead = sum((_unit(bone) for bone in _bones(skeleton, arm.wrist)), np.zeros(3))
+    if not np.any(ahead):
+        ahead = skeleton.offsets[arm.wrist]
+    return arm.wrist, HAND_MASS, _HAND_CENTER * leg_length * _unit(ahead)
+
+
+def _foot(skeleton: Skeleton, leg: Leg) -> tuple[int, float, FloatArray]:
+    """Return the foot: on the ankle, on the way to the toe joint, else to the farthest end, else at the ankle."""
+    if leg.toe is not None:
+        return leg.ankle, FOOT_MASS, _FOOT_CENTER_TO_TOE * _place_below(skeleton, leg.ankle, leg.toe)
+    tip = max(_bones(skeleton, leg.ankle), key=lambda bone: float(np.linalg.norm(bone)), default=np.zeros(3))
+    return leg.ankle, FOOT_MASS, _FOOT_CENTER_TO_TIP * tip
+
+
+def _bones(skeleton: Skeleton, joint: int) -> list[FloatArray]:
+    """Return the offsets of a joint's children and end sites."""
+    sites = [site.offset for site in skeleton.end_sites if site.joint == joint]
+    return [skeleton.offsets[c] for c in skeleton.children[joint]] + sites
+
+
+def _place_below(skeleton: Skeleton, joint: int, descendant: int) -> FloatArray:
+    """Return a descendant's place in a joint's frame with all between them at rest."""
+    way = skeleton.chain(descendant).tolist()
+    place: FloatArray = skeleton.offsets[way[way.index(joint) + 1 :]].sum(axis=0)
+    return place
+
+
+def _unit(vector: FloatArray) -> FloatArray:
+    length = float(np.linalg.norm(vector))
+    return vector / length if length > 0.0 else np.zeros(3)
+
+
+def _is_human(skeleton: Skeleton, anatomy: Anatomy, trunk: Sequence[Carrier]) -> bool:
+    arms = [_length(_limb(skeleton, arm.shoulder, arm.wrist)) for arm in anatomy.arms or ()]
+    ratios = ((_length(trunk), _TRUNK_TO_LEG), (sum(arms) / 2.0, _ARM_TO_LEG))
+    return all(low * anatomy.leg_length <= length <= high * anatomy.leg_length for length, (low, high) in ratios)
+
+
+def _length(path: Sequence[Carrier]) -> float:
+    return float(sum(np.linalg.norm(piece.leave - piece.entry) for piece in path))

@@ -1,0 +1,119 @@
+"""A clip as the model sees it: aligned, on the timeline, with its coefficients; and the way back."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core import rotations as rot
+from motionedit.core.arrays import frozen
+from motionedit.core.motion import Motion
+from motionedit.core.pca.coordinates import (
+    pose_rows,
+    rotation_tracks,
+    rotations_in_space,
+    rotations_of_tracks,
+    split_rows,
+)
+from motionedit.core.rotation_vectors import relabelled
+from motionedit.core.timeline.alignment import Alignment, TravelPath, travel_path, with_travel_path
+from motionedit.core.timeline.resample import resample
+from motionedit.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from motionedit.core.arrays import FloatArray, IntArray
+    from motionedit.core.pca.coordinates import PoseSpace
+    from motionedit.core.pca.model import MotionModel
+    from motionedit.core.timeline.warp import TimeWarp
+
+
+@dataclass(frozen=True, eq=False)
+class Projection:
+    """A clip's own frames in the model's pose space.
+
+    Attributes
+    ----------
+    motion : Motion
+        The clip, or the clip resampled to the timeline.
+    travel : int
+        The clip's joint that carries the travel.
+    joints : shape (K,)
+        The clip's joints behind the columns.
+    alignment : Alignment
+        Into the database's heading and place.
+    places : shape (F,)
+        s(f), each frame's place on the timeline.
+    rows : shape (F, n)
+        Theta of every frame.
+    coefficients : shape (m,)
+        alpha_0 of the clip.
+    """
+
+    motion: Motion
+    travel: int
+    joints: IntArray
+    alignment: Alignment
+    places: FloatArray
+    rows: FloatArray
+    coefficients: FloatArray
+
+
+def clip_joints(space: PoseSpace, joint_map: IntArray) -> IntArray:
+    """Return the clip's joints behind the columns; joint_map (J,) gives the clip's joint of each of the model's."""
+    return joint_map[space.joints]
+
+
+def project(
+    motion: Motion, model: MotionModel, *, joint_map: IntArray, alignment: Alignment, warp: TimeWarp
+) -> Projection:
+    """Return the clip in the model's space, in its own timing; alpha_0 is that of its resampled copy, eq. (3)."""
+    on_timeline = project_resampled(motion, model, joint_map=joint_map, alignment=alignment, warp=warp)
+    places = warp.to_timeline(np.arange(len(motion), dtype=np.float64))
+    travel = int(joint_map[model.travel])
+    joints = clip_joints(model.space, joint_map)
+    rows = _rows(motion, model, travel=travel, joints=joints, alignment=alignment, places=places)
+    return Projection(motion, travel, joints, alignment, places, rows, on_timeline.coefficients)
+
+
+def project_resampled(
+    motion: Motion, model: MotionModel, *, joint_map: IntArray, alignment: Alignment, warp: TimeWarp
+) -> Projection:
+    """Return the clip resampled to the timeline, in the model's space."""
+    places = np.arange(model.timeline.frames, dtype=np.float64)
+    resampled = resample(motion, warp.to_source(places), frame_time=1.0 / model.timeline.frame_rate)
+    travel = int(joint_map[model.travel])
+    joints = clip_joints(model.space, joint_map)
+    rows = _rows(resampled, model, travel=travel, joints=joints, alignment=alignment, places=places)
+    coefficients = model.components.components @ (rows.ravel() - model.components.mean)
+    return Projection(resampled, travel, joints, alignment, places, rows, frozen(coefficients))
+
+
+def _rows(
+    motion: Motion,
+    model: MotionModel,
+    *,
+    travel: int,
+    joints: IntArray,
+    alignment: Alignment,
+    places: FloatArray,
+) -> FloatArray:
+    path = travel_path(motion, travel)
+    q = rotations_in_space(motion, joints, path=path, alignment=alignment)
+    tracks = rotation_tracks(q, model.space.references)
+    mean = model.mean_rows[:, 3:].reshape(model.timeline.frames, -1, 3)
+    nearest = mean[np.clip(np.floor(places + 0.5).astype(np.intp), 0, len(mean) - 1)]
+    tracks, _ = relabelled(tracks, nearest)
+    return pose_rows(tracks, model.space, path=path, alignment=alignment)
+
+
+def with_rows(projection: Projection, space: PoseSpace, rows: FloatArray) -> Motion:
+    """Return the clip with rows Theta, shape (F, n), in place of its own; all else as it was."""
+    motion, alignment = projection.motion, projection.alignment
+    travel, tracks = split_rows(rows, space)
+    q = rotations_of_tracks(tracks, space.references)
+    rotations = motion.rotations.copy()
+    rotations[:, projection.joints[1:]] = q[:, 1:]
+    turned = Motion(motion.skeleton, frozen(rotations), motion.translations, motion.frame_time)
+    path = TravelPath(alignment.undo(travel), rot.multiply(rot.conjugate(alignment.rotation), q[:, 0]))
+    return with_travel_path(turned, projection.travel, path)

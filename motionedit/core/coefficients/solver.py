@@ -1,0 +1,284 @@
+"""Solvers for goals in coefficient space: damped Gauss-Newton, a plausibility bound, and [PC]'s Algorithm 1.
+
+All solve for the change beta = alpha - alpha_0 and home to beta = 0, so that what no goal asks for stays.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core.coefficients.goals import stacked_errors
+from motionedit.core.coefficients.penalty_search import PenaltySearch
+from motionedit.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from motionedit.core.arrays import FloatArray
+    from motionedit.core.coefficients.goals import Goal
+
+    Evaluate = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
+
+# Metres at leg length 0.85 m: a hundredth of a millimetre.
+ERROR_STOP = 1e-5
+STEP_STOP = 1e-2
+
+FIRST_DAMPING = 1e-6
+LEAST_DAMPING = 1e-12
+MOST_TRIES = 12
+# After so many iterations the change is as small as it needs to be, and only the error is left to be taken away.
+HOMING_ITERATIONS = 8
+MOST_ITERATIONS = 100
+
+# Levenberg-Marquardt ends where the gradient or the step is this small beside its own scale.
+STALL = 1e-10
+
+# How closely the bound is kept, relative to it.
+BOUND_TOLERANCE = 1e-4
+# With a penalty, steps below this part of the solution move its norm by less than the bound's tolerance.
+_PENALISED_STALL = 1e-6
+
+# Algorithm 1 without a cap ends where this many iterations in a row brought no nearer error than this share.
+_PATIENCE = 1000
+_PROGRESS = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class CoefficientSolution:
+    """What a solver found.
+
+    Attributes
+    ----------
+    change : shape (m,)
+        beta = alpha - alpha_0.
+    iterations : int
+        Accepted steps.
+    history : tuple of float
+        |e| in metres at leg length 0.85 m, at the start and after each iteration.
+    reason : str
+        Why it stopped: ``converged``, ``stalled``, ``bound``, ``iterations``.
+    """
+
+    change: FloatArray
+    iterations: int
+    history: tuple[float, ...]
+    reason: str
+
+
+def step_metric(explained_variance: FloatArray) -> FloatArray:
+    """Return the diagonal of W = I + median(lambda) / lambda, shape (m,), which measures a change of coefficients.
+
+    Unit-norm components alone keep the style but spend weak components freely; a Mahalanobis metric alone slides
+    along the first component, which is the style.
+    """
+    # Not np.median: it imports numpy.ma, which takes ten times as long as a solve.
+    in_order, middle = np.sort(explained_variance), len(explained_variance) // 2
+    metric: FloatArray = 1.0 + 0.5 * (in_order[middle] + in_order[-1 - middle]) / explained_variance
+    return metric
+
+
+def solve_goals(
+    goals: Sequence[Goal],
+    *,
+    explained_variance: FloatArray,
+    start: FloatArray,
+    bound: float | None,
+) -> CoefficientSolution:
+    """Return the smallest change of coefficients that meets the goals, or comes nearest within the bound.
+
+    Parameters
+    ----------
+    explained_variance : shape (m,)
+        lambda_i.
+    start : shape (m,)
+        alpha_0, which enters the bound alone.
+    bound : float or None
+        Largest Mahalanobis norm |alpha / sqrt(lambda)| of the result.
+    """
+    root = 1.0 / np.sqrt(step_metric(explained_variance))
+    deviation = np.sqrt(explained_variance)
+
+    def evaluate(y: FloatArray) -> tuple[FloatArray, FloatArray]:
+        error, jacobian = stacked_errors(goals, root * y)
+        return error, jacobian * root
+
+    free, y = _free_solution(evaluate, len(start))
+    if bound is None or np.linalg.norm((start + root * y) / deviation) <= bound:
+        return CoefficientSolution(root * y, free.iterations, free.history, free.reason)
+    offset, slope = start / deviation, root / deviation
+    bounded, y = _bounded_solution(evaluate, offset=offset, slope=slope, bound=bound)
+    history = (free.history[0], *bounded.history)
+    return CoefficientSolution(root * y, bounded.iterations, history, bounded.reason)
+
+
+@dataclass
+class _Progress:
+    history: list[float]
+    reason: str = "iterations"
+
+    @property
+    def iterations(self) -> int:
+        return len(self.history) - 1
+
+    def finished(self) -> CoefficientSolution:
+        return CoefficientSolution(np.zeros(0), self.iterations, tuple(self.history), self.reason)
+
+
+def _free_solution(evaluate: Evaluate, size: int) -> tuple[CoefficientSolution, FloatArray]:
+    """Damped Gauss-Newton, homing to zero; Levenberg-Marquardt where it stalls."""
+    y = np.zeros(size)
+    error, jacobian = evaluate(y)
+    progress = _Progress([float(np.linalg.norm(error))])
+    damping, step = FIRST_DAMPING, np.inf
+    while progress.iterations < MOST_ITERATIONS:
+        settled = step <= STEP_STOP * float(np.linalg.norm(y)) or progress.iterations >= HOMING_ITERATIONS
+        if progress.history[-1] < ERROR_STOP and (settled or progress.iterations == 0):
+            progress.reason = "converged"
+            break
+        # Homing converges but linearly where the set of solutions is curved: the last of the error is taken from
+        # where it has come to.
+        home = y if settled else np.zeros(size)
+        found = _gauss_newton_step(evaluate, y, error, jacobian, damping, home=home)
+        if found is None:
+            y, error, jacobian = _levenberg_marquardt(evaluate, y, progress)
+            if progress.history[-1] < ERROR_STOP:
+                progress.reason = "converged"
+            break
+        y_new, error, jacobian, damping = found
+        step = float(np.linalg.norm(y_new - y))
+        y = y_new
+        progress.history.append(float(np.linalg.norm(error)))
+    return progress.finished(), y
+
+
+def _gauss_newton_step(
+    evaluate: Evaluate, y: FloatArray, error: FloatArray, jacobian: FloatArray, damping: float, *, home: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray, float] | None:
+    """Return (y+, error, jacobian, damping), or None where no damping makes progress.
+
+    y+ = h + J^T (J J^T + d tr(J J^T)/p I)^-1 (e + J (y - h)): the step to the goal that ends nearest to `home` h.
+    """
+    gram = jacobian @ jacobian.T
+    unit = float(np.trace(gram)) / len(gram)
+    if unit == 0.0:
+        return None
+    now = float(np.linalg.norm(error))
+    wanted = error + jacobian @ (y - home)
+    for _ in range(MOST_TRIES):
+        y_new = home + jacobian.T @ np.linalg.solve(gram + damping * unit * np.eye(len(gram)), wanted)
+        error_new, jacobian_new = evaluate(y_new)
+        size = float(np.linalg.norm(error_new))
+        # Without real progress a Gauss-Newton step has nothing to say: the goal is out of reach from here.
+        if size < max((1.0 - STALL) * now, ERROR_STOP):
+            return y_new, error_new, jacobian_new, max(0.1 * damping, LEAST_DAMPING)
+        damping *= 10.0
+    return None
+
+
+def _levenberg_marquardt(
+    evaluate: Evaluate, y: FloatArray, progress: _Progress, *, stall: float = STALL
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Minimise |e|^2 from y on with Nielsen's rule for the damping; the history grows by the accepted steps."""
+    error, jacobian = evaluate(y)
+    A, g = jacobian.T @ jacobian, jacobian.T @ error
+    mu, nu = 1e-3 * max(float(np.max(np.diag(A))), STALL), 2.0
+    progress.reason = "iterations"
+    while progress.iterations < MOST_ITERATIONS:
+        if float(np.linalg.norm(error)) < ERROR_STOP:
+            break
+        step = np.linalg.solve(A + mu * np.eye(len(y)), g)
+        if float(np.linalg.norm(step)) <= stall * (float(np.linalg.norm(y)) + stall):
+            progress.reason = "stalled"
+            break
+        error_new, jacobian_new = evaluate(y + step)
+        gain = float(error @ error - error_new @ error_new) / float(step @ (mu * step + g))
+        if gain > 0.0:
+            y, error, jacobian = y + step, error_new, jacobian_new
+            A, g = jacobian.T @ jacobian, jacobian.T @ error
+            mu, nu = mu * max(1.0 / 3.0, 1.0 - (2.0 * gain - 1.0) ** 3), 2.0
+            progress.history.append(float(np.linalg.norm(error)))
+        else:
+            mu, nu = mu * nu, 2.0 * nu
+    return y, error, jacobian
+
+
+def _bounded_solution(
+    evaluate: Evaluate, *, offset: FloatArray, slope: FloatArray, bound: float
+) -> tuple[CoefficientSolution, FloatArray]:
+    """Minimise |e|^2 + mu |z|^2, z = offset + slope y, with mu lowered until |z| meets the bound."""
+    best = np.zeros(len(offset))
+    progress = _Progress([])
+    search = PenaltySearch((1.0 - 0.5 * BOUND_TOLERANCE) * bound)
+    while not search.ended:
+        y, size = _penalised(evaluate, best, offset=offset, slope=slope, penalty=search.penalty)
+        progress.history.append(size)
+        norm = float(np.linalg.norm(offset + slope * y))
+        if norm <= bound:
+            best = y
+            if size < ERROR_STOP or norm >= (1.0 - BOUND_TOLERANCE) * bound:
+                break
+        search.tried(norm, within=norm <= bound)
+    error = float(np.linalg.norm(evaluate(best)[0]))
+    progress.history.append(error)
+    progress.reason = "converged" if error < ERROR_STOP else "bound"
+    return progress.finished(), best
+
+
+def _penalised(
+    evaluate: Evaluate, y: FloatArray, *, offset: FloatArray, slope: FloatArray, penalty: float
+) -> tuple[FloatArray, float]:
+    """Return the y that minimises |e|^2 + mu |z|^2, and its |e|: Levenberg-Marquardt on the stacked rows."""
+    weight = float(np.sqrt(penalty))
+
+    def stacked(y: FloatArray) -> tuple[FloatArray, FloatArray]:
+        error, jacobian = evaluate(y)
+        return np.concatenate((error, -weight * (offset + slope * y))), np.vstack((jacobian, weight * np.diag(slope)))
+
+    inner = _Progress([0.0])
+    y, error, _ = _levenberg_marquardt(stacked, y, inner, stall=_PENALISED_STALL)
+    return y, float(np.linalg.norm(error[: -len(offset)]))
+
+
+def solve_damped(
+    goals: Sequence[Goal],
+    *,
+    size: int,
+    damping: float,
+    tolerance: float,
+    max_iterations: int | None,
+    unit: float,
+) -> CoefficientSolution:
+    """Run [PC]'s Algorithm 1: alpha += J^T (J J^T + xi^2 I)^-1 e, no homing, no bound.
+
+    Parameters
+    ----------
+    damping : float
+        xi, in `unit`; iterations grow as its square.
+    tolerance : float
+        Stop at |e| below this, in `unit`.
+    max_iterations : int or None
+        None lifts the cap; the run still ends where a thousand iterations bring it no nearer.
+    unit : float
+        Metres at leg length 0.85 m of the unit that the paper's numbers are in.
+    """
+    change = np.zeros(size)
+    error, jacobian = stacked_errors(goals, change)
+    progress = _Progress([float(np.linalg.norm(error))])
+    floor = (damping * unit) ** 2 * np.eye(len(error))
+    best, best_at = progress.history[0], 0
+    while max_iterations is None or progress.iterations < max_iterations:
+        if progress.history[-1] < tolerance * unit:
+            progress.reason = "converged"
+            break
+        if progress.iterations - best_at > _PATIENCE:
+            progress.reason = "stalled"
+            break
+        change = change + jacobian.T @ np.linalg.lstsq(jacobian @ jacobian.T + floor, error, rcond=None)[0]
+        error, jacobian = stacked_errors(goals, change)
+        progress.history.append(float(np.linalg.norm(error)))
+        if progress.history[-1] < (1.0 - _PROGRESS) * best:
+            best, best_at = progress.history[-1], progress.iterations
+    solution = progress.finished()
+    return CoefficientSolution(change, solution.iterations, solution.history, solution.reason)

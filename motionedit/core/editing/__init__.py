@@ -1,1 +1,0 @@
-"""The edits: a whole clip changed by coefficients solved at one frame ([PC] 4.3)."""

@@ -1,0 +1,267 @@
+"""Shape constraints: where an effector shall be at every frame, from a few points in time ([PRIO] section 4.2).
+
+A trajectory is S(T(t)). Between points the displacement from the input is splined, so that the input's detail stays;
+where some point gives a position, the path itself is. Inside a hold the target does not move at all.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from motionedit.core import rotations as rot
+from motionedit.core.priorities.splines import kochanek_bartels
+from motionedit.core.rotation_vectors import unwrapped
+from motionedit.core.timeline import round_half_up
+from motionedit.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from motionedit.core.arrays import FloatArray, IntArray
+
+Curve = Literal["time", "index"]
+
+
+@dataclass(frozen=True, eq=False)
+class ControlPoint:
+    """A point of a trajectory, from frame `start` to frame `stop`, both in (the same for ``at``).
+
+    Attributes
+    ----------
+    mode
+        ``hold`` stands still, ``during`` rides the input's trajectory, ``at`` is one instant.
+    position, shift : shape (3,) or None
+        Where it is, or how far from the input's place (a hold: from the place at its start). ``during`` has no
+        position.
+    orientation : shape (4,) or None
+        Quaternion; None is the input's own (a hold: as at its start).
+    tension, continuity, bias : float
+        Of the spline, for ``at``. A hold has tension 1 whatever it says.
+    """
+
+    mode: Literal["hold", "during", "at"]
+    start: int
+    stop: int
+    position: FloatArray | None = None
+    shift: FloatArray | None = None
+    orientation: FloatArray | None = None
+    tension: float = 0.0
+    continuity: float = 0.0
+    bias: float = 0.0
+
+    @property
+    def text(self) -> str:
+        """How a message names it."""
+        return f"at {self.start}" if self.mode == "at" else f"{self.mode} [{self.start}, {self.stop}]"
+
+    @property
+    def span(self) -> slice:
+        """Its frames."""
+        return slice(self.start, self.stop + 1)
+
+
+def active_interval(points: Sequence[ControlPoint], *, ease_in: float, ease_out: float, frames: int) -> tuple[int, int]:
+    """Return the first and last frame at which points act: eased in and out, cut at the clip's ends.
+
+    Both are rounded to the nearest frame, halves up, as every time is. No points act over the whole clip.
+
+    Raises
+    ------
+    ValueError
+        If points overlap or are not in order.
+    """
+    for one, other in pairwise(points):
+        if other.stop < one.start:
+            raise ValueError(f"'{other.text}' comes after '{one.text}'; points stand in the order of their times")
+        if other.start <= one.stop:
+            raise ValueError(f"'{one.text}' and '{other.text}' share a frame; both ends of an interval are in it")
+    if not points:
+        return 0, frames - 1
+    first = round_half_up(points[0].start - ease_in)
+    last = round_half_up(points[-1].stop + ease_out)
+    return max(first, 0), min(last, frames - 1)
+
+
+def position_targets(
+    path: FloatArray, points: Sequence[ControlPoint], *, ease_in: float, ease_out: float, curve: Curve
+) -> tuple[int, FloatArray]:
+    """Return the first active frame and the targets from there on, shape (n, 3).
+
+    What is splined is the displacement from the input, or the path itself where some point gives a position. The
+    curve leaves and meets the input's trajectory at the input's velocity, and a hold at rest. Points are met exactly;
+    a displacement of zero leaves the input's own numbers.
+
+    Parameters
+    ----------
+    path : shape (F, 3)
+        The input's trajectory.
+    ease_in, ease_out : float
+        Frames. A point at the clip's end has no ramp there: the curve starts, or ends, in place.
+    curve
+        ``time``: S's parameter is time; ``index``: it is the knots' index, and T(t) is piecewise linear, as in the
+        paper, whose speed jumps at uneven knots.
+
+    Raises
+    ------
+    ValueError
+        If points overlap or are not in order.
+    """
+    first, last = active_interval(points, ease_in=ease_in, ease_out=ease_out, frames=len(path))
+    targets = path.copy()
+    if not points:
+        return first, targets
+    velocity = np.gradient(path, axis=0) if len(path) > 1 else np.zeros_like(path)
+    absolute = any(point.position is not None for point in points)
+    # What is splined is the path where a point gives a position, else the displacement from it.
+    base, slope = (np.zeros_like(path), np.zeros_like(path)) if absolute else (path, velocity)
+    for run in _runs(points, path, velocity, (first, last)):
+        between = np.arange(run[0].frame + 1, run[-1].frame)
+        targets[between] = base[between] + _splined(run, base, slope, at=between, curve=curve)
+    # Last, and not through the spline: path + (place - path) may differ from place by a rounding.
+    for point in points:
+        targets[point.span] = _places(point, path)
+    return first, targets[first : last + 1]
+
+
+@dataclass(frozen=True, eq=False)
+class _Knot:
+    """A knot of a spline: where it is, and how fast (per frame), which counts where it is the first or last of a run.
+
+    `shape` holds tension, continuity and bias.
+    """
+
+    frame: int
+    place: FloatArray
+    velocity: FloatArray
+    shape: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+def _places(point: ControlPoint, path: FloatArray) -> FloatArray:
+    """Return where a point wants its frames, shape (n, 3), or (3,) where that is one place for all."""
+    shift = np.zeros(3) if point.shift is None else point.shift
+    if point.mode == "during":
+        return path[point.span] + shift
+    return path[point.start] + shift if point.position is None else point.position
+
+
+def _runs(
+    points: Sequence[ControlPoint], path: FloatArray, velocity: FloatArray, active: tuple[int, int]
+) -> list[list[_Knot]]:
+    """Return the knots of each run of spline: from the input, or a block's last frame, to the next block, or the input.
+
+    A hold or a ride is a block. A hold's two equal points of tension 1 cut the paper's one spline just there: no
+    tangent passes them.
+    """
+    first, last = active
+    runs: list[list[_Knot]] = [[]]
+    if first < points[0].start:
+        runs[-1].append(_Knot(first, path[first], velocity[first]))
+    for point in points:
+        places = np.broadcast_to(_places(point, path), path[point.span].shape)
+        if point.mode == "at":
+            shape = (point.tension, point.continuity, point.bias)
+            runs[-1].append(_Knot(point.start, places[0], velocity[point.start], shape))
+            continue
+        moves = 1.0 if point.mode == "during" else 0.0
+        runs[-1].append(_Knot(point.start, places[0], moves * velocity[point.start]))
+        runs.append([_Knot(point.stop, places[-1], moves * velocity[point.stop])])
+    if last > points[-1].stop:
+        runs[-1].append(_Knot(last, path[last], velocity[last]))
+    return [run for run in runs if len(run) > 1]
+
+
+def _splined(run: list[_Knot], base: FloatArray, slope: FloatArray, *, at: IntArray, curve: Curve) -> FloatArray:
+    """Return the spline of a run's knots over the base, S(T(t)), at frames, shape (N, 3)."""
+    frames = [knot.frame for knot in run]
+    values = np.array([knot.place for knot in run]) - base[frames]
+    tension, continuity, bias = np.array([knot.shape for knot in run]).T
+    # A point that ends a run, having no ramp, goes at the input's velocity as far as its tension lets it.
+    start, end = ((1.0 - tension[k]) * (run[k].velocity - slope[run[k].frame]) for k in (0, -1))
+    knots, u = np.array(frames, dtype=np.float64), at.astype(np.float64)
+    if curve == "index":
+        # T(t): time to knot index, straight between the knots; tangents are per index there.
+        start, end = start * (knots[1] - knots[0]), end * (knots[-1] - knots[-2])
+        index = np.arange(len(knots), dtype=np.float64)
+        knots, u = index, np.interp(u, knots, index)
+    return kochanek_bartels(
+        knots,
+        values,
+        tension=tension,
+        continuity=continuity,
+        bias=bias,
+        start_tangent=start,
+        end_tangent=end,
+        at=u,
+    )
+
+
+def rotation_targets(
+    rotations: FloatArray, points: Sequence[ControlPoint], *, ease_in: float, ease_out: float
+) -> tuple[int, FloatArray]:
+    """Return the first active frame and the target rotations from there on, shape (n, 4).
+
+    From one point to the next the target is the slerp between what each would have it be at that frame (a hold: its
+    constant, all others: turned with the input), by a share that starts and ends at rest, so its speed is continuous.
+
+    Parameters
+    ----------
+    rotations : shape (F, 4)
+        The input's.
+
+    Raises
+    ------
+    ValueError
+        If points overlap or are not in order.
+    """
+    first, last = active_interval(points, ease_in=ease_in, ease_out=ease_out, frames=len(rotations))
+    targets = rotations.copy()
+    if not points:
+        return first, targets
+    before, since = rotations, first
+    for point in points:
+        source = _source(point, rotations)
+        _blend(targets, before, source, since, point.start)
+        targets[point.span] = source[point.span]
+        before, since = source, point.stop
+    _blend(targets, before, rotations, since, last)
+    return first, targets[first : last + 1]
+
+
+def _source(point: ControlPoint, rotations: FloatArray) -> FloatArray:
+    """Return the rotations a point would have at every frame, shape (F, 4)."""
+    own = rotations[point.start]
+    wanted = own if point.orientation is None else point.orientation
+    if point.mode == "hold":
+        return np.broadcast_to(wanted, rotations.shape)
+    if point.orientation is None:
+        return rotations
+    source = rot.multiply(rot.multiply(wanted, rot.conjugate(own)), rotations)
+    source[point.start] = wanted
+    return source
+
+
+def _blend(targets: FloatArray, before: FloatArray, after: FloatArray, start: int, stop: int) -> None:
+    """Write the slerp from one source to another over the frames between start and stop, both left as they are."""
+    if before is after or stop - start < 2:
+        return
+    span = slice(start, stop + 1)
+    arc = _arcs(before[span], after[span])
+    t = np.linspace(0.0, 1.0, stop - start + 1)[:, None]
+    blend = rot.multiply(before[span], rot.exp(t * t * (3.0 - 2.0 * t) * arc))
+    targets[start + 1 : stop] = blend[1:-1]
+
+
+def _arcs(before: FloatArray, after: FloatArray) -> FloatArray:
+    """Return rotation vectors from one source to another that follow each other in time, shape (n, 3).
+
+    The shorter arc is taken half way, where it weighs most. A shorter arc at every frame would change to the other
+    side, and the target jump, where the input turns past half a turn from its goal.
+    """
+    shortest = rot.log(rot.multiply(rot.conjugate(before), after))[:, None]
+    middle = len(shortest) // 2
+    down, up = unwrapped(shortest[middle::-1])[::-1], unwrapped(shortest[middle:])
+    arcs: FloatArray = np.concatenate((down[:-1], up))[:, 0]
+    return arcs

@@ -1,0 +1,161 @@
+"""One clip of a run, as a worker does it: read, work on, verify, write; what goes wrong comes back as errors."""
+
+from __future__ import annotations
+
+import sys
+import time
+from dataclasses import field, replace
+from typing import TYPE_CHECKING, Any, Protocol
+
+from motionedit.dataclass import dataclass
+from motionedit.errors import ClipError, MotionEditError, MotionEditErrors
+from motionedit.jobs.batch.files import atomic_write
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+    from pathlib import Path
+
+    from motionedit.core.bvh import Clip
+    from motionedit.core.motion import Motion
+    from motionedit.jobs.batch.plan import ClipTask, RunOptions
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What the work on one clip came to.
+
+    Attributes
+    ----------
+    content : bytes, or an iterable of pieces of them, or None
+        The file to write; None writes none. Pieces are made as they are written, and once.
+    record : dict
+        The clip's entry in the report, from `message` on; plain values only.
+    status : str
+        ``ok``, ``far``, ``out_of_tolerance`` or ``unreachable``; the last two are what `strict` looks at.
+    warnings : tuple of str
+        One line each, without the clip's name.
+    motion : Motion or None
+        What the content should read back as, for `verify`; None is the clip's own.
+    details : tuple of str
+        Lines that --dry-run prints: layers, recruited joints, intervals, goals.
+    page : callable or None
+        Makes the preview page that is written next to the clip, once the clip is.
+    """
+
+    content: bytes | Iterable[bytes | memoryview] | None
+    record: dict[str, Any] = field(default_factory=dict)
+    status: str = "ok"
+    warnings: tuple[str, ...] = ()
+    motion: Motion | None = None
+    details: tuple[str, ...] = ()
+    page: Callable[[], bytes] | None = None
+
+
+class Work(Protocol):
+    """What is done to each clip: a frozen dataclass that can be pickled."""
+
+    def __call__(self, clip: Clip, task: ClipTask) -> Outcome:
+        """Return the outcome for one clip, or raise a MotionEditError that fails it."""
+
+
+@dataclass(frozen=True)
+class Done:
+    """What a worker sends back: an Outcome without its arrays, or errors."""
+
+    outcome: Outcome = field(default_factory=lambda: Outcome(None))
+    written: bool = False
+    errors: tuple[MotionEditError, ...] = ()
+    seconds: float = 0.0
+
+
+@dataclass(frozen=True)
+class RunOne:
+    """All that is done to one clip, as a worker runs it."""
+
+    work: Work
+    options: RunOptions
+
+    def __call__(self, task: ClipTask) -> Done:
+        """Return what became of a clip; with -vv an error that is no user's is raised, to show its place."""
+        start = time.perf_counter()
+        try:
+            done = self._run(task)
+        except MotionEditErrors as group:
+            done = Done(errors=flatten(group))
+        except MotionEditError as error:
+            done = Done(errors=(error,))
+        except Exception as error:
+            if self.options.verbosity > 1:
+                raise
+            message = f"unexpected {type(error).__name__}: {error}; please report it (-vv shows where)"
+            done = Done(errors=(ClipError(" ".join(message.split()), file=task.label),))
+        return replace(done, seconds=time.perf_counter() - start)
+
+    def _run(self, task: ClipTask) -> Done:
+        clip = read_task(task, lenient=self.options.lenient)
+        outcome = self.work(clip, task)
+        warnings = (*clip.warnings, *outcome.warnings)
+        content = outcome.content
+        if content is None or self.options.dry_run:
+            return Done(replace(outcome, content=None, page=None, motion=None, warnings=warnings))
+        record = outcome.record
+        if not isinstance(content, bytes) and (self.options.verify or task.output is None):
+            content = b"".join(content)
+        if isinstance(content, bytes) and self.options.verify:
+            record = {**record, "verify": _verify(clip, content, outcome.motion or clip.motion)}
+        if task.output is not None:
+            _write(task.output, content)
+            content = None
+        if task.page is not None and outcome.page is not None:
+            _write(task.page, outcome.page())
+        return Done(Outcome(content, record, outcome.status, warnings), written=True)
+
+
+def _write(path: Path, content: bytes | Iterable[bytes | memoryview]) -> None:
+    try:
+        atomic_write(path, content)
+    except OSError as error:
+        raise ClipError(f"cannot be written: {error.strerror or error}", file=str(path)) from error
+
+
+def read_task(task: ClipTask, *, lenient: bool) -> Clip:
+    """Return the clip of a task, from its file or from standard input.
+
+    Raises
+    ------
+    BvhError
+        The file is no BVH clip.
+    ClipError
+        It cannot be read at all.
+    """
+    from motionedit.core.bvh import parse_clip, read_clip
+
+    try:
+        if task.source is None:
+            return parse_clip(sys.stdin.buffer.read(), label=task.label, lenient=lenient)
+        return read_clip(task.source, label=task.label, lenient=lenient)
+    except OSError as error:
+        raise ClipError(f"cannot be read: {error.strerror or error}", file=task.label) from error
+
+
+def flatten(group: ExceptionGroup[MotionEditError]) -> tuple[MotionEditError, ...]:
+    """Return the errors of a group and of the groups in it, in order."""
+    errors: list[MotionEditError] = []
+    for error in group.exceptions:
+        errors.extend(flatten(error) if isinstance(error, ExceptionGroup) else (error,))
+    return tuple(errors)
+
+
+def _verify(clip: Clip, content: bytes, motion: Motion) -> dict[str, Any]:
+    """Return what bvhio, an independent reader, found in the bytes to write; a difference fails the clip."""
+    from motionedit.core.body.anatomy import find_anatomy
+    from motionedit.core.bvh import check_with_bvhio
+
+    result = check_with_bvhio(content, motion, leg_length=find_anatomy(motion.skeleton).leg_length)
+    if not result.ok:
+        raise ClipError(
+            f"--verify: bvhio reads joint {result.joint} at frame {result.frame} {result.distance:.4g} from its "
+            "place; the file was not kept",
+            file=clip.label,
+        )
+    return {"distance": result.distance, "frames_skipped": result.skipped}

@@ -1,0 +1,256 @@
+"""What a run is to do: its options, the clips it takes, and where each of them goes."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from motionedit.dataclass import dataclass
+from motionedit.errors import UsageError
+from motionedit.jobs.batch.files import identity
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+    from contextlib import AbstractContextManager
+
+STDIN_LABEL = "<stdin>"
+
+
+@contextlib.contextmanager
+def no_progress(_length: int) -> Iterator[Callable[[], None]]:
+    """Show nothing: the progress of runs without a terminal."""
+    yield lambda: None
+
+
+@dataclass(frozen=True)
+class RunOptions:
+    """How a run goes about its clips; what is done to them stands in the spec.
+
+    Attributes
+    ----------
+    jobs : int
+        Clips in parallel; 0 means all cores.
+    scheduler : str or None
+        Address of a Dask scheduler that takes the place of `jobs`.
+    update : bool
+        Leave outputs alone that are newer than all they depend on.
+    overwrite : bool
+        Outputs that exist are replaced.
+    keep_going : bool
+        Go on past a clip that fails.
+    lenient, verify : bool
+        Accept clips with a wrong `Frames:`; read each output back with bvhio.
+    strict : bool
+        A goal out of tolerance gives exit code 3.
+    preview : bool
+        A page next to each clip that is written.
+    dry_run : bool
+        Write nothing.
+    verbosity : int
+        0 as usual, below it less, above it more.
+    report : Path or None
+        The JSON report, a file that is to be neither a clip nor an output.
+    progress : callable
+        Given the number of clips, a context manager whose value is called once per finished clip.
+    """
+
+    jobs: int = 1
+    scheduler: str | None = None
+    update: bool = False
+    overwrite: bool = True
+    keep_going: bool = True
+    lenient: bool = False
+    strict: bool = False
+    preview: bool = False
+    dry_run: bool = False
+    verify: bool = False
+    verbosity: int = 0
+    report: Path | None = None
+    progress: Callable[[int], AbstractContextManager[Callable[[], None]]] = no_progress
+
+
+@dataclass(frozen=True)
+class ClipTask:
+    """One clip of a run.
+
+    Attributes
+    ----------
+    source : Path or None
+        None is standard input.
+    label : str
+        The clip's path as the user would write it, for messages.
+    output : Path or None
+        None is standard output (or, from `find_clips`, nowhere).
+    relative : str
+        Path below the given folder with forward slashes, or the file's name: what event files call the clip.
+    current : bool
+        With `update`: the output is newer than all it depends on, and stays as it is; and so is its page.
+    page : Path or None
+        With `preview`: the page next to the output.
+    """
+
+    source: Path | None
+    label: str
+    output: Path | None
+    relative: str
+    current: bool = False
+    page: Path | None = None
+
+    @property
+    def outputs(self) -> list[Path]:
+        """The files that it writes."""
+        return [path for path in (self.output, self.page) if path is not None]
+
+
+def find_clips(clips: Sequence[Path], *, leave_out: Path | None = None) -> list[ClipTask]:
+    """Return the clips that files, folders and ``-`` (standard input) stand for, without outputs.
+
+    A folder stands for every ``*.bvh`` below it, in any case, sorted by path. Hidden files and folders are left
+    out, and so is `leave_out`, where the outputs go.
+
+    Raises
+    ------
+    UsageError
+        Something given does not exist, a folder holds no clip, or ``-`` is given twice.
+    """
+    refuse_missing(clips)
+    if sum(str(path) == "-" for path in clips) > 1:
+        raise UsageError("standard input ('-') can be read only once")
+    return [task for path in clips for task in _expand(path, leave_out)]
+
+
+def folder_clips(folder: Path, *, leave_out: Path | None = None) -> list[ClipTask]:
+    """Return the clips of one folder as `find_clips` does, none where it has none."""
+    found = sorted(_clips_below(folder, leave_out), key=lambda clip: clip.relative_to(folder).as_posix())
+    if leave_out is not None and not leave_out.is_dir():
+        # An output of an earlier run inside the folder is no clip, unless it is all there is: then it is refused.
+        found = [clip for clip in found if identity(clip) != identity(leave_out)] or found
+    return [ClipTask(clip, str(clip), None, clip.relative_to(folder).as_posix()) for clip in found]
+
+
+def plan(clips: Sequence[Path], output: str, *, options: RunOptions, depends: Sequence[Path] = ()) -> list[ClipTask]:
+    """Return one task per clip, every rule about files checked before any work.
+
+    Parameters
+    ----------
+    clips
+        Files, folders, or ``-``.
+    output
+        A name ending in ``.bvh`` is that file, ``-`` is standard output, anything else is a folder.
+    depends
+        The spec, model and event files: none of them is overwritten, and `update` compares times with them.
+
+    Raises
+    ------
+    UsageError
+        As `find_clips`; several clips for one output; an output that is an input; an output that exists where
+        `overwrite` is off; `update` with standard input or output; `preview` with standard output.
+    """
+    found = find_clips(clips, leave_out=None if output == "-" else Path(output))
+    if options.update and (output == "-" or any(task.source is None for task in found)):
+        raise UsageError("--update compares the times of files: it does not go with '-'")
+    if options.preview and output == "-":
+        raise UsageError("--preview writes a page next to each clip: it does not go with -o -")
+    tasks = _with_outputs(found, output)
+    if options.preview:
+        tasks = [replace(task, page=task.output and task.output.with_suffix(".html")) for task in tasks]
+    _refuse_shared_outputs(tasks, options.report)
+    outputs = [path for task in tasks for path in task.outputs]
+    inputs = [task.source for task in tasks if task.source is not None]
+    refuse_overwriting([*outputs, *([options.report] if options.report else [])], [*inputs, *depends])
+    if options.update:
+        tasks = [replace(task, current=_is_current(task, depends)) for task in tasks]
+    if not options.overwrite:
+        refuse_existing([path for task in tasks if not task.current for path in task.outputs])
+    return tasks
+
+
+def refuse_missing(clips: Sequence[Path]) -> None:
+    """Raise a UsageError where a clip or folder does not exist; ``-`` always does."""
+    _refuse([p for p in clips if str(p) != "-" and not p.exists()], "no such file or folder")
+
+
+def refuse_existing(outputs: Sequence[Path]) -> None:
+    """Raise the UsageError of --no-overwrite where any of the outputs exists."""
+    _refuse([path for path in outputs if os.path.lexists(path)], "exists, and --no-overwrite is given")
+
+
+def refuse_overwriting(outputs: Sequence[Path], inputs: Sequence[Path]) -> None:
+    """Raise a UsageError where an output is an input, by whatever name or link."""
+    taken = {identity(path) for path in inputs}
+    _refuse(
+        [path for path in outputs if identity(path) in taken],
+        "is an input of this run, and an input is never overwritten; write to another file or folder",
+    )
+
+
+def _refuse(paths: Sequence[Path], reason: str) -> None:
+    if paths:
+        others = f" (and {len(paths) - 1} more)" if len(paths) > 1 else ""
+        raise UsageError(reason + others, file=str(paths[0]))
+
+
+def _expand(path: Path, leave_out: Path | None) -> list[ClipTask]:
+    if str(path) == "-":
+        return [ClipTask(None, STDIN_LABEL, None, STDIN_LABEL)]
+    if not path.is_dir():
+        return [ClipTask(path, str(path), None, path.name)]
+    found = folder_clips(path, leave_out=leave_out)
+    if not found:
+        raise UsageError("no .bvh file in this folder", file=str(path))
+    return found
+
+
+def _clips_below(top: Path, leave_out: Path | None) -> Iterator[Path]:
+    left_out = None if leave_out is None else identity(leave_out)
+
+    def refuse(error: OSError) -> None:
+        raise error
+
+    for folder, subfolders, names in os.walk(top, onerror=refuse):
+        subfolders[:] = [
+            name for name in subfolders if not name.startswith(".") and identity(Path(folder, name)) != left_out
+        ]
+        for name in names:
+            if name.lower().endswith(".bvh") and not name.startswith("."):
+                yield Path(folder, name)
+
+
+def _with_outputs(tasks: list[ClipTask], output: str) -> list[ClipTask]:
+    single = output == "-" or output.lower().endswith(".bvh")
+    if single and len(tasks) != 1:
+        what = "standard output" if output == "-" else output
+        raise UsageError(f"-o {output}: {len(tasks)} clips cannot go to {what}; give a folder")
+    if output == "-":
+        return tasks
+    target = Path(output)
+    if single:
+        if target.is_dir():
+            raise UsageError("is a folder, but its name ends in .bvh: give a file or another folder", file=output)
+        return [replace(tasks[0], output=target)]
+    if target.exists() and not target.is_dir():
+        raise UsageError("is a file; give a folder, or a name ending in .bvh for one clip", file=output)
+    if any(task.source is None for task in tasks):
+        raise UsageError("a clip from standard input has no name: give -o FILE.bvh or -o -")
+    return [replace(task, output=target / task.relative) for task in tasks]
+
+
+def _refuse_shared_outputs(tasks: list[ClipTask], report: Path | None) -> None:
+    first = {} if report is None else {os.path.realpath(report): "the report"}
+    for task in tasks:
+        for output in task.outputs:
+            name = os.path.realpath(output)
+            if name in first:
+                raise UsageError(f"{first[name]} and {task.label} would both be written to {output}")
+            first[name] = task.label
+
+
+def _is_current(task: ClipTask, depends: Sequence[Path]) -> bool:
+    """Tell, by make's rule, whether no file that the output is made from is newer than it."""
+    if task.output is None or task.source is None or not all(path.exists() for path in task.outputs):
+        return False
+    made = min(path.stat().st_mtime_ns for path in task.outputs)
+    return all(made >= path.stat().st_mtime_ns for path in (task.source, *depends) if path.exists())

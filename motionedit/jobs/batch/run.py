@@ -1,0 +1,222 @@
+"""A run over many clips: each is read, worked on, verified and written where its worker is; results come in order."""
+
+from __future__ import annotations
+
+from contextlib import closing
+from dataclasses import field, replace
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from motionedit.dataclass import dataclass
+from motionedit.errors import (
+    EXIT_CLIP_FAILED,
+    EXIT_DONE,
+    EXIT_OUT_OF_TOLERANCE,
+    EXIT_USAGE,
+    ClipError,
+    MotionEditError,
+    MotionEditErrors,
+)
+from motionedit.jobs.batch.files import atomic_write, clean_leftovers
+from motionedit.jobs.batch.one_clip import Done, Outcome, RunOne, Work, flatten, read_task
+from motionedit.jobs.batch.plan import ClipTask, RunOptions, find_clips, no_progress, plan
+from motionedit.jobs.batch.pool import results_in_order
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Generator, Sequence
+
+
+__all__ = [
+    "BatchResult",
+    "ClipTask",
+    "Outcome",
+    "RunOptions",
+    "Work",
+    "atomic_write",
+    "clean_leftovers",
+    "find_clips",
+    "flatten",
+    "map_tasks",
+    "plan",
+    "read_task",
+    "run_batch",
+    "values_in_order",
+]
+
+Item = TypeVar("Item")
+Value = TypeVar("Value")
+
+# What --strict counts as a goal that was not met.
+_MISSED = frozenset({"out_of_tolerance", "unreachable"})
+
+
+@dataclass(frozen=True)
+class BatchResult:
+    """What a run came to, clip by clip in the order of its tasks, whatever the number of workers.
+
+    Attributes
+    ----------
+    records : list of dict
+        Entries of the report's `clips`.
+    paths : list of str
+        The files written.
+    warnings : list of str
+        One line each, with the clip's name where there are several.
+    failures : list of MotionEditError
+        Why clips failed; one clip may have several.
+    exit_code : int
+        As the command should end.
+    seconds : list of float
+        Wall time of each record's clip.
+    details : list of (str, tuple of str)
+        For --dry-run: a line for each clip, and the lines that belong to it.
+    content : bytes or None
+        The clip that goes to standard output.
+    current : int
+        How many outputs --update left alone.
+    """
+
+    records: list[dict[str, Any]]
+    paths: list[str]
+    warnings: list[str]
+    failures: list[MotionEditError]
+    exit_code: int
+    seconds: list[float] = field(default_factory=list)
+    details: list[tuple[str, tuple[str, ...]]] = field(default_factory=list)
+    content: bytes | None = None
+    current: int = 0
+
+
+def run_batch(tasks: Sequence[ClipTask], work: Work, options: RunOptions) -> BatchResult:
+    """Read, work on, verify and write every clip that is not current.
+
+    A clip fails alone; without `keep_going` the clips after a failed one are not begun. Where every clip fails
+    by a fault of the spec, the exit code is that of a spec error.
+    """
+    from motionedit.core import bvh as _bvh  # noqa: F401  loaded once here, not in every forked worker
+
+    waiting = [task for task in tasks if not task.current]
+    folders = [task.output.parent for task in waiting if task.output is not None]
+    run_one = RunOne(work, replace(options, progress=no_progress))
+    done: list[Done] = []
+    try:
+        if not options.dry_run:
+            clean_leftovers(folders)
+        items = [_absolute(task) for task in waiting] if options.scheduler else waiting
+        results = results_in_order(
+            run_one, items, options=options, is_last=lambda one: not options.keep_going and _has_failed(one)
+        )
+        with closing(results), options.progress(len(waiting)) as advance:
+            for result in results:
+                done.append(result if isinstance(result, Done) else Done(errors=(result,)))
+                advance()
+    finally:
+        # Workers that were ended in the middle of a file could not clean up themselves.
+        if not options.dry_run:
+            clean_leftovers(folders)
+    return _collect(waiting, done, len(tasks), options)
+
+
+def map_tasks(
+    function: Callable[[Item], Value], items: Sequence[Item], options: RunOptions
+) -> list[Value | MotionEditError]:
+    """Return function(item) for each item in order, on the workers that `options` asks for.
+
+    A MotionEditError or OSError of an item comes back as its value; every item is tried. `function`, items and
+    values are pickled where there are several workers.
+    """
+    return list(values_in_order(function, items, options))
+
+
+def values_in_order(
+    function: Callable[[Item], Value], items: Sequence[Item], options: RunOptions
+) -> Generator[Value | MotionEditError]:
+    """Yield what `map_tasks` returns, one by one: of many large values few are held at a time."""
+    from motionedit.core import bvh as _bvh  # noqa: F401  as above
+
+    results = results_in_order(_Guarded(function), items, options=options)
+    with closing(results), options.progress(len(items)) as advance:
+        for value in results:
+            yield value
+            advance()
+
+
+@dataclass(frozen=True)
+class _Guarded:
+    """A function whose errors are values, as a worker runs it."""
+
+    function: Callable[[Any], Any]
+
+    def __call__(self, item: Any) -> Any:  # noqa: ANN401  any function of map_tasks
+        try:
+            return self.function(item)
+        except MotionEditErrors as group:
+            errors = flatten(group)
+            return errors[0] if len(errors) == 1 else ClipError("; ".join(map(str, errors)))
+        except MotionEditError as error:
+            return error
+        except OSError as error:
+            return ClipError(error.strerror or str(error), file=error.filename and str(error.filename))
+
+
+def _has_failed(result: Done | MotionEditError) -> bool:
+    return not isinstance(result, Done) or bool(result.errors)
+
+
+def _absolute(task: ClipTask) -> ClipTask:
+    """Return the task with paths that hold in a cluster worker's own folder."""
+    return replace(
+        task,
+        source=None if task.source is None else task.source.absolute(),
+        output=None if task.output is None else task.output.absolute(),
+        page=None if task.page is None else task.page.absolute(),
+    )
+
+
+def _collect(waiting: Sequence[ClipTask], done: Sequence[Done], total: int, options: RunOptions) -> BatchResult:
+    pairs = list(zip(waiting, done, strict=False))  # shorter after --fail-fast
+    failures = [_named(error, task) for task, one in pairs for error in one.errors]
+    return BatchResult(
+        records=[_record(task, one) for task, one in pairs],
+        paths=[str(path) for task, one in pairs if one.written for path in task.outputs],
+        warnings=[_about(task, warning, alone=total == 1) for task, one in pairs for warning in one.outcome.warnings],
+        failures=failures,
+        exit_code=_exit_code(waiting, done, strict=options.strict),
+        seconds=[one.seconds for _, one in pairs],
+        details=[(_heading(task), one.outcome.details) for task, one in pairs if not one.errors],
+        content=next((one.outcome.content for _, one in pairs if isinstance(one.outcome.content, bytes)), None),
+        current=total - len(waiting),
+    )
+
+
+def _record(task: ClipTask, done: Done) -> dict[str, Any]:
+    output = None if task.output is None else str(task.output)
+    head = {"clip": task.label, "output": output}
+    if done.errors:
+        message = "; ".join(str(_named(error, task)) for error in done.errors)
+        return {**head, "output": None, "status": "failed", "message": message}
+    return {**head, "status": done.outcome.status, "message": None, **done.outcome.record}
+
+
+def _named(error: MotionEditError, task: ClipTask) -> MotionEditError:
+    if error.file is not None:
+        return error
+    return type(error)(error.message, file=task.label, key=error.key)
+
+
+def _about(task: ClipTask, warning: str, *, alone: bool) -> str:
+    return warning if alone or warning.startswith(task.label) else f"{task.label}: {warning}"
+
+
+def _heading(task: ClipTask) -> str:
+    return f"{task.label} -> {', '.join(map(str, task.outputs)) or 'standard output'}"
+
+
+def _exit_code(waiting: Sequence[ClipTask], done: Sequence[Done], *, strict: bool) -> int:
+    failed = [one for one in done if one.errors]
+    if failed:
+        fault_of_the_spec = len(failed) == len(waiting) and all(
+            error.exit_code == EXIT_USAGE for one in failed for error in one.errors
+        )
+        return EXIT_USAGE if fault_of_the_spec else EXIT_CLIP_FAILED
+    missed = any(one.outcome.status in _MISSED for one in done)
+    return EXIT_OUT_OF_TOLERANCE if strict and missed else EXIT_DONE

@@ -1,0 +1,100 @@
+"""What a job reads off a clip before it works on it: up, travel, rest pose, heading, scale."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from motionedit.core import kinematics
+from motionedit.core.body import ground
+from motionedit.core.body.anatomy import Anatomy, find_anatomy
+from motionedit.core.body.contacts import find_plants
+from motionedit.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from motionedit.core.arrays import FloatArray
+    from motionedit.core.bvh import Clip
+    from motionedit.core.kinematics import WorldPoses
+    from motionedit.core.timeline.alignment import Alignment
+
+
+Line = Literal["hips", "feet"]
+
+# Cosine of the angle between the feet's line and the hips' up to which feet stand side by side: 35 degrees.
+SIDE_BY_SIDE = 0.82
+
+
+@dataclass(frozen=True, eq=False)
+class ClipFacts:
+    """A clip and what was found in it.
+
+    `up` is the signed unit axis (3,), `travel` the joint that carries the travel, `first` the first frame after a rest
+    pose.
+    """
+
+    clip: Clip
+    anatomy: Anatomy
+    up: FloatArray
+    travel: int
+    first: int
+
+    @cached_property
+    def poses(self) -> WorldPoses:
+        """World transforms of all frames; made anew where they were forgotten."""
+        return kinematics.forward(self.clip.motion)
+
+    def forget_poses(self) -> None:
+        """Give back the memory of `poses`: for a long clip twice that of its file."""
+        vars(self).pop("poses", None)
+
+    @property
+    def last(self) -> int:
+        """The last frame."""
+        return len(self.clip.motion) - 1
+
+    def heading_frame(self, at: float | None = None) -> ground.Frame:
+        """Return the heading frame at a frame or a part of one; by default the first after the rest pose."""
+        poses, frame = self._at(at)
+        return ground.heading_frame(poses, self.anatomy, up=self.up, frame=frame, travel=self.travel)
+
+    def stands(self, at: float | None = None) -> bool:
+        """Return whether both feet are planted at a frame, side by side rather than one before the other."""
+        poses, frame = self._at(at)
+        stance = ground.stance_frame(poses, self.anatomy, up=self.up, frame=frame)
+        if stance is None:
+            return False
+        plants = find_plants(self.clip.motion, self.poses, self.anatomy, up=self.up, first=self.first)
+        when = self.first if at is None else at
+        feet = {plant.foot for plant in plants if plant.start <= when <= plant.stop}
+        return feet == {"left", "right"} and float(stance.axes[0] @ self.heading_frame(at).axes[0]) > SIDE_BY_SIDE
+
+    def alignment(self, by: Line, *, heading: bool, position: bool, at: float | None) -> Alignment:
+        """Return the alignment of a clip on the ground at a frame (None: the first), by the line of hips or feet."""
+        from motionedit.core.timeline.alignment import align_to
+
+        poses, frame = self._at(at)
+        found = ground.stance_frame(poses, self.anatomy, up=self.up, frame=frame) if by == "feet" else None
+        return align_to(found or self.heading_frame(at), heading=heading, position=position)
+
+    def _at(self, at: float | None) -> tuple[WorldPoses, int]:
+        """Return poses and a frame of them: the clip's own, or those of one resampled frame."""
+        if at is None:
+            return self.poses, self.first
+        from motionedit.core.timeline.resample import resample
+
+        motion = self.clip.motion
+        return kinematics.forward(resample(motion, np.array([at]), frame_time=motion.frame_time)), 0
+
+
+def facts_of(clip: Clip, *, up: str = "auto", keep_rest_pose: bool = False) -> ClipFacts:
+    """Return a clip's facts; `up` is ``auto`` or an axis' name such as ``y`` or ``-z``, which is taken as given."""
+    motion = clip.motion
+    poses = kinematics.forward(motion)
+    anatomy = find_anatomy(motion.skeleton, poses=poses)
+    axis = ground.find_up(motion, poses, anatomy) if up == "auto" else ground.axis_vector(up)
+    first = 0 if keep_rest_pose else ground.rest_pose_frames(motion, anatomy)
+    facts = ClipFacts(clip, anatomy, axis, ground.travel_joint(motion), min(first, len(motion) - 1))
+    vars(facts)["poses"] = poses
+    return facts

@@ -1,0 +1,55 @@
+"""What a report says of an edit's side effects: foot sliding and jerk, before and after."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from motionedit.core.body.contacts import plants_of
+from motionedit.core.body.quality import foot_drift, foot_slide_max
+from motionedit.core.trace import Trace, trace_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from motionedit.core.body.center_of_mass import Masses
+    from motionedit.core.body.contacts import Plant
+    from motionedit.core.kinematics import WorldPoses
+    from motionedit.jobs.clip.facts import ClipFacts
+
+
+def feet_of(facts: ClipFacts, blocks: Iterable[WorldPoses], *, masses: Masses | None = None) -> Trace:
+    """Return what `edit_metrics` needs of a motion whose world transforms come in blocks: the tracks are the feet's."""
+    joints = [joint for _, joint in facts.anatomy.foot_points]
+    return trace_of(blocks, joints, frame_time=facts.clip.motion.frame_time, first=facts.first, masses=masses)
+
+
+def edit_metrics(facts: ClipFacts, before: Trace, after: Trace | None) -> dict[str, Any]:
+    """Return the `metrics` of a clip's record.
+
+    Parameters
+    ----------
+    before, after : Trace
+        Of the clip and the edited motion, by `feet_of`; None where that has another timing, so that the input's plants
+        say nothing of its frames.
+    """
+    motion = facts.clip.motion
+    # Joints of the plants are places among the tracks from here on.
+    place = {joint: p for p, (_, joint) in enumerate(facts.anatomy.foot_points)}
+    found = plants_of(before.tracks, facts.anatomy, up=facts.up, first=facts.first, frame_time=motion.frame_time)
+    plants = [replace(plant, joint=place[plant.joint]) for plant in found]
+    metrics: dict[str, Any] = {"before": _of(facts, before, plants)}
+    if after is None:
+        return {**metrics, "after": {"foot_slide_max": None, "jerk_rms": None}, "foot_drift_max": None}
+    drift = foot_drift(before.tracks, after.tracks, plants)
+    metrics |= {"after": _of(facts, after, plants), "foot_drift_max": drift}
+    if before.center is not None and after.center is not None:
+        metrics["com_shift_max"] = float(np.linalg.norm(after.center - before.center, axis=1).max())
+    return metrics
+
+
+def _of(facts: ClipFacts, trace: Trace, plants: list[Plant]) -> dict[str, float]:
+    slide = foot_slide_max(trace.tracks, plants, up=facts.up, frame_time=facts.clip.motion.frame_time)
+    return {"foot_slide_max": slide, "jerk_rms": trace.jerk_rms}

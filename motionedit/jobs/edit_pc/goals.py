@@ -1,0 +1,154 @@
+"""From the goals of an edit-pc spec to requests in a clip, and from what was solved to the goals of a report."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from motionedit.core import rotations as rot
+from motionedit.core.coefficients.edit import GoalRequest
+from motionedit.core.kinematics import effector_positions
+from motionedit.dataclass import dataclass
+from motionedit.jobs.clip import resolve
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from motionedit.core.arrays import FloatArray
+    from motionedit.core.kinematics import Effector, WorldPoses
+    from motionedit.jobs.clip.facts import ClipFacts
+    from motionedit.jobs.clip.resolve import Place
+    from motionedit.spec.edit_pc import PcGoal
+
+# Where a goal gives no tolerance: metres at leg length 0.85 m, and degrees.
+DEFAULT_TOLERANCE = 1e-3
+DEFAULT_ANGLE_TOLERANCE = 0.1
+
+
+@dataclass(frozen=True, eq=False)
+class ClipGoal:
+    """A goal in one clip: the request, and what counts as met (clip units, degrees; None: not counted)."""
+
+    spec: PcGoal
+    name: str
+    request: GoalRequest
+    tolerance: float | None
+    angle_tolerance: float | None
+
+
+def clip_goal(
+    goal: PcGoal,
+    facts: ClipFacts,
+    place: Place,
+    *,
+    frame: int,
+    poses: WorldPoses,
+    scale: float,
+    least_tolerance: float,
+) -> ClipGoal:
+    """Return a goal in the frames that are edited.
+
+    Parameters
+    ----------
+    frame : int
+        Frame of `poses`.
+    poses : WorldPoses
+        World transforms of the motion that is edited, for shifts.
+    scale : float
+        Metres at leg length 0.85 m per clip unit.
+    least_tolerance : float
+        What the solver itself calls near enough, clip units.
+    """
+    skeleton = facts.clip.motion.skeleton
+    effector = resolve.effector(goal.effector, skeleton, place.at("effector"))
+    base = None
+    if goal.relative_to is not None:
+        base = resolve.joint(goal.relative_to, skeleton, place.at("relative_to"))
+    measure, position, rotation = np.eye(3), None, None
+    if goal.position is not None:
+        position = np.array(goal.position)
+    if goal.orientation is not None:
+        rotation = resolve.orientation(goal.orientation)
+    if goal.frame == "heading":
+        heading = facts.heading_frame()
+        measure = heading.axes
+        if position is not None:
+            position = measure @ heading.world_points(position)
+        if rotation is not None:
+            rotation = rot.multiply(heading.rotation, rotation)
+    if goal.shift is not None:
+        position = seen(poses, frame, effector, measure=measure, base=base)[0] + np.array(goal.shift)
+    request = GoalRequest(frame, effector, position, rotation, measure, goal.axes, goal.weight, base)
+    tolerance = goal.met_within
+    counted = not tolerance.off
+    default = max(DEFAULT_TOLERANCE / scale, least_tolerance)
+    return ClipGoal(
+        spec=goal,
+        name=str(goal.name),
+        request=request,
+        tolerance=(tolerance.position if tolerance.position is not None else default) if counted else None,
+        angle_tolerance=(tolerance.angle if tolerance.angle is not None else DEFAULT_ANGLE_TOLERANCE)
+        if counted
+        else None,
+    )
+
+
+def seen(
+    poses: WorldPoses, frame: int, effector: Effector, *, measure: FloatArray, base: int | None
+) -> tuple[FloatArray, FloatArray]:
+    """Return an effector's position (3,) along the measuring axes, and its rotation (4,), as a goal states them."""
+    one = type(poses)(poses.positions[frame : frame + 1], poses.rotations[frame : frame + 1])
+    position, rotation = effector_positions(one, effector)[0], one.rotations[0, effector.joint]
+    if base is not None:
+        inverse = rot.conjugate(one.rotations[0, base])
+        return rot.rotate(inverse, position - one.positions[0, base]), rot.multiply(inverse, rotation)
+    return measure @ position, rotation
+
+
+def goal_record(goal: ClipGoal, poses: WorldPoses) -> dict[str, Any]:
+    """Return a goal's entry in the report, measured by forward kinematics on the edited motion."""
+    request = goal.request
+    position, rotation = seen(poses, request.frame, request.effector, measure=request.measure, base=request.relative_to)
+    error = angle = None
+    if request.position is not None:
+        axes = list(request.axes)
+        error = float(np.linalg.norm((request.position - position)[axes]))
+    if request.rotation is not None:
+        angle = float(np.degrees(rot.angle_between(rotation, request.rotation)))
+    return {
+        "name": goal.name,
+        "priority": goal.spec.priority,
+        "error_max": error,
+        "error_rms": error,
+        "error_angle_max": angle,
+        "frame": request.frame,
+        "tolerance": goal.tolerance if error is not None else None,
+        "tolerance_angle": goal.angle_tolerance if angle is not None else None,
+        "status": "ok",
+        "gave_way_to": [],
+    }
+
+
+def goal_place(goal: ClipGoal, poses: WorldPoses) -> FloatArray | None:
+    """Return where a goal wants its effector in the world, shape (3,); None where it asks for no position.
+
+    Along axes that the goal leaves free it is where the effector is in `poses`.
+    """
+    request = goal.request
+    if request.position is None:
+        return None
+    frame, base = request.frame, request.relative_to
+    wanted, _ = seen(poses, frame, request.effector, measure=request.measure, base=base)
+    axes = list(request.axes)
+    wanted[axes] = request.position[axes]
+    if base is None:
+        return wanted @ request.measure
+    place: FloatArray = poses.positions[frame, base] + rot.rotate(poses.rotations[frame, base], wanted)
+    return place
+
+
+def is_met(record: Mapping[str, Any]) -> bool:
+    """Return whether a goal's record is within its tolerances."""
+    pairs = ((record["error_max"], record["tolerance"]), (record["error_angle_max"], record["tolerance_angle"]))
+    return all(error is None or limit is None or error <= limit for error, limit in pairs)

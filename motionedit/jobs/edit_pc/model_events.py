@@ -1,0 +1,112 @@
+"""The frames of a model's events in a clip: by the edit's spec, by the database, or by the model's own rules."""
+
+from __future__ import annotations
+
+from pathlib import PurePosixPath
+from typing import TYPE_CHECKING, Any
+
+from motionedit.dataclass import dataclass
+from motionedit.errors import ClipError, MotionEditError
+from motionedit.jobs.clip import resolve
+from motionedit.jobs.clip.events import event_frames
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from motionedit.core.pca.model import MotionModel
+    from motionedit.jobs.batch.run import ClipTask
+    from motionedit.jobs.clip.facts import ClipFacts
+    from motionedit.spec.edit_pc import EditPcSpec
+    from motionedit.spec.load import LoadedSpec
+
+
+def refuse_unknown_events(loaded: LoadedSpec[EditPcSpec], model: MotionModel) -> None:
+    """Raise a SpecError where a goal's time names an event that neither the spec nor the model has."""
+    known = sorted({*loaded.model.events, *(name for name, _ in model.timeline.events)})
+    for i, goal in enumerate(loaded.model.goals):
+        if goal.at.event is not None and goal.at.event not in known:
+            listed = ", ".join(f"'{name}'" for name in known) or "none"
+            message = f"no event '{goal.at.event}' in this spec or in the model; there are: {listed}"
+            raise loaded.error(("goals", i, "at"), message)
+
+
+def events_for_model(
+    loaded: LoadedSpec[EditPcSpec],
+    model: MotionModel,
+    facts: ClipFacts,
+    task: ClipTask,
+    *,
+    model_label: str,
+    others: Sequence[str],
+) -> dict[str, float]:
+    """Return the frames of all events of the spec and the model in a clip.
+
+    The edit's spec comes first; then, for a clip of the database (same stem and content), the model; then the
+    model's rule.
+
+    Raises
+    ------
+    ClipError
+        An event of the model has no frame in this clip.
+    SpecError
+        As `event_frames`.
+    """
+    explicit = resolve.explicit_events(loaded, task.relative, others=others)
+    place = resolve.Place(loaded, ("events",), task.label)
+    known = {name: float(frame) for name, frame in explicit.items()}
+    rules = dict(loaded.model.events)
+    database = _database_events(model, facts, task)
+    for name in dict(model.timeline.events):
+        given = name in known or (name in rules and rules[name].detect is not None)
+        if not given and name in database:
+            known[name] = database[name]
+    frames = event_frames(rules, facts, place, known=known)
+    missing = [name for name, _ in model.timeline.events if name not in frames]
+    if missing:
+        own = resolve.Place(_ModelRules(model_label), ("events",), task.label)
+        frames = event_frames(_model_rules(model, missing), facts, own, known=frames)
+    for name, _ in model.timeline.events:
+        if name not in frames:
+            message = (
+                f"no frame for the model's event '{name}'; give it in the spec, as events: "
+                f"{{{name}: {{frames: {{{PurePosixPath(task.relative).stem}: 94}}}}}}"
+            )
+            raise ClipError(message, file=task.label)
+    return frames
+
+
+def _database_events(model: MotionModel, facts: ClipFacts, task: ClipTask) -> dict[str, float]:
+    stem = PurePosixPath(task.relative).stem
+    for clip in model.clips:
+        if PurePosixPath(clip.name).name == stem and clip.digest == facts.clip.sha256:
+            return dict(clip.events)
+    return {}
+
+
+def _model_rules(model: MotionModel, names: Sequence[str]) -> dict[str, Any]:
+    """Return the model's rules as the spec of normalize would hold them."""
+    from motionedit.spec.events import EventSpec
+    from motionedit.spec.model import Context
+
+    rules = model.rules["events"]
+    context = Context()
+    return {
+        name: EventSpec.model_validate({"detect": rules[name]}, context=context) for name in names if rules.get(name)
+    }
+
+
+@dataclass(frozen=True)
+class _ModelRules:
+    """Rules that a model has kept: their errors name the model's file."""
+
+    label: str
+
+    def has(self, keys: Sequence[str | int]) -> bool:
+        """Return that no line is known for any key."""
+        del keys
+        return False
+
+    def error(self, keys: Sequence[str | int], message: str) -> MotionEditError:
+        """Return an error of the clip, which the rule does not fit."""
+        key = ".".join(map(str, keys))
+        return ClipError(message, file=self.label, key=key)

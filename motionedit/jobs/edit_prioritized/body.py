@@ -1,0 +1,130 @@
+"""What an edit by priorities knows of a clip's body: its size, masses and hinges, as the spec has them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core.arrays import frozen
+from motionedit.core.body.center_of_mass import Masses, find_masses
+from motionedit.core.body.hinges import OFF_AXIS_ENERGY, Hinge, find_hinges, hinge_of
+from motionedit.core.motion import Motion, scaled
+from motionedit.core.priorities.edit import Body
+from motionedit.core.units import STANDARD_LEG
+from motionedit.dataclass import dataclass
+from motionedit.errors import ClipError
+from motionedit.jobs.clip import resolve
+
+if TYPE_CHECKING:
+    from motionedit.core.skeleton import Skeleton
+    from motionedit.jobs.clip.facts import ClipFacts
+    from motionedit.jobs.clip.faults import Faults
+    from motionedit.spec.edit_prioritized import EditPrioritizedSpec
+    from motionedit.spec.load import LoadedSpec
+
+# Metres between which a leg is a person's, small or large, or a creature's: else the unit is a slip.
+_SHORTEST_LEG, _LONGEST_LEG = 0.3, 1.5
+# What the hinge of a joint with one rotation channel may turn: all there is.
+_ANY_ANGLE = (-2.0 * np.pi, 2.0 * np.pi)
+
+
+@dataclass(frozen=True, eq=False)
+class SizedClip:
+    """A clip as it is solved: its motion in normalised metres, its body, and what the user should know of them.
+
+    `scale` is normalised metres (leg length 0.85 m) per clip unit; `masses` are in clip units.
+    """
+
+    facts: ClipFacts
+    motion: Motion
+    body: Body
+    masses: Masses
+    scale: float
+    warnings: tuple[str, ...]
+
+
+def sized_clip(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults: Faults) -> SizedClip:
+    """Return a clip ready to be solved; joints that the spec names and the clip lacks go to `faults`.
+
+    Raises
+    ------
+    ClipError
+        The skeleton has no length.
+    """
+    spec, anatomy, clip = loaded.model, facts.anatomy, facts.clip
+    if anatomy.leg_length <= 0.0:
+        raise ClipError("every OFFSET is 0; a body without length cannot be edited", file=clip.label)
+    scale = STANDARD_LEG / anatomy.leg_length
+    warnings = list(anatomy.warnings)
+    if spec.unit is not None and not _SHORTEST_LEG <= anatomy.leg_length * spec.unit.metres <= _LONGEST_LEG:
+        leg = anatomy.leg_length * spec.unit.metres
+        warnings.append(f"a leg is {leg:.3g} m long where the unit is {spec.unit.name}: is that the clip's unit?")
+    masses = _masses(loaded, facts, faults)
+    if any(each.type == "com" for each in spec.constraints):
+        warnings += masses.warnings
+    if not anatomy.foot_points and any(c.type == "com" and c.support is None for c in spec.constraints):
+        warnings.append("no feet found for the support of 'com': the center of mass keeps to the input's own path")
+    hinges = _hinges(loaded, facts, faults, warnings)
+    motion = scaled(clip.motion, scale)
+    sized = replace(masses, skeleton=motion.skeleton, points=frozen(masses.points * scale))
+    body = Body(sized, tuple(hinges), facts.travel, facts.first)
+    return SizedClip(facts, motion, body, masses, scale, tuple(warnings))
+
+
+def _masses(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults: Faults) -> Masses:
+    skeleton, place = facts.clip.motion.skeleton, resolve.Place(loaded, ("masses",), facts.clip.label)
+    given: dict[int, float] = {}
+    for name, kilograms in loaded.model.masses.items():
+        index = faults.get(lambda name=name: resolve.joint(name, skeleton, place.at(name)), otherwise=None)  # type: ignore[misc]
+        if index is not None:
+            given[index] = kilograms
+    try:
+        return find_masses(skeleton, facts.anatomy, given=given or None)
+    except ValueError as error:
+        raise place.error(str(error)) from None
+
+
+def _hinges(
+    loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults: Faults, warnings: list[str]
+) -> list[Hinge]:
+    """Return the hinges that the spec asks for, and the joints that have one rotation channel."""
+    motion, asked = facts.clip.motion, loaded.model.hinges
+    by_channel = _one_channel(motion.skeleton)
+    found: dict[int, Hinge] = {}
+    if asked == "auto":
+        found = {hinge.joint: hinge for hinge in find_hinges(motion, facts.anatomy, first=facts.first)}
+    elif not isinstance(asked, str):
+        place = resolve.Place(loaded, ("hinges",), facts.clip.label)
+        joints = [
+            faults.get(lambda i=i, name=name: resolve.joint(name, motion.skeleton, place.at(i)), otherwise=None)  # type: ignore[misc]
+            for i, name in enumerate(asked)
+        ]
+        for joint in joints:
+            if joint is not None and joint not in by_channel:
+                hinge = _asked_hinge(motion, joint, facts.first, warnings)
+                found.update({} if hinge is None else {joint: hinge})
+    found.update(by_channel)
+    return [found[joint] for joint in sorted(found)]
+
+
+def _asked_hinge(motion: Motion, joint: int, first: int, warnings: list[str]) -> Hinge | None:
+    hinge, name = hinge_of(motion, joint, first=first), motion.skeleton.names[joint]
+    if hinge is None:
+        warnings.append(f"hinges: {name} does not bend in the input, so it has no axis to keep to; it stays free")
+    elif hinge.off_axis >= OFF_AXIS_ENERGY:
+        warnings.append(
+            f"hinges: {name} is no hinge in the input ({100.0 * hinge.off_axis:.2g} % of its turning is off its main "
+            "axis); what the edit adds keeps to that axis"
+        )
+    return hinge
+
+
+def _one_channel(skeleton: Skeleton) -> dict[int, Hinge]:
+    """Return the joints whose file has one rotation channel: they cannot turn about anything else."""
+    found = {}
+    for joint, axes in enumerate(skeleton.rotation_axes):
+        if len(axes) == 1:
+            found[joint] = Hinge(joint, frozen(np.eye(3)[axes[0]]), _ANY_ANGLE, 0.0)
+    return found

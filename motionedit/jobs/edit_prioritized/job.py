@@ -1,0 +1,214 @@
+"""The job behind `motionedit edit-prioritized`: constraints in strict layers, every frame deformed ([PRIO])."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from motionedit.core.bvh import edited_pieces, unedited_bytes
+from motionedit.core.compiled import solver_name
+from motionedit.core.motion import Motion
+from motionedit.core.priorities.edit import (
+    LayeredSettings,
+    PaperFilter,
+    Passes,
+    PrioritizedEdit,
+    RecruitingError,
+    edit_by_priorities,
+)
+from motionedit.core.trace import blocks_of, forward_blocks, frame_blocks
+from motionedit.dataclass import dataclass
+from motionedit.jobs.batch.pool import threads_within
+from motionedit.jobs.batch.run import Outcome, plan, run_batch
+from motionedit.jobs.clip import resolve
+from motionedit.jobs.clip.events import event_frames
+from motionedit.jobs.clip.facts import facts_of
+from motionedit.jobs.clip.faults import Faults
+from motionedit.jobs.clip.metrics import edit_metrics, feet_of
+from motionedit.jobs.edit_prioritized.body import sized_clip
+from motionedit.jobs.edit_prioritized.constraints import clip_constraints
+from motionedit.jobs.edit_prioritized.record import edit_record
+from motionedit.jobs.edit_prioritized.recruits import breach_error, breach_warnings, layer_lines
+from motionedit.jobs.preview.with_page import WithPage
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from pathlib import Path
+
+    from motionedit.core.arrays import BoolArray
+    from motionedit.core.bvh import Clip
+    from motionedit.core.priorities.constraints import Constraint
+    from motionedit.core.trace import Trace
+    from motionedit.jobs.batch.run import BatchResult, ClipTask, RunOptions
+    from motionedit.jobs.edit_prioritized.body import SizedClip
+    from motionedit.jobs.edit_prioritized.constraints import ClipConstraint
+    from motionedit.spec.edit_prioritized import EditPrioritizedSpec
+    from motionedit.spec.load import LoadedSpec
+
+# Kinds of constraints that keep an effector in place, and how far (metres at leg length 0.85 m) is a visible way.
+_HOLDS = frozenset({"position", "pose"})
+_LOOSE = 0.01
+
+
+def run(
+    loaded: LoadedSpec[EditPrioritizedSpec], clips: Sequence[Path], output: str, options: RunOptions
+) -> BatchResult:
+    """Edit clips by constraints in priority layers, and write them.
+
+    Raises
+    ------
+    UsageError
+        As `plan`.
+    """
+    tasks = plan(clips, output, options=options, depends=loaded.files)
+    others = tuple(task.relative for task in tasks)
+    work = EditByPriorities(loaded, others, threads_within(len(tasks), options), options.verify)
+    return run_batch(tasks, WithPage(work, loaded.data) if options.preview and not options.dry_run else work, options)
+
+
+@dataclass(frozen=True)
+class EditByPriorities:
+    """The work on one clip."""
+
+    loaded: LoadedSpec[EditPrioritizedSpec]
+    others: tuple[str, ...]
+    threads: int = 1
+    verify: bool = False
+
+    def __call__(self, clip: Clip, task: ClipTask) -> Outcome:
+        """Return the edited clip, and how near each constraint came."""
+        sized, constraints = self.resolved(clip, task)
+        if not constraints:
+            feet = feet_of(sized.facts, blocks_of(sized.facts.poses), masses=sized.masses)
+            record = {**self._about(sized, feet, feet), "constraints": []}
+            return Outcome(
+                unedited_bytes(clip), record, warnings=sized.warnings, details=("no constraints: the same bytes",)
+            )
+        settings = self.settings(clip)
+        before = feet_of(sized.facts, blocks_of(sized.facts.poses), masses=sized.masses)
+        # What is read off the input has been read: an edit of a long clip needs the room.
+        sized.facts.forget_poses()
+        try:
+            edit = edit_by_priorities(sized.motion, [c.constraint for c in constraints], sized.body, settings)
+        except RecruitingError as error:
+            asked = [c.constraint for c in constraints]
+            raise breach_error(self.loaded, error.breach, asked, sized.facts) from None
+        return self._outcome(sized, constraints, edit, settings, before=before)
+
+    def resolved(self, clip: Clip, task: ClipTask) -> tuple[SizedClip, list[ClipConstraint]]:
+        """Return a clip in normalised metres, and the spec's constraints in it.
+
+        Raises
+        ------
+        MotionEditErrors
+            Everything that the spec names and the clip lacks.
+        """
+        faults = Faults()
+        sized = sized_clip(self.loaded, facts_of(clip, up=self.loaded.model.up), faults)
+        constraints = self._constraints(sized, task, faults)
+        faults.raise_all(f"what the spec names and {task.label} lacks")
+        return sized, constraints
+
+    def _constraints(self, sized: SizedClip, task: ClipTask, faults: Faults) -> list[ClipConstraint]:
+        spec = self.loaded.model
+        place = resolve.Place(self.loaded, ("events",), task.label)
+        none: dict[str, float] = {}
+
+        def frames() -> dict[str, float]:
+            explicit = resolve.explicit_events(self.loaded, task.relative, others=self.others)
+            known = {name: float(frame) for name, frame in explicit.items()}
+            return event_frames(spec.events, sized.facts, place, known=known)
+
+        events = faults.get(frames, otherwise=none)
+        return clip_constraints(self.loaded, sized.facts, events, scale=sized.scale, faults=faults)
+
+    def settings(self, clip: Clip) -> LayeredSettings:
+        """Return how the spec wants a clip solved."""
+        spec = self.loaded.model
+        smoothing = spec.smoothing
+        return LayeredSettings(
+            smoothing=PaperFilter(smoothing.pass_count, smoothing.cutoff)
+            if smoothing.method == "paper"
+            else Passes(smoothing.pass_count, smoothing.sigma.in_frames(clip.motion.frame_time)),
+            curve=spec.curve,
+            attraction=spec.attraction,
+            max_iterations=spec.solver.max_iterations,
+            recruiting_rule=spec.recruiting_rule,
+            threads=self.threads,
+        )
+
+    def _outcome(
+        self,
+        sized: SizedClip,
+        constraints: Sequence[ClipConstraint],
+        edit: PrioritizedEdit,
+        settings: LayeredSettings,
+        *,
+        before: Trace,
+    ) -> Outcome:
+        facts, spec = sized.facts, self.loaded.model
+        clip = facts.clip
+        changed = bool(edit.touched.any() or edit.moved.any())
+        after = before
+        if changed:
+            parts = (_in_clip_units(edit, sized, block) for block in frame_blocks(len(clip.motion)))
+            after = feet_of(facts, forward_blocks(parts), masses=sized.masses)
+        result = edit_record(edit, constraints, facts, scale=sized.scale, settings=settings)
+        about = {
+            **self._about(sized, before, after),
+            "solver": solver_name(),
+            **result.record,
+            "passes": spec.smoothing.pass_count,
+        }
+        asked = [each.constraint for each in constraints]
+        breaches = breach_warnings(edit.breaches, asked, facts, rule=spec.recruiting_rule)
+        return Outcome(
+            _content(clip, edit, sized) if changed else unedited_bytes(clip),
+            {"message": result.message, **about},
+            result.status,
+            (*sized.warnings, *breaches, *_loose_feet(sized, asked, about["metrics"]), *result.warnings),
+            motion=_in_clip_units(edit, sized, slice(None)) if changed and self.verify else None,
+            details=(*layer_lines(asked, edit.recruits, sized.body.hinges, facts), *breaches),
+        )
+
+    def _about(self, sized: SizedClip, before: Trace, after: Trace) -> dict[str, Any]:
+        unit = self.loaded.model.unit
+        metrics = edit_metrics(sized.facts, before, after)
+        return {"unit": None if unit is None else unit.name, "metrics": metrics}
+
+
+def _loose_feet(sized: SizedClip, constraints: Sequence[Constraint], metrics: dict[str, Any]) -> list[str]:
+    """Return a warning where planted feet were dragged along and no constraint is about them: it is easily forgotten.
+
+    With the root recruited and nothing to hold it, the cheapest way to raise a hand is to raise the whole body.
+    """
+    facts, drift = sized.facts, metrics["foot_drift_max"]
+    ankles = {leg.ankle for leg in facts.anatomy.legs or ()}
+    skeleton = facts.clip.motion.skeleton
+    held = any(ankles & set(map(int, skeleton.chain(c.effector.joint))) for c in constraints if c.kind in _HOLDS)
+    if held or drift is None or drift * sized.scale < _LOOSE:
+        return []
+    return [f"planted feet move by up to {drift:.3g}, and no constraint holds them"]
+
+
+def _in_clip_units(edit: PrioritizedEdit, sized: SizedClip, block: slice) -> Motion:
+    """Return a block of the edited motion in clip units: what was not touched is the input's own, bit for bit."""
+    before, after = sized.facts.clip.motion, edit.motion
+    rotations = np.where(edit.touched[block, :, None], after.rotations[block], before.rotations[block])
+    moved = _moved(edit, sized)[block, :, None]
+    translations = np.where(moved, after.translations[block] / sized.scale, before.translations[block])
+    return Motion(before.skeleton, rotations, translations, before.frame_time)
+
+
+def _moved(edit: PrioritizedEdit, sized: SizedClip) -> BoolArray:
+    """Return where joints with position channels are moved, shape (F, P): the one that carries the travel alone."""
+    moved: BoolArray = edit.moved[:, None] & (edit.motion.skeleton.translated == sized.facts.travel)
+    return moved
+
+
+def _content(clip: Clip, edit: PrioritizedEdit, sized: SizedClip) -> Iterator[bytes | memoryview]:
+    # Only what was touched is read of it, so nothing needs to be put back.
+    translations = edit.motion.translations / sized.scale
+    motion = Motion(clip.motion.skeleton, edit.motion.rotations, translations, clip.motion.frame_time)
+    return edited_pieces(clip, motion, touched=edit.touched, moved=_moved(edit, sized))

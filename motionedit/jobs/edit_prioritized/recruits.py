@@ -1,0 +1,102 @@
+"""What is said of recruiting: breaches of its rule, and for --dry-run the layers in the order they are solved."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from motionedit.core.priorities.constraints import order_of_layers
+from motionedit.core.priorities.recruiting import Recruits
+from motionedit.jobs.clip import resolve
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from motionedit.core.body.hinges import Hinge
+    from motionedit.core.priorities.constraints import Constraint
+    from motionedit.core.priorities.recruiting import Breach
+    from motionedit.core.skeleton import Skeleton
+    from motionedit.errors import MotionEditError
+    from motionedit.jobs.clip.facts import ClipFacts
+    from motionedit.spec.edit_prioritized import EditPrioritizedSpec
+    from motionedit.spec.load import LoadedSpec
+
+
+def breach_error(
+    loaded: LoadedSpec[EditPrioritizedSpec], breach: Breach, constraints: Sequence[Constraint], facts: ClipFacts
+) -> MotionEditError:
+    """Return the error of a breach where the spec wants none, at the recruiting of the higher constraint."""
+    keys = loaded.model.constraints[breach.higher].keys
+    place = resolve.recruit_place(resolve.Place(loaded, keys, facts.clip.label))
+    higher, lower = (constraints[i].name for i in (breach.higher, breach.lower))
+    names = ", ".join(recruited_names(Recruits(breach.joints, breach.root), facts))
+    return place.error(
+        f"in {place.clip}: '{higher}' does not recruit {names}, by which '{lower}' moves it; "
+        "recruit them, or set recruiting_rule: expand"
+    )
+
+
+def breach_warnings(
+    breaches: Sequence[Breach], constraints: Sequence[Constraint], facts: ClipFacts, *, rule: str
+) -> list[str]:
+    """Return a line for each constraint that moved others against the recruiting rule, and what it moved them by."""
+    pairs: dict[tuple[int, int], Recruits] = {}
+    for breach in breaches:
+        known = pairs.get((breach.higher, breach.lower), Recruits(frozenset(), root=False))
+        pairs[breach.higher, breach.lower] = Recruits(known.joints | breach.joints, known.root or breach.root)
+    moved: dict[tuple[int, Recruits], list[str]] = {}
+    for (higher, lower), by in pairs.items():
+        moved.setdefault((lower, by), []).append(constraints[higher].name)
+    lines = []
+    for (lower, by), highers in moved.items():
+        mover, joints, names = constraints[lower].name, ", ".join(recruited_names(by, facts)), ", ".join(highers)
+        if rule == "expand":
+            lines.append(f"recruiting_rule expand adds {joints} to {names} because {mover} moves them")
+        else:
+            lines.append(f"{mover} moves {names} by {joints}, not recruited there: its priority may not hold")
+    return lines
+
+
+def layer_lines(
+    constraints: Sequence[Constraint], recruits: Sequence[Recruits], hinges: Sequence[Hinge], facts: ClipFacts
+) -> list[str]:
+    """Return the layers in solving order: each constraint, its interval, and what it may move."""
+    lines = []
+    for number, priority in enumerate(order_of_layers([c.priority for c in constraints]), start=1):
+        lines.append(f"layer {number}, priority {priority}")
+        for constraint, own in zip(constraints, recruits, strict=True):
+            if constraint.priority == priority:
+                lines.append(f"  {_constraint_line(constraint, own, facts)}")
+    names = facts.clip.motion.skeleton.names
+    lines.append(f"hinges: {', '.join(names[hinge.joint] for hinge in hinges) or 'none'}")
+    return lines
+
+
+def _constraint_line(constraint: Constraint, recruits: Recruits, facts: ClipFacts) -> str:
+    skeleton = facts.clip.motion.skeleton
+    first, last = constraint.active(len(facts.clip.motion))
+    parts = [f"{constraint.name}: {_what(constraint, skeleton)}, frames {first} to {last}"]
+    if constraint.points:
+        parts.append(", ".join(point.text for point in constraint.points))
+    if constraint.weight != 1.0:
+        parts.append(f"weight {constraint.weight:g}")
+    moved = ", ".join(recruited_names(recruits, facts))
+    return f"{'; '.join(parts)}; recruits {moved or 'nothing'}"
+
+
+def _what(constraint: Constraint, skeleton: Skeleton) -> str:
+    names = skeleton.names
+    if constraint.kind == "com":
+        on = ", ".join(names[j] for j in constraint.support)
+        return f"center of mass{f' over {on}' if on else ''}"
+    if constraint.kind == "posture":
+        return f"posture of {', '.join(names[j] for j in constraint.joints)}"
+    base = "" if constraint.base is None else f" relative to {names[constraint.base]}"
+    target = "" if constraint.target is None else f" at {names[constraint.target]}"
+    return f"{constraint.kind} of {names[constraint.effector.joint]}{base}{target}"
+
+
+def recruited_names(recruits: Recruits, facts: ClipFacts) -> list[str]:
+    """Return joints in the file's order, and the root's translation as a spec would recruit it."""
+    names = facts.clip.motion.skeleton.names
+    listed = [names[j] for j in sorted(recruits.joints)]
+    return [*listed, f"{names[facts.travel]}.position"] if recruits.root else listed

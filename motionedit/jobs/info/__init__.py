@@ -1,0 +1,1 @@
+"""What is in a clip, as a record and as text."""

@@ -1,0 +1,206 @@
+"""What is in a clip: the record that `motionedit info` prints as text and writes as JSON."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from typing import TYPE_CHECKING, Any
+
+from motionedit.core.body import ground
+from motionedit.core.body.contacts import find_plants
+from motionedit.core.body.hinges import find_hinges
+from motionedit.core.body.quality import find_defects, foot_slide_max, jerk_rms
+from motionedit.core.units import STANDARD_LEG
+from motionedit.dataclass import dataclass
+from motionedit.errors import ClipError, MotionEditError, MotionEditErrors
+from motionedit.jobs.batch.plan import find_clips
+from motionedit.jobs.batch.run import read_task
+from motionedit.jobs.clip.facts import ClipFacts, facts_of
+from motionedit.jobs.info.poses import Question, ask, poses_at
+from motionedit.jobs.info.text import describe
+from motionedit.spec.values import UNITS
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from motionedit.core.body.anatomy import Anatomy
+    from motionedit.core.body.contacts import Plant
+    from motionedit.core.skeleton import Skeleton
+
+# A grown human's leg (m); outside of it the unit is a guess, and that is said.
+_SHORTEST_LEG, _LONGEST_LEG = 0.6, 1.15
+
+
+@dataclass(frozen=True)
+class InfoReport:
+    """What was found: `text` for people, `records` for the JSON report, `failures` of clips that cannot be read."""
+
+    text: str
+    records: list[dict[str, Any]]
+    failures: list[MotionEditError]
+
+
+def run(
+    clips: Sequence[Path], *, at: Sequence[str] = (), joints: Sequence[str] = (), contacts: bool = False, lenient: bool
+) -> InfoReport:
+    """Describe clips one after the other; a clip that cannot be read is a failure, the others go on.
+
+    Parameters
+    ----------
+    at, joints : sequences of str
+        Times and effectors, as in a spec: each effector's pose is told at each time.
+    contacts : bool
+        Whether to list the plants of the feet.
+
+    Raises
+    ------
+    UsageError
+        A time or effector that cannot be read; no clip at all.
+    MotionEditErrors
+        Times or effectors that no clip has.
+    """
+    question = ask(at, joints)
+    texts, records = [], []
+    failures: list[MotionEditError] = []
+    lacking: list[MotionEditError] = []
+    for task in find_clips(clips):
+        try:
+            facts = facts_of(read_task(task, lenient=lenient))
+        except ClipError as error:
+            failures.append(error)
+            records.append({"clip": task.label, "status": "failed", "message": str(error)})
+            continue
+        record, errors = _record(facts, question=question, contacts=contacts)
+        lacking += errors
+        failures += errors
+        records.append(record)
+        texts.append(describe(record))
+    if lacking and all(record["status"] == "failed" for record in records):
+        raise MotionEditErrors("no clip has what is asked for", failures)
+    return InfoReport("\n".join(texts), records, failures)
+
+
+def _record(facts: ClipFacts, *, question: Question, contacts: bool) -> tuple[dict[str, Any], list[MotionEditError]]:
+    """Return a clip's entry of the report, and what was asked for that it does not have."""
+    motion, anatomy = facts.clip.motion, facts.anatomy
+    skeleton = motion.skeleton
+    plants = find_plants(motion, facts.poses, anatomy, up=facts.up, first=facts.first)
+    poses, errors = poses_at(facts, question)
+    record: dict[str, Any] = {
+        "clip": facts.clip.label,
+        "status": "failed" if errors else "ok",
+        "message": "; ".join(map(str, errors)) or None,
+        "frames": len(motion),
+        "frame_rate": motion.frame_rate,
+        "frame_time": motion.frame_time,
+        "duration": motion.duration,
+        "up": ground.axis_name(facts.up),
+        "heading": facts.heading_frame().degrees,
+        "rest_pose_frames": facts.first,
+        "travel_joint": skeleton.names[facts.travel],
+        "leg_length": anatomy.leg_length,
+        "height": anatomy.height,
+        "unit": likely_unit(anatomy.leg_length),
+        "anatomy": _anatomy(skeleton, anatomy),
+        "joints": _joints(skeleton),
+        "channels": skeleton.channel_count,
+        "hinges": _hinges(facts),
+        "defects": _defects(facts),
+        "metrics": _metrics(facts, plants),
+        "warnings": [*facts.clip.warnings, *anatomy.warnings, *_repeated_names(skeleton)],
+    }
+    if contacts:
+        record["contacts"] = _contacts(facts, plants)
+    if question:
+        record["poses"] = poses
+    return record, errors
+
+
+def likely_unit(leg_length: float) -> dict[str, Any] | None:
+    """Return the unit that makes a leg nearest 0.85 m, by ratio; None where there is no length.
+
+    Its `name`, the `leg` in metres, and whether that is `likely`: a human's.
+    """
+    if leg_length <= 0.0:
+        return None
+    name = min(UNITS, key=lambda unit: abs(math.log(leg_length * UNITS[unit] / STANDARD_LEG)))
+    leg = leg_length * UNITS[name]
+    return {"name": name, "leg": leg, "likely": _SHORTEST_LEG <= leg <= _LONGEST_LEG}
+
+
+def _anatomy(skeleton: Skeleton, anatomy: Anatomy) -> dict[str, Any]:
+    def named(joint: int | None) -> str | None:
+        return None if joint is None else skeleton.names[joint]
+
+    found: dict[str, Any] = {"head": named(anatomy.head)}
+    for kind, limbs in (("leg", anatomy.legs), ("arm", anatomy.arms)):
+        for side, limb in zip(("left", "right"), limbs or (None, None), strict=True):
+            found[f"{side}_{kind}"] = limb and {part: named(joint) for part, joint in vars(limb).items()}
+    return found
+
+
+def _joints(skeleton: Skeleton) -> list[dict[str, Any]]:
+    return [
+        {
+            "name": name,
+            "parent": None if parent < 0 else skeleton.names[parent],
+            "depth": len(skeleton.chain(j)) - 1,
+            "channels": list(skeleton.channels[j]),
+            "offset": skeleton.offsets[j],
+            "end_sites": [site.offset for site in skeleton.end_sites if site.joint == j],
+        }
+        for j, (name, parent) in enumerate(zip(skeleton.names, skeleton.parents, strict=True))
+    ]
+
+
+def _hinges(facts: ClipFacts) -> list[dict[str, Any]]:
+    motion = facts.clip.motion
+    return [
+        {
+            "joint": motion.skeleton.names[hinge.joint],
+            "axis": hinge.axis,
+            "limits": [math.degrees(limit) for limit in hinge.limits],
+        }
+        for hinge in find_hinges(motion, facts.anatomy, first=facts.first)
+    ]
+
+
+def _defects(facts: ClipFacts) -> list[dict[str, Any]]:
+    motion = facts.clip.motion
+    return [
+        {
+            "joint": motion.skeleton.names[defect.joint],
+            "frames": list(defect.frames),
+            "frame": defect.worst,
+            "angle": math.degrees(defect.angle),
+            "flips": defect.flips,
+        }
+        for defect in find_defects(motion, first=facts.first)
+    ]
+
+
+def _metrics(facts: ClipFacts, plants: Sequence[Plant]) -> dict[str, float]:
+    motion, positions = facts.clip.motion, facts.poses.positions
+    return {
+        "foot_slide_max": foot_slide_max(positions, plants, up=facts.up, frame_time=motion.frame_time),
+        "jerk_rms": jerk_rms(positions, frame_time=motion.frame_time, first=facts.first),
+    }
+
+
+def _contacts(facts: ClipFacts, plants: Sequence[Plant]) -> list[dict[str, Any]]:
+    motion = facts.clip.motion
+    return [
+        {
+            "foot": plant.foot,
+            "joint": motion.skeleton.names[plant.joint],
+            "frames": [plant.start, plant.stop],
+            "seconds": plant.frames * motion.frame_time,
+        }
+        for plant in plants
+    ]
+
+
+def _repeated_names(skeleton: Skeleton) -> list[str]:
+    counts = Counter(skeleton.names)
+    return [f"{count} joints are called '{name}'" for name, count in counts.items() if count > 1]

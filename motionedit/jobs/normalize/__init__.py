@@ -1,0 +1,1 @@
+"""Clips of one behaviour onto one timeline ([PC] 5)."""

@@ -1,0 +1,130 @@
+"""What normalize takes from each clip before it knows the means, and whether clips belong together."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from motionedit.core.body.ground import axis_name
+from motionedit.core.skeleton_match import match_joints
+from motionedit.dataclass import dataclass
+from motionedit.errors import ClipError, MotionEditError
+from motionedit.jobs.batch.run import read_task
+from motionedit.jobs.clip import resolve
+from motionedit.jobs.clip.events import event_frames
+from motionedit.jobs.clip.facts import facts_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from motionedit.core.skeleton import Skeleton
+    from motionedit.core.timeline.alignment import Alignment
+    from motionedit.jobs.batch.run import ClipTask
+    from motionedit.jobs.clip.facts import ClipFacts, Line
+    from motionedit.spec.load import LoadedSpec
+    from motionedit.spec.normalize import NormalizeSpec
+
+
+@dataclass(frozen=True, eq=False)
+class ClipMeasure:
+    """What the first phase takes from a clip: no frames."""
+
+    label: str
+    clip: str
+    digest: str
+    frames: int
+    frame_time: float
+    first: int
+    events: dict[str, float]
+    skeleton: Skeleton
+    up: str
+    height: float
+    stands: bool
+    alignments: dict[Line, Alignment]
+
+    @property
+    def last(self) -> int:
+        """The last frame."""
+        return self.frames - 1
+
+    @property
+    def duration(self) -> float:
+        """Seconds from the first frame after a rest pose to the last."""
+        return (self.last - self.first) * self.frame_time
+
+
+@dataclass(frozen=True)
+class MeasureClip:
+    """The first phase of normalize, on one clip; `others` are all clips of the run, as event files call them."""
+
+    loaded: LoadedSpec[NormalizeSpec]
+    lenient: bool
+    others: tuple[str, ...]
+
+    def __call__(self, task: ClipTask) -> ClipMeasure:
+        """Return the clip's measure."""
+        spec = self.loaded.model
+        clip = read_task(task, lenient=self.lenient)
+        facts = facts_of(clip, up=spec.up, keep_rest_pose=spec.rest_pose == "keep")
+        if facts.last - facts.first < 1:
+            raise ClipError("has one frame; a motion needs two", file=task.label)
+        events = _events(self.loaded, task, facts, self.others)
+        align = spec.align
+        at = None if spec.align_event is None else events[spec.align_event]
+        alignments: dict[Line, Alignment] = {
+            "hips": facts.alignment("hips", heading=align.heading, position=align.position, at=at),
+            "feet": facts.alignment("feet", heading=align.heading, position=align.position, at=at),
+        }
+        return ClipMeasure(
+            label=task.label,
+            clip=task.relative,
+            digest=clip.sha256,
+            frames=len(clip.motion),
+            frame_time=clip.motion.frame_time,
+            first=facts.first,
+            events=events,
+            skeleton=clip.motion.skeleton,
+            up=axis_name(facts.up),
+            height=facts.anatomy.height,
+            stands=facts.stands(at),
+            alignments=alignments,
+        )
+
+
+def _events(
+    loaded: LoadedSpec[NormalizeSpec],
+    task: ClipTask,
+    facts: ClipFacts,
+    others: Sequence[str],
+) -> dict[str, float]:
+    known = resolve.explicit_events(loaded, task.relative, others=others)
+    place = resolve.Place(loaded, ("events",), task.label)
+    frames = event_frames(loaded.model.events, facts, place, known={name: float(f) for name, f in known.items()})
+    for name in loaded.model.events:
+        if name not in frames:
+            raise place.at(name).error(f"no frame for {task.label}; add it to frames, or give detect")
+    return frames
+
+
+def sound_measures(
+    tasks: Sequence[ClipTask], measured: Sequence[ClipMeasure | MotionEditError]
+) -> tuple[list[ClipMeasure], dict[str, MotionEditError]]:
+    """Return the clips that can be used together, and why the others cannot; the first good clip is the measure."""
+    sound: list[ClipMeasure] = []
+    failures: dict[str, MotionEditError] = {}
+    for task, value in zip(tasks, measured, strict=True):
+        if isinstance(value, MotionEditError):
+            failures[task.label] = value
+            continue
+        try:
+            _check_against(sound[0] if sound else value, value)
+            sound.append(value)
+        except ClipError as error:
+            failures[task.label] = error
+    return sound, failures
+
+
+def _check_against(first: ClipMeasure, other: ClipMeasure) -> None:
+    match_joints(first.skeleton, other.skeleton, height=first.height, label=other.label, against=first.label)
+    if other.up != first.up:
+        message = f"its up axis is {other.up}, that of {first.label} is {first.up}; turn the file, or set up:"
+        raise ClipError(message, file=other.label)

@@ -1,0 +1,32 @@
+"""The page of an edit: what `--preview` has written next to each clip."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from motionedit.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from motionedit.core.bvh import Clip
+    from motionedit.jobs.batch.one_clip import Outcome, Work
+    from motionedit.jobs.batch.plan import ClipTask
+
+
+@dataclass(frozen=True)
+class WithPage:
+    """Another work, whose outcomes get a page; `spec` is the spec with `--set` applied."""
+
+    work: Work
+    spec: Mapping[str, Any]
+
+    def __call__(self, clip: Clip, task: ClipTask) -> Outcome:
+        """Return the work's outcome with the page of the input, the clip written, and what was asked for."""
+        from motionedit.jobs.preview.job import edit_page
+
+        outcome = self.work(clip, task)
+        record = {"status": outcome.status, **outcome.record}
+        return replace(outcome, page=partial(edit_page, clip, task, record, self.spec))

@@ -1,0 +1,323 @@
+import time
+
+import numpy as np
+import pytest
+from human import BONES, CHANNELS, ENDS, SHANK, THIGH, above, skeleton_of, split, standing
+from hypothesis import given
+from hypothesis import strategies as st
+
+from motionedit.core.body.anatomy import find_anatomy
+from motionedit.core.kinematics import forward
+from motionedit.core.skeleton import EndSite, Skeleton
+
+# y up becomes z up, forward becomes -y.
+Z_UP = [[1, 0, 0], [0, 0, -1], [0, 1, 0]]
+MIRROR = np.diag([-1.0, 1.0, 1.0])
+
+
+def names_of(skeleton, joints):
+    return [None if j is None else skeleton.names[j] for j in joints]
+
+
+def legs_of(skeleton, anatomy):
+    return [names_of(skeleton, (leg.thigh, leg.knee, leg.ankle, leg.toe)) for leg in anatomy.legs]
+
+
+def arms_of(skeleton, anatomy):
+    return [names_of(skeleton, (arm.clavicle, arm.shoulder, arm.elbow, arm.wrist)) for arm in anatomy.arms]
+
+
+LEGS = [[side + part for part in ("UpLeg", "Leg", "Foot", "ToeBase")] for side in ("Left", "Right")]
+ARMS = [[side + part for part in ("Shoulder", "Arm", "ForeArm", "Hand")] for side in ("Left", "Right")]
+
+
+def assert_human(skeleton, anatomy):
+    assert legs_of(skeleton, anatomy) == LEGS
+    assert arms_of(skeleton, anatomy) == ARMS
+    assert skeleton.names[anatomy.head] == "Head"
+    assert skeleton.names[anatomy.pelvis] == "Hips"
+    assert skeleton.names[anatomy.chest] == "Spine1"
+    assert anatomy.warnings == ()
+
+
+def test_a_human_has_legs_arms_and_a_head():
+    skeleton = skeleton_of()
+    assert_human(skeleton, find_anatomy(skeleton))
+
+
+def test_leg_length_is_thigh_to_ankle_and_height_the_longest_path_between_ends():
+    anatomy = find_anatomy(skeleton_of())
+    toe = np.hypot(0.06, 0.13) + 0.06
+    leg = np.hypot(0.1, 0.05) + THIGH + SHANK + toe
+    arm = np.hypot(0.05, 0.15) + 0.12 + 0.29 + 0.25 + 0.15
+    assert anatomy.leg_length == pytest.approx(THIGH + SHANK)
+    assert anatomy.height == pytest.approx(leg + 0.3 + arm)
+
+
+def test_lengths_follow_the_unit_of_the_file():
+    anatomy, centimetres = find_anatomy(skeleton_of()), find_anatomy(skeleton_of(scale=100.0))
+    assert centimetres.leg_length == pytest.approx(100.0 * anatomy.leg_length)
+    assert centimetres.height == pytest.approx(100.0 * anatomy.height)
+
+
+def test_names_without_meaning_change_nothing_but_take_the_side_from_the_toes():
+    names = {name: f"joint{i}" for i, (name, _, _) in enumerate(BONES)}
+    skeleton = skeleton_of(rename=names.get)
+    assert find_anatomy(skeleton) == find_anatomy(skeleton_of())
+
+
+def test_a_mirrored_skeleton_without_names_swaps_its_sides():
+    names = {name: f"joint{i}" for i, (name, _, _) in enumerate(BONES)}
+    plain = find_anatomy(skeleton_of(rename=names.get))
+    mirrored = find_anatomy(skeleton_of(rename=names.get, turn=MIRROR))
+    assert mirrored.legs == plain.legs[::-1]
+    assert mirrored.arms == plain.arms[::-1]
+
+
+def test_a_mirrored_skeleton_with_names_keeps_to_its_names():
+    skeleton = skeleton_of(turn=MIRROR)
+    assert_human(skeleton, find_anatomy(skeleton))
+
+
+def test_poses_tell_the_side_where_offsets_all_point_along_their_own_bone():
+    names = {name: f"joint{i}" for i, (name, _, _) in enumerate(BONES)}
+    skeleton = skeleton_of(rename=names.get)
+    motion = standing(skeleton)
+    # The poses are given mirrored: left is where they say, not where OFFSET does.
+    poses = forward(motion)
+    mirrored = type(poses)(poses.positions * np.array([-1.0, 1.0, 1.0]), poses.rotations)
+    assert find_anatomy(skeleton, poses=mirrored).legs == find_anatomy(skeleton).legs[::-1]
+
+
+def test_without_names_and_toes_the_order_of_the_file_is_taken_with_a_warning():
+    bones = [row for row in BONES if "Toe" not in row[0]]
+    names = {name: f"joint{i}" for i, (name, _, _) in enumerate(bones)}
+    anatomy = find_anatomy(skeleton_of(bones, rename=names.get))
+    assert anatomy.legs[0].toe is None
+    assert any("left from right" in line for line in anatomy.warnings)
+
+
+def test_a_static_root_above_the_hips_is_no_part_of_the_body():
+    plain = find_anatomy(skeleton_of())
+    skeleton = skeleton_of(above(BONES, "joint_Root", offset=(0.0, 0.0, 0.0)))
+    anatomy = find_anatomy(skeleton)
+    assert_human(skeleton, anatomy)
+    assert (anatomy.leg_length, anatomy.height) == (plain.leg_length, plain.height)
+
+
+def test_bones_cut_by_twist_joints_add_up():
+    bones = split(BONES, "LeftLeg", "LeftTwist", 0.2)
+    bones = split(bones, "RightLeg", "RightTwist", 0.2)
+    bones = split(bones, "LeftFoot", "LeftCalfTwist", 0.5)
+    bones = split(bones, "RightFoot", "RightCalfTwist", 0.5)
+    skeleton = skeleton_of(bones)
+    anatomy = find_anatomy(skeleton)
+    assert_human(skeleton, anatomy)
+    assert anatomy.leg_length == pytest.approx(THIGH + SHANK)
+
+
+def test_twist_joints_beside_the_bones_are_left_alone():
+    bones = [*BONES]
+    for side in ("Left", "Right"):
+        bones += [
+            (side + "CalfTwist", side + "Leg", (0.0, 0.0, 0.0)),
+            (side + "CalfTwist2", side + "CalfTwist", (0.0, -0.5 * SHANK, 0.0)),
+        ]
+    skeleton = skeleton_of(bones)
+    assert_human(skeleton, find_anatomy(skeleton))
+
+
+def test_a_club_in_one_hand_changes_no_joint():
+    skeleton = skeleton_of([*BONES, ("Club", "RightHand", (0.0, 0.0, 0.0))], {**ENDS, "Club": (0.0, -0.92, 0.0)})
+    assert_human(skeleton, find_anatomy(skeleton))
+
+
+def test_a_foot_of_five_toes_gives_the_same_toe_on_both_sides():
+    bones = [row for row in BONES if "ToeBase" not in row[0]]
+    for side, sign in (("Left", 1.0), ("Right", -1.0)):
+        # In another order on each side, as some exporters write them.
+        order = (0, 1, 2) if sign > 0 else (2, 0, 1)
+        lengths = (0.13, 0.14, 0.12)
+        bones += [(f"{side}Toe{i}", side + "Foot", (sign * 0.01 * i, -0.06, lengths[i])) for i in order]
+    skeleton = skeleton_of(bones)
+    legs = legs_of(skeleton, find_anatomy(skeleton))
+    assert [leg[3] for leg in legs] == ["LeftToe1", "RightToe1"]
+
+
+def test_a_metatarsal_is_no_toe():
+    bones = split(BONES, "LeftToeBase", "LeftMetatarsal", 0.4)
+    bones = split(bones, "RightToeBase", "RightMetatarsal", 0.4)
+    skeleton = skeleton_of(bones)
+    assert legs_of(skeleton, find_anatomy(skeleton)) == LEGS
+
+
+def test_a_toe_has_no_longer_tips_than_the_way_to_it():
+    bones = [*BONES, ("LeftToeTip", "LeftToeBase", (0, 0, 0.05)), ("RightToeTip", "RightToeBase", (0, 0, 0.05))]
+    skeleton = skeleton_of(bones, {})
+    assert legs_of(skeleton, find_anatomy(skeleton)) == LEGS
+
+
+def test_breasts_are_no_neck_and_eyes_no_limbs():
+    bones = [*BONES]
+    for side, sign in (("Left", 1.0), ("Right", -1.0)):
+        bones += [
+            (side + "Breast", "Spine1", (sign * 0.1, 0.1, 0.7)),
+            (side + "Eye", "Head", (sign * 0.03, 0.1, 0.1)),
+        ]
+    skeleton = skeleton_of(bones)
+    anatomy = find_anatomy(skeleton)
+    assert_human(skeleton, anatomy)
+    assert {skeleton.names.index("LeftEye"), skeleton.names.index("RightEye")} <= anatomy.digits
+
+
+def test_the_joint_at_the_top_of_the_head_is_not_the_head():
+    skeleton = skeleton_of([*BONES, ("HeadTop_End", "Head", (0.0, 0.18, 0.0))])
+    assert skeleton.names[find_anatomy(skeleton).head] == "Head"
+
+
+def test_digits_are_wrists_hands_and_toes():
+    bones = [*BONES, ("LeftThumb", "LeftHand", (0.03, 0.0, 0.0)), ("RightThumb", "RightHand", (-0.03, 0.0, 0.0))]
+    skeleton = skeleton_of(bones)
+    digits = {skeleton.names[j] for j in find_anatomy(skeleton).digits}
+    assert digits == {side + part for side in ("Left", "Right") for part in ("Hand", "Thumb", "ToeBase")}
+
+
+def test_a_root_in_the_chest_leaves_legs_legs():
+    # The same body hung up at Spine1: the spine goes down from it.
+    flipped = {"Hips": ("Spine", (0.0, -0.1, 0.0)), "Spine": ("Spine1", (0.0, -0.2, 0.0)), "Spine1": (None, (0, 0, 0))}
+    rows = {name: (parent, offset) for name, parent, offset in BONES} | flipped
+    order = ["Spine1", "Spine", "Hips", *(name for name, _, _ in BONES if name not in flipped)]
+    skeleton = skeleton_of([(name, *rows[name]) for name in order])
+    assert_human(skeleton, find_anatomy(skeleton))
+
+
+def test_a_tail_longer_than_the_neck_leaves_legs_legs():
+    tail = [(f"Tail{i}", f"Tail{i - 1}" if i else "Hips", (0.0, 0.0, -0.3)) for i in range(3)]
+    skeleton = skeleton_of([*BONES, *tail])
+    assert legs_of(skeleton, find_anatomy(skeleton)) == LEGS
+
+
+def test_arms_alone_are_arms_by_their_names():
+    bones = [row for row in BONES if "Leg" not in row[0] and "Foot" not in row[0] and "Toe" not in row[0]]
+    bones = [row for row in bones if "HipJoint" not in row[0]]
+    skeleton = skeleton_of(bones)
+    anatomy = find_anatomy(skeleton)
+    assert anatomy.legs is None
+    assert arms_of(skeleton, anatomy) == ARMS
+    assert anatomy.leg_length == pytest.approx(0.5 * anatomy.height)
+
+
+@pytest.mark.parametrize("count", [1, 2, 5])
+def test_a_chain_has_no_legs_and_half_its_height_stands_for_them(count):
+    skeleton = Skeleton(
+        names=tuple(f"link{i}" for i in range(count)),
+        parents=np.arange(-1, count - 1),
+        offsets=np.array([[0.0, 0.0, 0.0]] + [[0.0, 2.0, 0.0]] * (count - 1)),
+        channels=(CHANNELS,) * count,
+        end_sites=(EndSite(count - 1, np.array([0.0, 2.0, 0.0])),),
+    )
+    anatomy = find_anatomy(skeleton)
+    assert (anatomy.legs, anatomy.arms, anatomy.head) == (None, None, None)
+    assert anatomy.height == pytest.approx(2.0 * count)
+    assert anatomy.leg_length == pytest.approx(count)
+    assert any("no legs" in line for line in anatomy.warnings)
+
+
+def test_a_skeleton_of_no_size_is_no_error():
+    skeleton = Skeleton(
+        names=("a", "b", "c"), parents=np.array([-1, 0, 0]), offsets=np.zeros((3, 3)), channels=((),) * 3
+    )
+    anatomy = find_anatomy(skeleton)
+    assert anatomy.legs is None
+    assert anatomy.height == 0.0
+
+
+def test_axes_of_the_file_do_not_matter():
+    skeleton = skeleton_of(turn=Z_UP)
+    assert_human(skeleton, find_anatomy(skeleton))
+
+
+def test_hip_joints_and_collars_that_start_at_the_spine_are_no_thighs_and_no_shoulders():
+    # Proportions as in CMU's subject 12: a thigh much shorter than the shank, a forearm of half an upper arm.
+    offsets = {
+        "UpLeg": (0.2, -0.16, 0.11), "Leg": (0.2, -0.56, 0.0), "Foot": (0.27, -0.75, 0.0),
+        "ToeBase": (0.01, -0.02, 0.2), "Shoulder": (0.0, 0.0, 0.0), "Arm": (0.36, 0.08, -0.04),
+        "ForeArm": (0.49, 0.0, 0.0),
+        "Hand": (0.27, 0.0, 0.0),
+    }  # fmt: skip
+    bones = []
+    for name, parent, offset in BONES:
+        part = name.removeprefix("Left").removeprefix("Right")
+        x, y, z = offsets.get(part, offset)
+        bones.append((name, parent, (-x if name.startswith("Right") else x, y, z)))
+    for side, sign in (("Left", 1.0), ("Right", -1.0)):
+        bones += [
+            (side + "FingerBase", side + "Hand", (0.0, 0.0, 0.0)),
+            (side + "Index", side + "FingerBase", (sign * 0.07, 0.0, 0.0)),
+            (side + "Thumb", side + "Hand", (0.0, 0.0, 0.0)),
+        ]
+    skeleton = skeleton_of(bones, {"LeftIndex": (0.05, 0, 0), "RightIndex": (-0.05, 0, 0), "Head": (0, 0.18, 0)})
+    assert_human(skeleton, find_anatomy(skeleton))
+
+
+@given(st.lists(st.floats(0.9, 1.1), min_size=len(BONES), max_size=len(BONES)))
+def test_bones_a_tenth_longer_or_shorter_on_either_side_change_nothing(factors):
+    bones = [
+        (name, parent, tuple(factor * x for x in offset))
+        for factor, (name, parent, offset) in zip(factors, BONES, strict=True)
+    ]
+    skeleton = skeleton_of(bones)
+    assert_human(skeleton, find_anatomy(skeleton))
+
+
+@st.composite
+def trees(draw):
+    count = draw(st.integers(1, 25))
+    parents = [-1] + [draw(st.integers(0, j - 1)) for j in range(1, count)]
+    lengths = st.sampled_from([0.0, 1e-6, 0.5, 1.0, 1.1, 1e6])
+    offsets = np.array([[draw(lengths), draw(lengths), draw(lengths)] for _ in range(count)])
+    names = [draw(st.sampled_from(["a", "LeftLeg", "RightLeg", "hand.L", "hand.R", ""])) for _ in range(count)]
+    return Skeleton(tuple(names), np.array(parents), offsets, (CHANNELS,) * count)
+
+
+@given(trees())
+def test_no_tree_is_an_error(skeleton):
+    anatomy = find_anatomy(skeleton)
+    assert anatomy.leg_length >= 0.0
+    assert anatomy.height >= anatomy.leg_length
+    assert (anatomy.legs is None) == any("no legs" in line for line in anatomy.warnings)
+
+
+@pytest.mark.parametrize("links", [600, 2000])
+def test_two_long_ropes_side_by_side_are_looked_at_in_no_time(links):
+    parents = [-1, 0, 0, *range(1, 2 * links - 1)]
+    offsets = np.tile([[0.0, 1.0, 0.0]], (2 * links + 1, 1))
+    names = tuple(f"link{j}" for j in range(2 * links + 1))
+    skeleton = Skeleton(names, np.array(parents), offsets, ((),) * len(names))
+    start = time.process_time()
+    find_anatomy(skeleton)
+    assert time.process_time() - start < 2.0
+
+
+def test_a_body_without_a_head_has_none():
+    skeleton = skeleton_of([row for row in BONES if row[0] not in ("Neck", "Head")])
+    anatomy = find_anatomy(skeleton)
+    assert anatomy.head is None
+    assert legs_of(skeleton, anatomy) == LEGS
+    assert arms_of(skeleton, anatomy) == ARMS
+
+
+def test_legs_alone_have_for_a_head_the_end_of_what_stands_on_them():
+    skeleton = skeleton_of(
+        [row for row in BONES if "Shoulder" not in row[0] and "Arm" not in row[0] and "Hand" not in row[0]]
+    )
+    anatomy = find_anatomy(skeleton)
+    assert anatomy.arms is None
+    assert legs_of(skeleton, anatomy) == LEGS
+    assert skeleton.names[anatomy.head] == "Head"
+
+
+def test_a_toe_on_one_side_only_is_none_of_the_anatomy_of_the_other():
+    skeleton = skeleton_of([row for row in BONES if row[0] != "RightToeBase"])
+    legs = find_anatomy(skeleton).legs
+    assert (legs[0].toe, legs[1].toe) == (skeleton.names.index("LeftToeBase"), None)

@@ -1,0 +1,161 @@
+"""The edit of a whole clip by goals at single frames ([PC] 4.3), on made-up strokes."""
+
+import numpy as np
+import pytest
+from strokes import TIMELINE, database, model_of, place, stroke
+
+from motionedit.core import kinematics
+from motionedit.core import rotations as rot
+from motionedit.core.coefficients.edit import GaussNewton, GoalRequest, edit_by_coefficients
+from motionedit.core.coefficients.projection import project, project_resampled, with_rows
+from motionedit.core.kinematics import Effector
+
+HAND = 22
+MAP = np.arange(23)
+
+
+@pytest.fixture(scope="module")
+def model():
+    motions, hits = database()
+    return model_of(motions, TIMELINE, hits)
+
+
+def projected(model, motion, hit, *, resampled=False):
+    alignment, warp, _, _ = place(motion, TIMELINE, hit=hit)
+    view = project_resampled if resampled else project
+    return view(motion, model, joint_map=MAP, alignment=alignment, warp=warp)
+
+
+def request_of(motion, frame, shift, *, joint=HAND, offset=(0.0, -0.15, 0.0), **changes):
+    effector = Effector(joint, np.array(offset))
+    at = kinematics.effector_positions(kinematics.forward(motion), effector)[frame]
+    given = {
+        "position": at + shift,
+        "rotation": None,
+        "measure": np.eye(3),
+        "axes": (0, 1, 2),
+        "weight": 1.0,
+        "relative_to": None,
+    }
+    return GoalRequest(frame, effector, **{**given, **changes})
+
+
+def edited(model, projection, requests, *, bound=50.0, residual="keep", first=0):
+    return edit_by_coefficients(projection, model, requests, solver=GaussNewton(bound), residual=residual, first=first)
+
+
+def place_of(motion, request):
+    return kinematics.effector_positions(kinematics.forward(motion), request.effector)[request.frame]
+
+
+@pytest.mark.parametrize(("frames", "hit"), [(60, 36.0), (75, 40.5), (241, 144.0)])
+def test_a_goal_at_any_frame_is_met_in_the_clips_own_timing(model, frames, hit):
+    motion = stroke(20, frames=frames, hit=hit / (frames - 1), noise=0.002)
+    projection = projected(model, motion, hit)
+    for frame in (int(hit), frames // 4):
+        request = request_of(motion, frame, np.array([0.03, 0.0, -0.02]))
+        edit = edited(model, projection, [request])
+        assert len(edit.motion) == frames
+        np.testing.assert_allclose(place_of(edit.motion, request), request.position, atol=1e-5)
+        assert edit.position_errors[0] < 1e-5
+        assert edit.solution.iterations <= 12
+
+
+def test_no_shift_touches_nothing(model):
+    motion = stroke(21, noise=0.01)
+    edit = edited(model, projected(model, motion, 36.0), [request_of(motion, 36, np.zeros(3))])
+    assert not edit.touched.any()
+    assert not edit.moved.any()
+
+
+def test_the_edit_carries_no_jerk_of_its_own(model):
+    motion = stroke(22, frames=481, frame_time=1 / 400)
+    request = request_of(motion, 288, np.array([0.05, 0.02, 0.0]))
+    edit = edited(model, projected(model, motion, 288.0), [request])
+    before, after = (
+        np.abs(np.diff(kinematics.effector_positions(kinematics.forward(m), request.effector), 3, axis=0)).max()
+        for m in (motion, edit.motion)
+    )
+    assert after < 1.3 * before
+
+
+def test_a_clip_that_faces_elsewhere_gets_the_same_edit_turned(model):
+    shift = np.array([0.04, 0.01, 0.02])
+    results = []
+    for heading in (0.0, 2.0):
+        motion = stroke(23, heading=heading)
+        turn = rot.about_axis(1, np.array(heading))
+        request = request_of(motion, 36, rot.rotate(turn, shift))
+        results.append(edited(model, projected(model, motion, 36.0), [request]).motion.rotations[:, 1:])
+    np.testing.assert_allclose(rot.angle_between(results[0], results[1]), 0.0, atol=1e-6)
+
+
+def test_a_goal_along_other_axes_and_in_another_joints_frame_is_met(model):
+    motion = stroke(24)
+    projection = projected(model, motion, 36.0)
+    poses = kinematics.forward(motion)
+    turned = rot.to_matrix(rot.exp(np.array([0.3, 0.5, -0.2])))
+    hand = kinematics.effector_positions(poses, Effector(HAND, np.zeros(3)))[36]
+    along = request_of(
+        motion,
+        36,
+        0.0,
+        offset=(0, 0, 0),
+        measure=turned,
+        position=turned @ hand + np.array([0.03, 0.0, 0.0]),
+        axes=(0,),
+    )
+    result = place_of(edited(model, projection, [along]).motion, along)
+    assert (turned @ result)[0] == pytest.approx(along.position[0], abs=1e-5)
+    spine = 12
+    inside = rot.rotate(rot.conjugate(poses.rotations[36, spine]), hand - poses.positions[36, spine])
+    relative = request_of(
+        motion, 36, 0.0, offset=(0, 0, 0), position=inside + np.array([0.02, 0.01, 0.0]), relative_to=spine
+    )
+    after = kinematics.forward(edited(model, projection, [relative]).motion)
+    seen = rot.rotate(rot.conjugate(after.rotations[36, spine]), after.positions[36, HAND] - after.positions[36, spine])
+    np.testing.assert_allclose(seen, relative.position, atol=1e-5)
+
+
+def test_an_orientation_goal_is_met(model):
+    motion = stroke(25)
+    now = kinematics.forward(motion).rotations[36, HAND]
+    wanted = rot.multiply(rot.exp(np.radians([4.0, -3.0, 2.0])), now)
+    request = request_of(motion, 36, 0.0, position=None, rotation=wanted)
+    edit = edited(model, projected(model, motion, 36.0), [request])
+    after = kinematics.forward(edit.motion).rotations[36, HAND]
+    assert np.degrees(rot.angle_between(after, wanted)) < 0.01
+    assert np.degrees(edit.angle_errors[0]) < 0.01
+
+
+def test_frames_of_a_rest_pose_stay_as_they_are(model):
+    motion = stroke(26)
+    edit = edited(model, projected(model, motion, 36.0), [request_of(motion, 36, np.array([0.05, 0, 0]))], first=2)
+    assert not edit.touched[:2].any()
+    assert edit.touched[2:-1, HAND].all()  # the strokes end alike
+
+
+def test_without_the_residual_the_output_lies_in_the_space_of_the_components(model):
+    motion = stroke(27, noise=0.02)
+    projection = projected(model, motion, 36.0, resampled=True)
+    request = request_of(projection.motion, 36, np.array([0.02, 0.0, 0.0]))
+    edit = edited(model, projection, [request], residual="drop")
+    alignment, warp, _, _ = place(motion, TIMELINE, hit=36.0)
+    again = project_resampled(
+        edit.motion,
+        model,
+        joint_map=MAP,
+        alignment=alignment,
+        warp=type(warp)(np.array([0.0, 60.0]), np.array([0.0, 60.0])),
+    )
+    rebuilt = model.mean_rows + np.tensordot(again.coefficients, model.component_rows, axes=1)
+    np.testing.assert_allclose(again.rows, rebuilt, atol=1e-9)
+    np.testing.assert_allclose(again.coefficients, edit.coefficients, atol=1e-9)
+    np.testing.assert_allclose(place_of(edit.motion, request), request.position, atol=1e-5)
+
+
+def test_rows_put_back_unchanged_are_the_motion(model):
+    motion = stroke(28, heading=1.0)
+    projection = projected(model, motion, 36.0)
+    again = with_rows(projection, model.space, projection.rows)
+    np.testing.assert_allclose(kinematics.forward(again).positions, kinematics.forward(motion).positions, atol=1e-12)

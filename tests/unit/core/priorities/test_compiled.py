@@ -1,0 +1,306 @@
+"""The compiled solver, kinematics and smoothing beside numpy's, on random skeletons, tasks, ranks and hinges."""
+
+import os
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from motionedit.core import rotations as rot
+from motionedit.core.arrays import frozen
+from motionedit.core.body.center_of_mass import Masses
+from motionedit.core.body.hinges import Hinge
+from motionedit.core.compiled import CHOICE, compiled, solver_name
+from motionedit.core.kinematics import Effector, effector_positions, forward
+from motionedit.core.motion import Motion
+from motionedit.core.priorities import compiled_solver as kernel
+from motionedit.core.priorities.constraints import Constraint
+from motionedit.core.priorities.continuity import smoothed_displacement
+from motionedit.core.priorities.edit import Body, LayeredSettings, PaperFilter, Passes, edit_by_priorities
+from motionedit.core.priorities.recruiting import RecruitRule
+from motionedit.core.priorities.solver import HingeColumns, Problem, Reference, WeightedTask, solve_layers
+from motionedit.core.priorities.tasks import Columns, Point, PositionTask, Recruited
+from motionedit.core.priorities.trajectories import ControlPoint
+from motionedit.core.skeleton import Skeleton
+
+pytestmark = pytest.mark.skipif(solver_name() == "numpy", reason="no compiled solver here")
+
+FRAMES = 5
+# What the two may differ by (rad, m) where everything can be met, and where something cannot.
+FEASIBLE, INFEASIBLE = 1e-9, 1e-8
+KINDS = ("position", "orientation", "pose", "com", "aim", "posture")
+
+
+def by_numpy(monkeypatch, function):
+    """Return what a function returns with the compiled part kept out."""
+    with monkeypatch.context() as patch:
+        patch.setenv(CHOICE, "numpy")
+        assert compiled() is None
+        return function()
+
+
+@pytest.fixture
+def patch():
+    with pytest.MonkeyPatch.context() as context:
+        yield context
+
+
+def skeleton_of(rng, joints):
+    parents = np.array([-1, *(int(rng.integers(max(0, j - 4), j)) for j in range(1, joints))])
+    offsets = rng.normal(scale=0.25, size=(joints, 3))
+    rotation = ("Zrotation", "Xrotation", "Yrotation")
+    channels = (("Xposition", "Yposition", "Zposition", *rotation), *(rotation for _ in range(joints - 1)))
+    return Skeleton(tuple(f"J{j}" for j in range(joints)), frozen(parents), frozen(offsets), channels)
+
+
+def motion_of(rng, skeleton, frames=FRAMES):
+    start = rng.normal(scale=0.5, size=(1, len(skeleton), 3))
+    sway = rng.normal(scale=0.05, size=(frames, len(skeleton), 3))
+    return Motion(skeleton, rot.exp(start + sway), rng.normal(scale=0.1, size=(frames, 1, 3)), 0.01)
+
+
+def masses_of(rng, skeleton):
+    shares = rng.uniform(size=len(skeleton)) * (rng.uniform(size=len(skeleton)) < 0.7)
+    shares[-1] += 0.1
+    return Masses(skeleton, frozen(shares / shares.sum()), frozen(rng.normal(scale=0.1, size=(len(skeleton), 3))), True)
+
+
+def hinges_of(rng, skeleton, motion):
+    found = []
+    for joint in rng.choice(len(skeleton), size=min(2, len(skeleton) - 1), replace=False):
+        axis = rng.normal(size=3)
+        axis /= np.linalg.norm(axis)
+        angles = rot.log(motion.rotations[:, joint]) @ axis
+        spread = rng.uniform(0.02, 1.0)
+        found.append(Hinge(int(joint), frozen(axis), (angles.min() - spread, angles.max() + spread), 0.0))
+    return tuple(sorted(found, key=lambda hinge: hinge.joint))
+
+
+def constraint_of(rng, skeleton, number, reach):
+    joint = int(rng.integers(1, len(skeleton)))
+    kind = KINDS[int(rng.integers(len(KINDS)))]
+    offset = rng.normal(scale=0.1, size=3) * (rng.uniform() < 0.5)
+    base = int(rng.integers(len(skeleton))) if rng.uniform() < 0.3 and kind in {"position", "orientation"} else None
+    axes = ((0, 1, 2), (0, 2), (1,))[int(rng.integers(3))] if kind in {"position", "com"} else (0, 1, 2)
+    rules = (RecruitRule(), RecruitRule("levels", levels=2))
+    shift = rng.normal(scale=reach, size=3) if kind in {"position", "pose", "com"} else None
+    turn = rot.exp(rng.normal(scale=0.3, size=3)) if kind in {"orientation", "pose"} and rng.uniform() < 0.5 else None
+    place = rng.normal(scale=2.0, size=3) if kind == "aim" else None
+    point = ControlPoint("hold", 0, FRAMES - 1, position=place, shift=shift, orientation=turn)
+    axis = rng.normal(size=3)
+    return Constraint(
+        kind,
+        f"c{number}",
+        int(rng.integers(1, 4)),
+        float(rng.uniform(0.3, 3.0)),
+        Effector(joint, offset),
+        base=base if base != joint else None,
+        axes=axes,
+        recruit=rules[int(rng.integers(2))] if kind in {"position", "orientation"} else rules[0],
+        points=() if kind == "posture" else (point,),
+        axis=axis / np.linalg.norm(axis),
+        joints=(joint,) if kind == "posture" else (),
+    )
+
+
+def problem_of(seed, joints, count, reach):
+    rng = np.random.default_rng(seed)
+    skeleton = skeleton_of(rng, joints)
+    motion = motion_of(rng, skeleton)
+    hinges = hinges_of(rng, skeleton, motion) if rng.uniform() < 0.7 else ()
+    body = Body(masses_of(rng, skeleton), hinges, 0, 0)
+    return motion, [constraint_of(rng, skeleton, i, reach) for i in range(count)], body
+
+
+def difference(one, other):
+    angles = rot.angle_between(one.motion.rotations, other.motion.rotations).max()
+    return max(angles, np.abs(one.motion.translations - other.motion.translations).max())
+
+
+# The same examples on every run: where a body stands exactly stretched, a rounding decides how far the last step goes.
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    joints=st.integers(3, 16),
+    count=st.integers(1, 5),
+    reach=st.sampled_from([0.02, 0.1]),
+)
+@settings(max_examples=80, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_both_solvers_move_a_body_alike(patch, seed, joints, count, reach):
+    motion, constraints, body = problem_of(seed, joints, count, reach)
+    setting = LayeredSettings(smoothing=Passes(0), max_iterations=12)
+    mine = edit_by_priorities(motion, constraints, body, setting)
+    theirs = by_numpy(patch, lambda: edit_by_priorities(motion, constraints, body, setting))
+    errors = [e for each in mine.errors for e in (each.positions, each.angles) if e is not None]
+    met = max(e.max() for e in errors) < 1e-3
+    np.testing.assert_array_equal(mine.ranks, theirs.ranks)
+    assert difference(mine, theirs) < (FEASIBLE if met else INFEASIBLE)
+    if met:
+        np.testing.assert_array_equal(mine.iterations, theirs.iterations)
+
+
+def test_the_compiled_part_is_that_of_this_tree():
+    assert Path(compiled().__file__).is_relative_to(Path(__file__).resolve().parents[4])
+
+
+class Narrow:
+    """The compiled part with the solver that every processor has."""
+
+    def __getattr__(self, name):
+        return getattr(compiled(), "solve_narrow" if name == "solve" else name)
+
+
+def same_bits(one, other):
+    np.testing.assert_array_equal(one.motion.rotations, other.motion.rotations)
+    np.testing.assert_array_equal(one.motion.translations, other.motion.translations)
+    for each in ("ranks", "iterations", "converged"):
+        np.testing.assert_array_equal(getattr(one, each), getattr(other, each))
+
+
+@given(seed=st.integers(0, 2**32 - 1), joints=st.integers(3, 16), count=st.integers(1, 5))
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_neither_the_width_of_vectors_nor_the_neighbours_change_a_bit(patch, seed, joints, count):
+    motion, constraints, body = problem_of(seed, joints, count, 0.1)
+    setting = LayeredSettings(smoothing=Passes(0), max_iterations=12)
+    wide = edit_by_priorities(motion, constraints, body, setting)
+    with patch.context() as narrowed:
+        narrowed.setattr(kernel, "compiled", Narrow)
+        same_bits(edit_by_priorities(motion, constraints, body, setting), wide)
+    with patch.context() as parted:
+        parted.setattr(kernel, "_LEAST_SHARE", 1)
+        same_bits(edit_by_priorities(motion, constraints, body, replace(setting, threads=FRAMES)), wide)
+
+
+def arms_of(seed, frames=8):
+    """Return a problem whose rows depend on each other in some frames alone: many points on one arm, between them one
+    on another arm, whose hinge is on its limit here and there."""
+    rng = np.random.default_rng(seed)
+    rotation = ("Zrotation", "Xrotation", "Yrotation")
+    channels = (("Xposition", "Yposition", "Zposition", *rotation), *(rotation for _ in range(6)))
+    parents = frozen(np.array([-1, 0, 1, 2, 0, 4, 5]))
+    skeleton = Skeleton(tuple("OABCXYZ"), parents, frozen(rng.normal(scale=0.3, size=(7, 3))), channels)
+    turns = rng.normal(scale=0.6, size=(1, 7, 3)) + rng.normal(scale=0.05, size=(frames, 7, 3))
+    motion = Motion(skeleton, rot.exp(turns), np.zeros((frames, 1, 3)), 0.01)
+    columns = Columns(skeleton, np.arange(1, 7), 0)
+    first, second = (Recruited(np.arange(6) // 3 == arm, root=False) for arm in (0, 1))
+
+    def point(effector, recruited, shift):
+        targets = effector_positions(forward(motion), effector) + shift
+        task = PositionTask(Point(columns, effector, recruited), targets, np.eye(3), (0, 1, 2))
+        return WeightedTask(task, float(rng.uniform(0.7, 1.3)))
+
+    shift = rng.normal(scale=0.1, size=(frames, 3))
+    tasks = [point(Effector(3, rng.normal(scale=0.1, size=3)), first, shift) for _ in range(4)]
+    tasks.insert(2, point(Effector(5, np.zeros(3)), second, rng.normal(scale=0.05, size=(frames, 3))))
+    axis = rng.normal(size=3)
+    axis /= np.linalg.norm(axis)
+    angles = rot.log(motion.rotations[:, 4]) @ axis
+    limits = np.array([[angles.min() - 0.05, angles.max() + 0.05], [-3.0, 3.0]])
+    hinges = HingeColumns(np.array([3, 4]), np.stack([axis, axis]), limits)
+    return Problem(
+        columns, moves_root=False, layers=(tuple(tasks),), hinges=hinges, attraction=1.0, max_iterations=12
+    ), motion
+
+
+def solved(problem, motion, frames, **how):
+    """Return a copy of a motion, solved at some frames, and how that went."""
+    own = Motion(motion.skeleton, motion.rotations.copy(), motion.translations.copy(), motion.frame_time)
+    return solve_layers(problem, own, Reference(motion.rotations.copy(), None), frames, **how)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_rows_that_depend_on_each_other_in_a_neighbour_alone_change_no_bit(patch, seed):
+    problem, motion = arms_of(seed)
+    frames = np.arange(len(motion))
+    together = solved(problem, motion, frames)
+    with patch.context() as parted:
+        parted.setattr(kernel, "_LEAST_SHARE", 1)
+        same_bits(solved(problem, motion, frames, threads=len(motion)), together)
+
+
+def test_no_frames_are_solved_at_once():
+    problem, motion = arms_of(0)
+    none = replace(
+        problem,
+        layers=tuple(
+            tuple(replace(each, task=replace(each.task, targets=each.task.targets[:0])) for each in layer)
+            for layer in problem.layers
+        ),
+    )
+    solution = solved(none, motion, np.arange(0))
+    np.testing.assert_array_equal(solution.motion.rotations, motion.rotations)
+    assert len(solution.iterations) == 0
+
+
+@pytest.mark.parametrize("smoothing", [Passes(2, 1.5), PaperFilter(2, 10.0)])
+@pytest.mark.parametrize("seed", range(6))
+def test_both_smooth_alike(patch, seed, smoothing):
+    motion, constraints, body = problem_of(seed, 9, 3, 0.05)
+    setting = LayeredSettings(smoothing=smoothing, max_iterations=12)
+    mine = edit_by_priorities(motion, constraints, body, setting)
+    theirs = by_numpy(patch, lambda: edit_by_priorities(motion, constraints, body, setting))
+    assert difference(mine, theirs) < INFEASIBLE
+    np.testing.assert_array_equal(mine.touched, theirs.touched)
+
+
+@pytest.mark.parametrize("threads", [2, 3, 7])
+def test_the_number_of_threads_changes_no_bit(threads):
+    rng = np.random.default_rng(4)
+    skeleton = skeleton_of(rng, 12)
+    motion = motion_of(rng, skeleton, 300)
+    hand = Constraint(
+        "position",
+        "hand",
+        1,
+        1.0,
+        Effector(11, np.zeros(3)),
+        points=(ControlPoint("hold", 0, 299, shift=np.ones(3) * 0.05),),
+    )
+    body = Body(masses_of(rng, skeleton), (), 0, 0)
+    one = edit_by_priorities(motion, [hand], body, LayeredSettings())
+    other = edit_by_priorities(motion, [hand], body, replace(LayeredSettings(), threads=threads))
+    np.testing.assert_array_equal(one.motion.rotations, other.motion.rotations)
+    np.testing.assert_array_equal(one.iterations, other.iterations)
+
+
+@pytest.mark.parametrize("joints", [1, 2, 31])
+def test_kinematics_are_the_same(patch, joints):
+    rng = np.random.default_rng(joints)
+    motion = motion_of(rng, skeleton_of(rng, joints), 20)
+    mine, theirs = forward(motion), by_numpy(patch, lambda: forward(motion))
+    np.testing.assert_allclose(mine.positions, theirs.positions, atol=1e-14)
+    np.testing.assert_allclose(mine.rotations, theirs.rotations, atol=1e-14)
+
+
+@pytest.mark.parametrize(("first", "sigma"), [(0, 1.5), (2, 3.0), (0, 40.0), (19, 1.0), (0, 0.0)])
+def test_smoothing_is_the_same(patch, first, sigma):
+    rng = np.random.default_rng(1)
+    before = motion_of(rng, skeleton_of(rng, 6), 20)
+    turned = before.rotations.copy()
+    turned[4:9, 2] = rot.multiply(turned[4:9, 2], rot.exp(rng.normal(scale=1.5, size=(5, 3))))
+    after = Motion(before.skeleton, turned, before.translations + rng.normal(size=(20, 1, 3)), before.frame_time)
+    mine = smoothed_displacement(before, after, sigma=sigma, first=first)
+    theirs = by_numpy(patch, lambda: smoothed_displacement(before, after, sigma=sigma, first=first))
+    np.testing.assert_allclose(mine.rotations, theirs.rotations, atol=1e-13)
+    np.testing.assert_allclose(mine.translations, theirs.translations, atol=1e-13)
+    still = [j for j in range(6) if j != 2]
+    np.testing.assert_array_equal(mine.rotations[:, still], before.rotations[:, still])
+
+
+def test_buffers_of_a_wrong_size_are_an_error_and_no_crash():
+    empty = np.zeros(0)
+    with pytest.raises(ValueError, match="sizes has 0 bytes"):
+        compiled().solve(*[empty] * 18, 1.0, 0, 0)
+    with pytest.raises(ValueError, match="places has 0 bytes"):
+        compiled().forward(np.array([-1]), empty, empty, empty, empty, empty, empty, 1)
+    with pytest.raises(ValueError, match="rotations after"):
+        compiled().smooth(np.zeros(4), empty, np.ones(1), np.zeros(4), 1, 0, 0.0)
+
+
+def test_a_variable_of_the_environment_keeps_the_compiled_part_out(patch):
+    assert solver_name() == "compiled"
+    patch.setenv(CHOICE, "numpy")
+    assert solver_name() == "numpy"
+    assert os.environ[CHOICE] == "numpy"
