@@ -15,16 +15,10 @@ from figures_prioritized import config, foot_plants, reach
 from motionedit.core.bvh import read_clip
 from motionedit.core.compiled import CHOICE, solver_name
 from motionedit.core.motion import Motion
-from motionedit.core.priorities import numpy_solver as layered_numpy
-from motionedit.core.priorities.edit import (
-    Body,
-    LayeredSettings,
-    Passes,
-    PrioritizedEdit,
-    edit_by_priorities,
-    prepare,
-    solve_in_passes,
-)
+from motionedit.core.priorities import numpy_solver
+from motionedit.core.priorities.edit import PrioritizedEdit, edit_by_priorities, prepare
+from motionedit.core.priorities.passes import solve_in_passes
+from motionedit.core.priorities.settings import Body, LayeredSettings, Passes
 from motionedit.jobs.batch.plan import ClipTask
 from motionedit.jobs.edit_prioritized.job import EditByPriorities
 from motionedit.spec.load import load_spec
@@ -33,7 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from contextlib import AbstractContextManager
 
-    from motionedit.core.priorities.constraints import Constraint
+    from motionedit.core.priorities.kinds.constraint import Constraint
 
 ROOT = Path(__file__).resolve().parents[1]
 WALK = ROOT / "data" / "walk.bvh"
@@ -61,7 +55,6 @@ class Case:
     def solve(self, passes: int = 0) -> Callable[[], object]:
         """Return a function that solves every frame, and again after each pass: targets and layout are made before."""
         run, _ = prepare(self.motion, self.constraints, self.body, self.settings)
-        run.solve(self.motion, reference=self.motion, pull_root=False)
         return lambda: solve_in_passes(run, self._passes(passes))
 
     def tiled(self, times: int) -> Case:
@@ -120,11 +113,11 @@ def _reaching_rows(walk: Case) -> list[Row]:
             return plain()
 
     def one_by_one() -> object:
-        whole, layered_numpy.BLOCK = layered_numpy.BLOCK, 1
+        whole, numpy_solver.BLOCK = numpy_solver.BLOCK, 1
         try:
             return by_numpy()
         finally:
-            layered_numpy.BLOCK = whole
+            numpy_solver.BLOCK = whole
 
     contenders: dict[str, Callable[[], object]] = {"numpy": by_numpy, "one by one": one_by_one}
     if solver_name() == "compiled":
@@ -242,7 +235,7 @@ def _above_the_unmet(edit: PrioritizedEdit) -> float:
 
 def _unknowns(each: Case) -> int:
     run, _ = prepare(each.motion, each.constraints, each.body, each.settings)
-    return 3 * len(frozenset().union(*(r.joints for r in run.recruits))) + 3
+    return 3 * len(frozenset().union(*(r.joints for r in run.asked.recruits))) + 3
 
 
 def _task_rows(edit: PrioritizedEdit) -> int:

@@ -14,13 +14,13 @@ if TYPE_CHECKING:
     from dataclasses import dataclass
 else:
 
-    def dataclass(cls: type | None = None, /, *, frozen: bool = False, eq: bool = True) -> Any:  # noqa: ANN401
+    def dataclass(cls: type | None = None, /, *, frozen: bool = False, eq: bool = True, kw_only: bool = False) -> Any:  # noqa: ANN401
         """Return the class as `dataclasses.dataclass` makes it."""
 
         def made(cls: type) -> type:
             if not frozen:
-                return dataclasses.dataclass(cls, eq=eq)
-            cls = dataclasses.dataclass(cls, eq=False, repr=False)
+                return dataclasses.dataclass(cls, eq=eq, kw_only=kw_only)
+            cls = dataclasses.dataclass(cls, eq=False, repr=False, kw_only=kw_only)
             cls.__setattr__, cls.__delattr__, cls.__repr__ = _set_once, _refuse, _shown
             if eq:
                 cls.__eq__, cls.__hash__ = _equals, _hashed

@@ -18,15 +18,10 @@ from motionedit.core.body.hinges import find_hinges
 from motionedit.core.bvh import read_clip
 from motionedit.core.kinematics import Effector, WorldPoses, forward
 from motionedit.core.motion import Motion, scaled
-from motionedit.core.priorities.constraints import Constraint
-from motionedit.core.priorities.edit import (
-    Body,
-    LayeredSettings,
-    Passes,
-    PrioritizedEdit,
-    edit_by_priorities,
-    prepare,
-)
+from motionedit.core.priorities.edit import PrioritizedEdit, edit_by_priorities, prepare
+from motionedit.core.priorities.frames import solve_frames
+from motionedit.core.priorities.kinds import CenterOfMass, Position
+from motionedit.core.priorities.settings import Body, LayeredSettings, Passes
 from motionedit.core.priorities.trajectories import ControlPoint, position_targets
 
 if TYPE_CHECKING:
@@ -34,6 +29,7 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.body.center_of_mass import Masses
+    from motionedit.core.priorities.kinds.constraint import Constraint
 
 # Stands for a joint where a task is the center of mass, as in protocol.py.
 COM = -1
@@ -68,7 +64,7 @@ class Job:
     @property
     def joints(self) -> list[int]:
         """The point of each task, or COM."""
-        return [COM if c.kind == "com" else c.effector.joint for c in self.constraints]
+        return [COM if each.at is None else each.at.joint for each in self.constraints]
 
     @property
     def carried(self) -> list[bool]:
@@ -91,8 +87,7 @@ class Job:
         """Return a function that solves every frame by this project; as the peers', its targets are made before."""
         settings = LayeredSettings(smoothing=Passes(0, 1.0), max_iterations=self.cap)
         run, _ = prepare(self.motion, self.constraints, body or self.body, settings)
-        run.solve(self.motion, reference=self.motion, pull_root=False)
-        return lambda: run.solve(self.motion, reference=self.motion, pull_root=False)
+        return lambda: solve_frames(run, self.motion, reference=self.motion, pull_root=False)
 
     def errors(self, edit: PrioritizedEdit) -> FloatArray:
         """Return how far the edit is from its targets, shape (F, T), in metres, NaN where not active."""
@@ -113,11 +108,11 @@ def reach() -> Job:
     masses = find_masses(motion.skeleton, find_anatomy(motion.skeleton))
     body = Body(masses, tuple(find_hinges(motion, anatomy, first=0)), travel_joint(motion), 0)
     here = np.zeros(3)
-    feet = [Constraint("position", name, 10, 1.0, Effector(j, here)) for name, j in anatomy.foot_points]
+    feet = [Position(name=name, priority=10, effector=Effector(j, here)) for name, j in anatomy.foot_points]
     wrist = Effector(motion.skeleton.names.index("LeftHand"), here)
     point = ControlPoint("hold", *HELD, position=LEG / anatomy.leg_length * np.array(PLACE))
-    hand = Constraint("position", "hand", 4, 1.0, wrist, points=(point,), ease_in=EASE, ease_out=EASE)
-    return _job(motion, body, [*feet, hand, Constraint("com", "balance", 2, 1.0, Effector(0, here))])
+    hand = Position(name="hand", priority=4, effector=wrist, points=(point,), ease_in=EASE, ease_out=EASE)
+    return _job(motion, body, [*feet, hand, CenterOfMass(name="balance", priority=2)])
 
 
 def reach_alone(whole: Job) -> Job:
@@ -128,7 +123,7 @@ def reach_alone(whole: Job) -> Job:
 
 def contradicting(whole: Job) -> Job:
     """Return the clip without the hand, the left toe's goal further from the ankle's by the contradiction."""
-    feet = np.array([c.kind == "com" or not c.points for c in whole.constraints])
+    feet = np.array([not c.points for c in whole.constraints])
     whole = replace(
         whole,
         constraints=tuple(c for c, kept in zip(whole.constraints, feet, strict=True) if kept),
@@ -155,7 +150,7 @@ def unreachable(whole: Job) -> Job:
 def _job(motion: Motion, body: Body, constraints: Sequence[Constraint]) -> Job:
     """Return the job of constraints whose points, if any, are shifts of positions."""
     poses = forward(motion)
-    targets = places(poses, body.masses, [COM if c.kind == "com" else c.effector.joint for c in constraints])
+    targets = places(poses, body.masses, [COM if each.at is None else each.at.joint for each in constraints])
     active = np.ones(targets.shape[:2], dtype=np.bool_)
     for i, c in enumerate(constraints):
         if c.points:
@@ -176,9 +171,7 @@ def _given(job: Job, frames: IntArray, targets: FloatArray) -> Job:
     for i, c in enumerate(job.constraints):
         at = np.flatnonzero(active[:, i]).tolist()
         points = tuple(ControlPoint("at", n, n, position=here[n, i]) for n in at)
-        constraints.append(
-            replace(c, points=points, ease_in=0.0, ease_out=0.0, effector=Effector(c.effector.joint, np.zeros(3)))
-        )
+        constraints.append(replace(c, points=points, ease_in=0.0, ease_out=0.0))
     return replace(job, motion=part, constraints=tuple(constraints), targets=here, active=active)
 
 

@@ -6,7 +6,8 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, Field, ValidationInfo
 
 from motionedit.spec import kinds, scalars, values
-from motionedit.spec.constraints import AnyConstraint, Constraint, Defaults
+from motionedit.spec.constraint_types import Constraint
+from motionedit.spec.constraints import ConstraintItem, Defaults
 from motionedit.spec.document import Document
 from motionedit.spec.faults import Fault, faulty, show
 from motionedit.spec.items import repeated_names, taken_apart
@@ -72,7 +73,7 @@ MASSES = Kind(
 )
 
 
-def _constraints_apart(constraints: tuple[AnyConstraint, ...], info: ValidationInfo) -> tuple[AnyConstraint, ...]:
+def _constraints_apart(constraints: tuple[ConstraintItem, ...], info: ValidationInfo) -> tuple[ConstraintItem, ...]:
     # Absent where it is faulty itself; then the spec is refused whatever stands here.
     defaults = info.data.get("defaults", Defaults())
     return taken_apart([item.with_defaults(defaults) for item in constraints], "constraints")

@@ -24,6 +24,10 @@ class Item(SpecModel):
         """Keys of this item in the spec, for `LoadedSpec.error`: ``("goals", 0)``."""
         return self._keys
 
+    def keys_of(self, key: str) -> Keys:
+        """Return the keys of one of its keys in the spec."""
+        return (*self.keys, key)
+
     @property
     def default_name(self) -> str:
         """The name of an item that gives none."""
@@ -57,6 +61,10 @@ class EffectorItem(Item):
         """Keys of the effector in the spec, for `LoadedSpec.error`: ``("goals", 0, "effector")``."""
         index = () if self._list_index is None else (self._list_index,)
         return (*self.keys, "effector", *index)
+
+    def keys_of(self, key: str) -> Keys:
+        """Return the keys of one of its keys in the spec."""
+        return self.effector_keys if key == "effector" else super().keys_of(key)
 
     @property
     def default_name(self) -> str:

@@ -138,6 +138,8 @@ JOINTS_OR_NONE = Kind(
     "a list of joints",
     {**_JOINTS, "minItems": 0},
 )
+# The same, where feet and toes found in the skeleton stand for what is not given.
+FEET = Kind(_plainly(values.parse_joints), "a list of joints", _JOINTS)
 VECTOR = Kind(_plainly(scalars.vector), "three numbers [x, y, z]", _VECTOR)
 DIRECTION = Kind(_plainly(scalars.direction), "a direction [x, y, z]", _VECTOR)
 AXES = Kind(

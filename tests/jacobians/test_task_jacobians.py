@@ -8,18 +8,15 @@ from motionedit.core import rotations as rot
 from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.center_of_mass import find_masses
 from motionedit.core.kinematics import Effector, WorldPoses, forward
+from motionedit.core.measure import Measure
 from motionedit.core.motion import Motion
-from motionedit.core.priorities.tasks import (
-    AimTask,
-    CenterOfMassTask,
-    Columns,
-    OrientationTask,
-    Point,
-    PoseTask,
-    PositionTask,
-    PostureTask,
-    Recruited,
-)
+from motionedit.core.priorities.kinds.aim import AimTask
+from motionedit.core.priorities.kinds.com import CenterOfMassTask
+from motionedit.core.priorities.kinds.orientation import OrientationTask
+from motionedit.core.priorities.kinds.pose import PoseTask
+from motionedit.core.priorities.kinds.position import PositionTask
+from motionedit.core.priorities.kinds.posture import PostureTask
+from motionedit.core.priorities.points import Columns, Point, Recruited
 
 STEP = 1e-6
 FRAMES = 3
@@ -79,8 +76,8 @@ def targets(seed=1):
 @pytest.mark.parametrize("base", [None, SPINE, FOOT])
 def test_position(motion, offset, base):
     measure = rot.to_matrix(rot.exp(np.array([0.3, -0.4, 0.9])))
-    base = None if base is None else point(base)
-    check(PositionTask(point(HAND, offset), targets(), measure, (0, 2), base), motion)
+    seen = Measure(measure, (0, 2), base)
+    check(PositionTask(point(HAND, offset), targets(), seen, None if base is None else point(base)), motion)
 
 
 @pytest.mark.parametrize("base", [None, SPINE])
@@ -93,13 +90,13 @@ def test_orientation_where_it_is_met(motion, base):
 
 
 def test_pose(motion):
-    position = PositionTask(point(FOOT), targets(), np.eye(3), (0, 1, 2))
+    position = PositionTask(point(FOOT), targets())
     check(PoseTask(position, OrientationTask(point(FOOT), forward(motion).rotations[:, FOOT])), motion)
 
 
 def test_center_of_mass(motion):
     masses = find_masses(SKELETON, find_anatomy(SKELETON))
-    check(CenterOfMassTask(COLUMNS, EVERYTHING, masses, targets(), np.eye(3), (0, 1, 2)), motion)
+    check(CenterOfMassTask(COLUMNS, EVERYTHING, masses, targets()), motion)
 
 
 @pytest.mark.parametrize("at_a_joint", [False, True])
@@ -139,7 +136,7 @@ def test_posture_where_it_is_met(motion):
 
 def test_joints_that_are_not_recruited_have_no_part(motion):
     recruited = Recruited(np.arange(len(SKELETON)) == HAND - 1, root=False)
-    task = PositionTask(Point(COLUMNS, Effector(HAND, np.zeros(3)), recruited), targets(), np.eye(3), (0, 1, 2))
+    task = PositionTask(Point(COLUMNS, Effector(HAND, np.zeros(3)), recruited), targets())
     _, J = evaluated(task, motion)
     used = np.flatnonzero(np.abs(J).max(axis=(0, 1)))
     assert set(used // 3) == {HAND - 1}

@@ -8,7 +8,7 @@ import yaml
 from contract import EDIT_PC, EDIT_PC_DAMPED, EDIT_PRIORITIZED, EXAMPLES, NORMALIZE
 
 from motionedit.spec import SPEC_COMMANDS, schema_of
-from motionedit.spec.constraints import ComConstraint, PositionConstraint
+from motionedit.spec.constraint_types import ComConstraint, PositionConstraint
 from motionedit.spec.fit_pca import FitPcaSpec
 from motionedit.spec.values import EffectorSpec, Recruit, Tolerance
 from motionedit.spec.yaml_tree import value_from_text

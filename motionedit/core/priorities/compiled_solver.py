@@ -1,4 +1,8 @@
-"""The way into the compiled layered solver: a problem laid out as plain arrays, frames shared out among threads."""
+"""The way into the compiled layered solver: a problem laid out as its buffers, frames shared out among threads.
+
+The records of csrc (`records`, by their names) say how each structure lies in memory, so that it is filled field by
+field and no order is kept here.
+"""
 
 from __future__ import annotations
 
@@ -6,52 +10,84 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from motionedit.core import units
 from motionedit.core.compiled import compiled
-from motionedit.core.priorities.tasks import (
-    AimTask,
-    CenterOfMassTask,
-    OrientationTask,
-    Point,
-    PoseTask,
-    PositionTask,
-    PostureTask,
-)
+from motionedit.core.priorities import constants
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
-    from motionedit.core.arrays import BoolArray, FloatArray, IntArray
+    from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.body.center_of_mass import Masses
-    from motionedit.core.priorities.solver import LayeredSolution, Problem, Reference
-    from motionedit.core.priorities.tasks import Task
+    from motionedit.core.priorities.problem import CompiledTask, LayeredSolution, Problem, Reference
 
 # Frames a thread takes at least.
 _LEAST_SHARE = 32
-
-_POSITION, _ORIENTATION, _CENTER_OF_MASS, _AIM, _POSTURE = range(5)
+_CONSTANTS = {"METRES_PER_RADIAN": units.METRES_PER_RADIAN, **vars(constants)}
 
 
 @dataclass(frozen=True, eq=False)
 class Layout:
-    """What of a problem does not change from solve to solve, as buffers of module.c, in its order."""
+    """What of a problem does not change from solve to solve: the settings, and buffers of module.c by their names."""
 
-    sizes: tuple[int, ...]
-    nodes: tuple[NDArray[Any], ...]
-    tasks: tuple[NDArray[Any], ...]
-    hinges: tuple[NDArray[Any], ...]
-    targets: FloatArray
+    settings: dict[str, float]
+    buffers: dict[str, NDArray[Any]]
 
-    @classmethod
-    def of(cls, problem: Problem) -> Layout:
-        """Return the layout of a problem."""
-        return _layout(problem)
+
+@dataclass(frozen=True, eq=False)
+class _Row:
+    """A task's rows with their place: the layer, and the weight in it."""
+
+    task: CompiledTask
+    layer: int
+    weight: float
+
+
+def layout_of(problem: Problem) -> Layout | None:
+    """Return the layout of a problem; None where there is no compiled solver, or a task that it does not know."""
+    module = compiled()
+    rows = None if module is None else _rows(problem, module.kinds)
+    if rows is None:
+        return None
+    columns, skeleton, hinges = problem.columns, problem.columns.skeleton, problem.hinges
+    masses = next((row.task.masses for row in rows if row.task.masses is not None), None)
+    nodes = _nodes(problem, rows, masses)
+    node_of = _places(nodes, len(skeleton))
+    tasks, targets = _tasks(rows, node_of, module.kinds)
+    settings = {
+        "nodes": len(nodes),
+        "columns": len(columns.joints),
+        "tasks": len(rows),
+        "hinges": len(hinges.places),
+        "layers": len(problem.layers),
+        "joints": len(skeleton),
+        "translated": len(skeleton.translated),
+        "rows": int(tasks["rows"].sum()),
+        "targets": len(targets),
+        "root": int(node_of[columns.root]) if len(skeleton.translated) else -1,
+        "moves_root": problem.moves_root,
+        "max_iterations": problem.max_iterations,
+        "attraction": problem.attraction,
+    }
+    buffers = {
+        "constants": _constants(),
+        "nodes": _node_records(problem, nodes, node_of, masses),
+        "column_nodes": _integers(node_of[columns.joints]),
+        "tasks": tasks,
+        "hinges": _records(
+            "hinges", len(hinges.places), {"column": hinges.places, "axis": hinges.axes, "limits": hinges.limits}
+        ),
+        "recruited": np.ascontiguousarray([row.task.recruited.joints for row in rows], dtype=np.uint8),
+        "targets": targets,
+    }
+    return Layout(settings, buffers)
 
 
 def solve(
-    problem: Problem,
+    layout: Layout,
     solution: LayeredSolution,
     reference: Reference,
     frames: IntArray,
@@ -61,29 +97,30 @@ def solve(
 ) -> None:
     """Solve those `frames` of a motion that are not converged from where they are, as `solve_layers`."""
     count, motion = len(frames), solution.motion
-    layout = problem.layout or Layout.of(problem)
-    pulls_root = reference.root is not None
-    arrays = (
-        _integers(
-            (
-                *(count, *layout.sizes, in_order, problem.moves_root, pulls_root),
-                *(problem.max_iterations, len(motion)),
-            )
-        ),
-        *layout.nodes,
-        *layout.tasks,
-        layout.targets,
-        *layout.hinges,
-        _integers(frames),
-        _numbers(reference.rotations),
-        _numbers([] if reference.root is None else reference.root),
-        *(motion.rotations, motion.translations, solution.iterations, solution.converged, solution.ranks),
-    )
+    settings = {
+        **layout.settings,
+        "frames": count,
+        "motion_frames": len(motion),
+        "in_order": in_order,
+        "pulls_root": reference.root is not None,
+    }
+    buffers = {
+        **layout.buffers,
+        "settings": _records("settings", 1, settings),
+        "frames": _integers(frames),
+        "reference_rotations": _numbers(reference.rotations),
+        "reference_root": _numbers([] if reference.root is None else reference.root),
+        "rotations": motion.rotations,
+        "translations": motion.translations,
+        "iterations": solution.iterations,
+        "converged": solution.converged,
+        "ranks": solution.ranks,
+    }
     shares = 1 if in_order else max(1, min(threads, count // _LEAST_SHARE))
     bounds = [count * i // shares for i in range(shares + 1)]
 
     def run(share: int) -> None:
-        compiled().solve(*arrays, problem.attraction, bounds[share], bounds[share + 1])
+        compiled().solve(buffers, bounds[share], bounds[share + 1])
 
     if shares == 1:
         run(0)
@@ -94,124 +131,73 @@ def solve(
         list(pool.map(run, range(shares)))
 
 
-def _targets(problem: Problem) -> FloatArray:
-    """Return the targets of all tasks in the order of their rows, one after the other."""
-    parts = [part for tasks in problem.layers for each in tasks for part in _targets_of(each.task)]
-    return np.concatenate([np.zeros(0), *(np.ravel(part) for part in parts if part is not None)])
+def _rows(problem: Problem, kinds: Sequence[str]) -> list[_Row] | None:
+    """Return the rows of all tasks, layer by layer; None where one is of no kind that the compiled solver has."""
+    found: list[_Row] = []
+    for layer, tasks in enumerate(problem.layers):
+        for each in tasks:
+            rows = each.task.compiled()
+            if rows is None or any(row.kind not in kinds for row in rows):
+                return None
+            found += [_Row(row, layer, each.weight) for row in rows]
+    return found
 
 
-def _targets_of(task: Task) -> Iterator[FloatArray | None]:
-    if isinstance(task, PoseTask):
-        yield from (task.position.targets, task.orientation.targets)
-    elif isinstance(task, PostureTask):
-        yield from np.moveaxis(task.targets, 1, 0)
-    elif isinstance(task, PositionTask | OrientationTask | AimTask | CenterOfMassTask):
-        yield task.targets
-    else:
-        raise TypeError(f"the compiled solver does not know {type(task).__name__}")
+def _records(structure: str, count: int, values: Mapping[str, Any]) -> NDArray[Any]:
+    """Return a buffer of a structure's records with some of their fields filled in, the others 0."""
+    records = np.zeros(count, dtype=np.dtype(compiled().records[structure]))
+    for name, value in values.items():
+        records[name] = value
+    return records
 
 
-@dataclass(frozen=True, eq=False)
-class _Row:
-    """A task as the kernel has it: see `Task` in layered.h."""
-
-    kind: int
-    layer: int
-    weight: float
-    recruited: BoolArray
-    joint: int = -1
-    base: int = -1
-    root: bool = False
-    base_root: bool = False
-    axes: tuple[int, ...] = (0, 1, 2)
-    offset: FloatArray | None = None
-    measure: FloatArray | None = None
-    axis: FloatArray | None = None
-    width: int = 3
+def _constants() -> NDArray[Any]:
+    """Return the solver's constants: csrc names those that it wants."""
+    wanted = compiled().records["constants"]["names"]
+    return _records("constants", 1, {name: _CONSTANTS[name.upper()] for name in wanted})
 
 
-def _rows_of(task: Task, layer: int, weight: float) -> Iterator[_Row]:
-    if isinstance(task, PoseTask):
-        yield from _rows_of(task.position, layer, weight)
-        yield from _rows_of(task.orientation, layer, weight)
-    elif isinstance(task, PositionTask):
-        yield _Row(
-            **_point(_POSITION, task.point, task.base, layer, weight),
-            axes=task.axes,
-            measure=task.measure[list(task.axes)],
-        )
-    elif isinstance(task, OrientationTask):
-        yield _Row(**_point(_ORIENTATION, task.point, task.base, layer, weight), width=4)
-    elif isinstance(task, AimTask):
-        width = 0 if task.targets is None else 3
-        yield _Row(**_point(_AIM, task.point, task.base, layer, weight), axis=task.axis, width=width)
-    elif isinstance(task, CenterOfMassTask):
-        yield _Row(
-            _CENTER_OF_MASS,
-            layer,
-            weight,
-            task.recruited.joints,
-            root=task.recruited.root,
-            axes=task.axes,
-            measure=task.measure[list(task.axes)],
-        )
-    elif isinstance(task, PostureTask):
-        for place in task.places:
-            own = np.arange(len(task.columns.joints)) == place
-            joint = int(task.columns.joints[place])
-            yield _Row(_POSTURE, layer, weight, own, joint=joint, width=4)
-
-
-def _point(kind: int, point: Point, base: Point | None, layer: int, weight: float) -> dict[str, Any]:
-    return {
-        "kind": kind,
-        "layer": layer,
-        "weight": weight,
-        "recruited": point.recruited.joints,
-        "joint": point.effector.joint,
-        "base": -1 if base is None else base.effector.joint,
-        "root": point.moves_with_root,
-        "base_root": base is not None and base.moves_with_root,
-        "offset": point.effector.offset,
-    }
-
-
-def _layout(problem: Problem) -> Layout:
-    columns, skeleton, hinges = problem.columns, problem.columns.skeleton, problem.hinges
-    rows = [
-        row
-        for layer, tasks in enumerate(problem.layers)
-        for each in tasks
-        for row in _rows_of(each.task, layer, each.weight)
-    ]
-    masses = _masses(problem)
-    nodes = _nodes(problem, rows, masses)
-    node_of = _places(nodes, len(skeleton))
-    column_of = _places(columns.joints, len(skeleton))
-    translation_of = _places(skeleton.translated, len(skeleton))
+def _node_records(problem: Problem, nodes: IntArray, node_of: IntArray, masses: Masses | None) -> NDArray[Any]:
+    skeleton = problem.columns.skeleton
     parents = skeleton.parents[nodes]
-    above = np.where(parents >= 0, node_of[parents], -1)
-    shares = np.zeros(len(nodes)) if masses is None else masses.shares[nodes]
-    centers = np.zeros((len(nodes), 3)) if masses is None else masses.points[nodes]
-    root = int(node_of[columns.root]) if len(skeleton.translated) else -1
-    return Layout(
-        sizes=(
-            *(len(nodes), len(columns.joints), len(rows), len(hinges.places), len(problem.layers)),
-            *(len(skeleton), len(skeleton.translated), root),
-        ),
-        nodes=(
-            _integers(np.stack((nodes, above, translation_of[nodes], column_of[nodes]), axis=1)),
-            _numbers(np.column_stack((skeleton.offsets[nodes], shares, centers))),
-            _integers(node_of[columns.joints]),
-        ),
-        tasks=(
-            _integers([_task_integers(row, node_of) for row in rows]),
-            _numbers([_task_numbers(row) for row in rows]),
-            np.ascontiguousarray([row.recruited for row in rows], dtype=np.uint8),
-        ),
-        hinges=(_integers(hinges.places), _numbers(np.concatenate((hinges.axes, hinges.limits), axis=1))),
-        targets=_targets(problem),
-    )
+    values = {
+        "joint": nodes,
+        "parent": np.where(parents >= 0, node_of[parents], -1),
+        "translation": _places(skeleton.translated, len(skeleton))[nodes],
+        "column": _places(problem.columns.joints, len(skeleton))[nodes],
+        "offset": skeleton.offsets[nodes],
+    }
+    if masses is not None:
+        values |= {"share": masses.shares[nodes], "center": masses.points[nodes]}
+    return _records("nodes", len(nodes), values)
+
+
+def _tasks(rows: Sequence[_Row], node_of: IntArray, kinds: Sequence[str]) -> tuple[NDArray[Any], FloatArray]:
+    """Return the records of all tasks, and their targets one after the other."""
+    records = _records("tasks", len(rows), {})
+    given: list[FloatArray] = [np.zeros(0)]
+    for record, row in zip(records, rows, strict=True):
+        task, counted = row.task, row.task.measure.counted
+        values = {
+            "kind": kinds.index(task.kind),
+            "layer": row.layer,
+            "weight": row.weight,
+            "rows": len(counted),
+            "root": task.recruited.root if task.point is None else task.point.moves_with_root,
+            "base_root": task.base is not None and task.base.moves_with_root,
+            "node": -1 if task.point is None else node_of[task.point.effector.joint],
+            "base": -1 if task.base is None else node_of[task.base.effector.joint],
+            "offset": 0.0 if task.point is None else task.point.effector.offset,
+            "axis": 0.0 if task.axis is None else task.axis,
+            "width": task.width,
+            "targets": sum(map(len, given)),
+        }
+        for name, value in values.items():
+            record[name] = value
+        record["axes"][: len(counted)] = counted
+        record["measure"][: len(counted)] = task.measure.rows
+        given.append(np.ravel(task.targets) if task.targets is not None else np.zeros(0))
+    return records, np.concatenate(given)
 
 
 def _places(joints: IntArray, count: int) -> IntArray:
@@ -229,17 +215,13 @@ def _numbers(values: Any) -> FloatArray:  # noqa: ANN401  whatever numpy takes
     return np.ascontiguousarray(values, dtype=np.float64)
 
 
-def _masses(problem: Problem) -> Masses | None:
-    tasks = (each.task for layer in problem.layers for each in layer)
-    return next((task.masses for task in tasks if isinstance(task, CenterOfMassTask)), None)
-
-
-def _nodes(problem: Problem, rows: list[_Row], masses: Masses | None) -> IntArray:
+def _nodes(problem: Problem, rows: Sequence[_Row], masses: Masses | None) -> IntArray:
     """Return the joints that matter, growing: columns, effectors, bases, what carries mass, and all above them."""
     skeleton = problem.columns.skeleton
     needed = np.zeros(len(skeleton), dtype=np.bool_)
     needed[problem.columns.joints] = True
-    needed[[joint for row in rows for joint in (row.joint, row.base) if joint >= 0]] = True
+    points = [point for row in rows for point in (row.task.point, row.task.base) if point is not None]
+    needed[[point.effector.joint for point in points]] = True
     if len(skeleton.translated):
         needed[problem.columns.root] = True
     if masses is not None:
@@ -248,22 +230,3 @@ def _nodes(problem: Problem, rows: list[_Row], masses: Masses | None) -> IntArra
         if needed[joint]:
             needed[skeleton.parents[joint]] = True
     return np.flatnonzero(needed)
-
-
-def _task_integers(row: _Row, node_of: IntArray) -> list[int]:
-    axes = [*row.axes, 0, 0, 0][:3]
-    node = -1 if row.joint < 0 else int(node_of[row.joint])
-    base = -1 if row.base < 0 else int(node_of[row.base])
-    return [row.kind, row.layer, len(row.axes), node, base, row.root, row.base_root, *axes, row.width]
-
-
-def _task_numbers(row: _Row) -> FloatArray:
-    numbers = np.zeros(16)
-    numbers[0] = row.weight
-    if row.offset is not None:
-        numbers[1:4] = row.offset
-    if row.measure is not None:
-        numbers[4 : 4 + row.measure.size] = row.measure.ravel()
-    if row.axis is not None:
-        numbers[13:16] = row.axis
-    return numbers

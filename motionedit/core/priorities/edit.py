@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import field
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.priorities.constraints import (
-    Constraint,
-    reach_of,
-    recruits_of,
-)
-from motionedit.core.priorities.continuity import NO_DISPLACEMENT, smoothed_displacement
-from motionedit.core.priorities.recruiting import Breach, Recruits, breaches, expanded
-from motionedit.core.priorities.run import Run, Solved
+from motionedit.core.priorities.continuity import NO_DISPLACEMENT
+from motionedit.core.priorities.frames import run_of
+from motionedit.core.priorities.kinds.constraint import Movable
+from motionedit.core.priorities.passes import solve
+from motionedit.core.priorities.recruiting import Breach, Reach, Recruits, breaches, expanded
+from motionedit.core.priorities.targets import errors_of, with_targets
 from motionedit.core.trace import frame_blocks
 from motionedit.dataclass import dataclass
 
@@ -23,48 +20,10 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from motionedit.core.arrays import BoolArray, IntArray
-    from motionedit.core.body.center_of_mass import Masses
-    from motionedit.core.body.hinges import Hinge
     from motionedit.core.motion import Motion
-    from motionedit.core.priorities.constraint_errors import ConstraintErrors
-
-
-@dataclass(frozen=True)
-class Passes:
-    """The default smoothing: low-pass the displacement map, solve again attracted to it; sigma in frames."""
-
-    count: int = 3
-    sigma: float = 1.5
-
-
-@dataclass(frozen=True)
-class PaperFilter:
-    """The paper's: eq. (4) start states, an FIR low-pass on the root's translation (Hz), further passes."""
-
-    count: int = 2
-    cutoff: float = 3.0
-
-
-@dataclass(frozen=True)
-class LayeredSettings:
-    """How an edit is solved: what the spec says beside its constraints."""
-
-    smoothing: Passes | PaperFilter = field(default_factory=Passes)
-    curve: Literal["time", "index"] = "time"
-    attraction: float = 1.0
-    max_iterations: int = 40
-    recruiting_rule: Literal["expand", "error", "ignore"] = "expand"
-    threads: int = 1
-
-
-@dataclass(frozen=True, eq=False)
-class Body:
-    """What the edit knows of the body: its masses, hinges, and the joint that carries the travel."""
-
-    masses: Masses
-    hinges: tuple[Hinge, ...]
-    travel: int
-    first: int
+    from motionedit.core.priorities.frames import Run
+    from motionedit.core.priorities.kinds.constraint import Constraint, ConstraintErrors
+    from motionedit.core.priorities.settings import Body, LayeredSettings, RecruitingRule
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +70,7 @@ class RecruitingError(ValueError):
 
 
 def recruit(
-    constraints: Sequence[Constraint], motion: Motion, body: Body, *, rule: Literal["expand", "error", "ignore"]
+    constraints: Sequence[Constraint], motion: Motion, body: Body, *, rule: RecruitingRule
 ) -> tuple[list[Recruits], list[Breach]]:
     """Return what each constraint may move, and the breaches of the recruiting rule.
 
@@ -122,12 +81,16 @@ def recruit(
     """
     skeleton, frames = motion.skeleton, len(motion)
     turnable = {j for j, axes in enumerate(skeleton.rotation_axes) if len(axes) in {1, 3}}
-    massive = _body_joints(body, motion) & turnable
-    asked = [recruits_of(c, skeleton, travel=body.travel, body=frozenset(massive)) for c in constraints]
+    movable = Movable(skeleton, body.travel, frozenset(_carriers(body, motion) & turnable))
+    asked = [each.recruits(movable) for each in constraints]
     # A root without all its position channels has no translation that could be moved freely.
     travels = len(skeleton.position_axes[body.travel]) == 3
     asked = [Recruits(frozenset(each.joints & turnable), each.root and travels) for each in asked]
-    reaches = [reach_of(c, skeleton, frames=frames, body=frozenset(massive)) for c in constraints]
+    reaches = [
+        Reach(moved.joints, moved.root, *each.active(frames))
+        for each in constraints
+        for moved in [each.moved_by(movable)]
+    ]
     priorities = [c.priority for c in constraints]
     if rule == "expand":
         return expanded(priorities, asked, reaches)
@@ -137,7 +100,7 @@ def recruit(
     return asked, found
 
 
-def _body_joints(body: Body, motion: Motion) -> set[int]:
+def _carriers(body: Body, motion: Motion) -> set[int]:
     """Return the joints that carry mass and those above them, from the travel-carrying joint down."""
     skeleton = motion.skeleton
     joints: set[int] = set()
@@ -152,7 +115,7 @@ def prepare(
 ) -> tuple[Run, list[Breach]]:
     """Return an edit that is ready to be solved, and the breaches of the recruiting rule; raises as `recruit`."""
     recruits, found = recruit(constraints, motion, body, rule=settings.recruiting_rule)
-    return Run(motion, tuple(constraints), tuple(recruits), body, settings), found
+    return run_of(with_targets(motion, constraints, recruits, body, settings)), found
 
 
 def edit_by_priorities(
@@ -173,36 +136,19 @@ def edit_by_priorities(
         As `recruit`.
     """
     run, found = prepare(motion, constraints, body, settings)
-    if isinstance(settings.smoothing, Passes):
-        state, iterations = solve_in_passes(run, settings.smoothing)
-    else:
-        state, iterations = run.solve_as_the_paper(settings.smoothing)
+    state, iterations = solve(run, settings.smoothing)
     touched, moved = _changes(motion, state.motion, body.travel)
     return PrioritizedEdit(
         motion=state.motion,
         touched=touched,
         moved=moved,
-        errors=run.errors(state),
+        errors=errors_of(run.asked, state.motion),
         iterations=iterations,
         converged=state.converged,
         ranks=state.ranks,
-        recruits=run.recruits,
+        recruits=run.asked.recruits,
         breaches=tuple(found),
     )
-
-
-def solve_in_passes(run: Run, smoothing: Passes) -> tuple[Solved, IntArray]:
-    """Return the motion solved, smoothed and solved again, and the iterations (F,) of the first solve."""
-    motion = run.motion
-    state = run.solve(motion, reference=motion, pull_root=False)
-    iterations = state.iterations.copy()
-    for _ in range(smoothing.count):
-        smooth = smoothed_displacement(motion, state.motion, sigma=smoothing.sigma, first=run.body.first)
-        known = run.after(state, smooth)
-        del state  # of a long motion no more copies are kept than are needed
-        state = run.solve(smooth, reference=smooth, pull_root=True, known=known)
-        del smooth
-    return state, iterations
 
 
 def _changes(before: Motion, after: Motion, travel: int) -> tuple[BoolArray, BoolArray]:

@@ -12,23 +12,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
+from motionedit.core.priorities.constants import LARGEST_FACTOR, LARGEST_TASK_SHARE, NO_CHANGE
 from motionedit.core.priorities.layers import Descent, off_layers
-from motionedit.core.priorities.tasks import posture_error
+from motionedit.core.priorities.points import turn_to_local
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.motion import Motion
-    from motionedit.core.priorities.solver import Reference
-    from motionedit.core.priorities.tasks import Columns
-
-# The secant speaks of the pull alone: the step for the tasks must be shorter than this share of the others.
-_LARGEST_TASK_SHARE = 0.5
-# An accelerated pull is at most so many times the plain one.
-_LARGEST_FACTOR = 3.0
-# Squared length (rad, m) of a change of the pull that is rounding.
-_NO_CHANGE = 1e-24
+    from motionedit.core.priorities.points import Columns
+    from motionedit.core.priorities.problem import Reference
 
 
 def attraction(
@@ -40,7 +34,7 @@ def attraction(
     """
     targets = reference.rotations[frames[:, None], columns.joints]
     z = np.zeros((len(frames), columns.size))
-    turns = posture_error(columns.skeleton, poses, motion.rotations, joints=columns.joints, targets=targets)
+    turns = turn_to_local(columns.skeleton, poses, motion.rotations, joints=columns.joints, targets=targets)
     z[:, :-3] = turns.reshape(len(frames), -1)
     if reference.root is not None and len(columns.skeleton.translated):
         root = int(np.searchsorted(columns.skeleton.translated, columns.root))
@@ -82,13 +76,13 @@ def accelerated(memory: Memory, frames: IntArray, descent: Descent) -> FloatArra
     step, change = memory.steps[frames], home - memory.homes[frames]
     length, task = np.linalg.norm(home, axis=1), np.linalg.norm(descent.tasks, axis=1)
     size = np.sum(change * change, axis=1)
-    usable = (memory.free[frames] == descent.free).all(axis=1) & (size > _NO_CHANGE)
-    usable &= memory.tasks[frames] < _LARGEST_TASK_SHARE * np.linalg.norm(step, axis=1)
-    usable &= task < _LARGEST_TASK_SHARE * length
+    usable = (memory.free[frames] == descent.free).all(axis=1) & (size > NO_CHANGE)
+    usable &= memory.tasks[frames] < LARGEST_TASK_SHARE * np.linalg.norm(step, axis=1)
+    usable &= task < LARGEST_TASK_SHARE * length
     if not usable.any():
         return home
     way = (step + change) * descent.free
     share = np.where(usable, np.sum(home * change, axis=1) / np.where(usable, size, 1.0), 0.0)
     fast = home - share[:, None] * off_layers(descent.Q, way)
-    longest = _LARGEST_FACTOR * length / np.maximum(np.linalg.norm(fast, axis=1), 1e-300)
+    longest = LARGEST_FACTOR * length / np.maximum(np.linalg.norm(fast, axis=1), 1e-300)
     return np.where(usable[:, None], fast * np.minimum(1.0, longest)[:, None], home)

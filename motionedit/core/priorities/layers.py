@@ -6,18 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.priorities.constants import LEAST_SCALE, LIMB, RANK_TOLERANCE
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
-
-# Singular values below this share of the layer's largest (or of `_LEAST_SCALE`) are no freedom.
-RANK_TOLERANCE = 1e-4
-_LEAST_SCALE = 1e-2
-# Metres at leg length 0.85 m: a stretched limb. A turn t of it takes its end t^2 / 2 of this off its tangent.
-_LIMB = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,13 +111,13 @@ def _damped_step(
     """
     values, vectors = np.linalg.eigh(A @ np.swapaxes(A, 1, 2))
     s = np.sqrt(np.maximum(values, 0.0))
-    kept = s > RANK_TOLERANCE * np.maximum(s[:, -1:], _LEAST_SCALE)
+    kept = s > RANK_TOLERANCE * np.maximum(s[:, -1:], LEAST_SCALE)
     safe = np.where(kept, s, 1.0)
     rows = np.where(kept, 1.0 / safe, 0.0)[..., None] * (np.swapaxes(vectors, 1, 2) @ A)
     inverse = np.sqrt(np.sum(np.where(kept, 1.0 / safe, 0.0) ** 2, axis=1))
     least = np.where(inverse > 0.0, 1.0 / np.where(inverse > 0.0, inverse, 1.0), 0.0)
     size = np.linalg.norm(b, axis=1)
-    d = np.maximum(size / largest, np.sqrt(2.0 * _LIMB * size)) if steady else size / largest
+    d = np.maximum(size / largest, np.sqrt(2.0 * LIMB * size)) if steady else size / largest
     damping = np.where(least <= 0.5 * d, 0.5 * d, np.sqrt(np.maximum(least * (d - least), 0.0)))
     damping = np.where(least <= d, damping, 0.0)
     along = (np.swapaxes(vectors, 1, 2) @ b[..., None])[..., 0]

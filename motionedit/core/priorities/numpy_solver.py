@@ -14,37 +14,31 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.kinematics import WorldPoses, forward
 from motionedit.core.motion import Motion
+from motionedit.core.priorities.constants import (
+    ANNEALED_ITERATIONS,
+    FULL_GAIN_ITERATIONS,
+    GAIN_DECAY,
+    HASTY_ITERATIONS,
+    LARGEST_ERROR,
+    LARGEST_TURN,
+    LIMIT_ROUNDS,
+    ON_LIMIT,
+    STOP_ERROR,
+    STOP_LEFT,
+    STOP_STEP,
+)
 from motionedit.core.priorities.homing import Memory, accelerated, attraction
 from motionedit.core.priorities.layers import Descent, descend
-from motionedit.core.priorities.solver import Reference
+from motionedit.core.priorities.problem import Reference
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
-    from motionedit.core.priorities.solver import LayeredSolution, Problem, WeightedTask
-    from motionedit.core.priorities.tasks import Columns
+    from motionedit.core.priorities.points import Columns
+    from motionedit.core.priorities.problem import LayeredSolution, Problem, WeightedTask
 
-# Metres at leg length 0.85 m: a layer's error is clamped to this much per iteration.
-LARGEST_ERROR = 0.6
-# Radians: no joint turns further than this in one iteration.
-LARGEST_TURN = 0.5
-# Radians and metres: a frame is done when its largest step falls below,
-STOP_STEP = 1e-4
-# or when the steps to come, by the ratio of the last two, add up to less than this, and the layers are met to that.
-STOP_LEFT, STOP_ERROR = 2e-5, 1e-5
-# The gain of the attraction: 1 at first, then this factor per iteration.
-FULL_GAIN_ITERATIONS = 8
-GAIN_DECAY = 0.85
-# After so many iterations what is left may be out of reach, and steps are kept from swinging.
-HASTY_ITERATIONS = 8
-# Over so many last iterations the lower layers' largest error and the gain are halved each time.
-ANNEALED_ITERATIONS = 10
-# A hinge that leaves its limits is set on them and leaves the system; this many times at most.
-LIMIT_ROUNDS = 4
-# Radians: so far beyond its limit a hinge is on it.
-_ON_LIMIT = 1e-12
 # Frames solved together: more would leave the processor's cache.
 BLOCK = 1024
 
@@ -239,7 +233,7 @@ class _Hinges:
     def out_of_limits(self, step: FloatArray, free: BoolArray) -> BoolArray:
         """Return which free hinges a step (N, n) would take beyond their limits, shape (N, H)."""
         after = self._after(step)
-        out: BoolArray = (np.abs(after - self._limited(after)) > _ON_LIMIT) & free[:, self.blocks[:, 0]]
+        out: BoolArray = (np.abs(after - self._limited(after)) > ON_LIMIT) & free[:, self.blocks[:, 0]]
         return out
 
     def keep_limits(

@@ -23,6 +23,9 @@ class RecruitRule:
     root: bool = False
 
 
+EVERYTHING = RecruitRule()
+
+
 @dataclass(frozen=True)
 class Recruits:
     """The joints that a constraint may turn, and whether it may move the root's translation."""
@@ -41,6 +44,14 @@ class Reach:
     last: int
 
 
+class NotOnTheWayError(ValueError):
+    """A recruiting rule goes up to a `joint` that is not on the `way` from the effector to the root."""
+
+    def __init__(self, joint: int, way: frozenset[int]) -> None:
+        super().__init__("is not between the effector and the root")
+        self.joint, self.way = joint, way
+
+
 def recruit_chain(skeleton: Skeleton, rule: RecruitRule, *, start: int, travel: int) -> Recruits:
     """Return what a constraint on an effector recruits.
 
@@ -53,7 +64,7 @@ def recruit_chain(skeleton: Skeleton, rule: RecruitRule, *, start: int, travel: 
 
     Raises
     ------
-    ValueError
+    NotOnTheWayError
         If `up_to` is not on the way from the start to the root.
     """
     chain = [int(j) for j in skeleton.chain(start)][::-1]
@@ -65,7 +76,7 @@ def recruit_chain(skeleton: Skeleton, rule: RecruitRule, *, start: int, travel: 
         return Recruits(frozenset(chain[: rule.levels]), root=False)
     if rule.kind == "up_to":
         if rule.joint not in chain:
-            raise ValueError("is not between the effector and the root")
+            raise NotOnTheWayError(-1 if rule.joint is None else rule.joint, frozenset(chain))
         return Recruits(frozenset(chain[: chain.index(rule.joint) + 1]), root=False)
     return Recruits(frozenset(chain), root=True)
 

@@ -9,8 +9,8 @@ Per frame and iteration, with Q the orthonormal rows of the layers above:
 The damping lambda is in the step, never in the projector, so a layer cannot disturb those above it to first order;
 what it does to second order is annealed away: in the last iterations the steps of lower layers shrink to nothing.
 
-Two solvers do this: `layered_numpy`, the readable reference, with all frames at once, and the compiled one of `csrc`, a
-few frames side by side. They agree to rounding.
+Two solvers do this: `numpy_solver`, the readable reference, with all frames at once, and the compiled one of `csrc`, a
+few frames side by side. They agree to rounding. A task that the compiled one does not know is solved by numpy.
 """
 
 from __future__ import annotations
@@ -20,79 +20,32 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.compiled import compiled
-from motionedit.core.priorities import compiled_solver as kernel
+from motionedit.core.priorities import compiled_solver
+from motionedit.core.priorities.compiled_solver import Layout, layout_of
+from motionedit.core.priorities.problem import LayeredSolution, Problem
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from motionedit.core.arrays import BoolArray, FloatArray, IntArray
+    from motionedit.core.arrays import BoolArray, IntArray
     from motionedit.core.motion import Motion
-    from motionedit.core.priorities.tasks import Columns, Task
+    from motionedit.core.priorities.problem import Reference
 
 
 @dataclass(frozen=True, eq=False)
-class WeightedTask:
-    """A task and its weight in its layer."""
+class Prepared:
+    """A problem, and its layout for the compiled solver; None where numpy solves it."""
 
-    task: Task
-    weight: float
-
-
-@dataclass(frozen=True, eq=False)
-class HingeColumns:
-    """Columns that turn about one axis: their `places` (H,), axes (H, 3) in the joint, and limits (H, 2) in rad."""
-
-    places: IntArray
-    axes: FloatArray
-    limits: FloatArray
+    problem: Problem
+    layout: Layout | None
 
 
-@dataclass(frozen=True, eq=False)
-class Problem:
-    """What is solved in N frames: layers, the most important first, over common unknowns.
-
-    Attributes
-    ----------
-    columns : Columns
-    moves_root : bool
-        Whether any task may move the root's translation.
-    layers : tuple of tuples of WeightedTask
-    hinges : HingeColumns
-    attraction : float
-        Gain of z.
-    max_iterations : int
-    layout : kernel.Layout or None
-        The problem as the compiled solver has it, where it was laid out before.
-    """
-
-    columns: Columns
-    moves_root: bool
-    layers: tuple[tuple[WeightedTask, ...], ...]
-    hinges: HingeColumns
-    attraction: float
-    max_iterations: int
-    layout: kernel.Layout | None = None
-
-
-@dataclass(frozen=True, eq=False)
-class Reference:
-    """What z pulls to: local `rotations` (F, J, 4), and the `root`'s translations (F, 3); None leaves it out of z."""
-
-    rotations: FloatArray
-    root: FloatArray | None
-
-
-@dataclass(frozen=True, eq=False)
-class LayeredSolution:
-    """What came out: the motion, and of its N frames that were solved iterations (N,), converged (N,), ranks (N, L)."""
-
-    motion: Motion
-    iterations: IntArray
-    converged: BoolArray
-    ranks: IntArray
+def prepared(problem: Problem) -> Prepared:
+    """Return a problem ready to be solved: laid out for the compiled solver, where that runs and knows all tasks."""
+    return Prepared(problem, layout_of(problem))
 
 
 def solve_layers(
-    problem: Problem,
+    prepared: Prepared,
     motion: Motion,
     reference: Reference,
     frames: IntArray,
@@ -119,16 +72,17 @@ def solve_layers(
     threads : int
         Frames are shared out among so many threads where the compiled solver runs; the result does not depend on it.
     """
+    problem = prepared.problem
     solution = LayeredSolution(
         motion,
         np.zeros(len(frames), dtype=np.int64),
         np.zeros(len(frames), dtype=np.bool_) if done is None else done.copy(),
         np.zeros((len(frames), len(problem.layers)), dtype=np.int64),
     )
-    if compiled() is None:
-        from motionedit.core.priorities import numpy_solver as layered_numpy
+    if prepared.layout is None or compiled() is None:
+        from motionedit.core.priorities import numpy_solver
 
-        layered_numpy.solve(problem, solution, reference, frames, in_order=in_order)
+        numpy_solver.solve(problem, solution, reference, frames, in_order=in_order)
     else:
-        kernel.solve(problem, solution, reference, frames, in_order=in_order, threads=threads)
+        compiled_solver.solve(prepared.layout, solution, reference, frames, in_order=in_order, threads=threads)
     return solution

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import FloatArray, IntArray
 
+# What the parameter u of a spline S(u) is: time, or the knots' index as in the paper.
 Curve = Literal["time", "index"]
 
 

@@ -46,7 +46,11 @@ class Place:
     def at(self, *keys: str | int) -> Place:
         """Return the place of a key below this one; where the spec does not give it, this one."""
         below = (*self.keys, *keys)
-        return Place(self.loaded, below if self.loaded.has(below) else self.keys, self.clip)
+        return self.below(below)
+
+    def below(self, keys: tuple[str | int, ...]) -> Place:
+        """Return the place of keys from the spec's top, which stand below this one; where they are not given, this."""
+        return Place(self.loaded, keys if self.loaded.has(keys) else self.keys, self.clip)
 
     def error(self, message: str) -> MotionEditError:
         """Return an error at this place."""
@@ -133,7 +137,9 @@ def frame_range(
 
 
 def recruit_place(constraint: Place) -> Place:
-    """Return the place of a constraint's recruiting, which may be the spec's defaults."""
+    """Return the place of a constraint's recruiting, its own or the spec's defaults; of such a place itself."""
+    if constraint.keys[-1:] == ("recruit",):
+        return constraint
     for keys in ((*constraint.keys, "recruit"), ("defaults", "recruit")):
         if constraint.loaded.has(keys):
             return Place(constraint.loaded, keys, constraint.clip)

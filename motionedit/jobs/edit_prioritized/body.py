@@ -11,7 +11,7 @@ from motionedit.core.arrays import frozen
 from motionedit.core.body.center_of_mass import Masses, find_masses
 from motionedit.core.body.hinges import OFF_AXIS_ENERGY, Hinge, find_hinges, hinge_of
 from motionedit.core.motion import Motion, scaled
-from motionedit.core.priorities.edit import Body
+from motionedit.core.priorities.settings import Body
 from motionedit.core.units import STANDARD_LEG
 from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError
@@ -62,10 +62,6 @@ def sized_clip(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults
         leg = anatomy.leg_length * spec.unit.metres
         warnings.append(f"a leg is {leg:.3g} m long where the unit is {spec.unit.name}: is that the clip's unit?")
     masses = _masses(loaded, facts, faults)
-    if any(each.type == "com" for each in spec.constraints):
-        warnings += masses.warnings
-    if not anatomy.foot_points and any(c.type == "com" and c.support is None for c in spec.constraints):
-        warnings.append("no feet found for the support of 'com': the center of mass keeps to the input's own path")
     hinges = _hinges(loaded, facts, faults, warnings)
     motion = scaled(clip.motion, scale)
     sized = replace(masses, skeleton=motion.skeleton, points=frozen(masses.points * scale))

@@ -2,33 +2,35 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from motionedit.core import rotations as rot
 from motionedit.core.kinematics import Effector
-from motionedit.core.priorities.constraints import Constraint, in_metres, recruits_of
-from motionedit.core.priorities.recruiting import RecruitRule
+from motionedit.core.measure import Measure
+from motionedit.core.priorities.kinds import KINDS
+from motionedit.core.priorities.kinds.constraint import Movable
+from motionedit.core.priorities.recruiting import NotOnTheWayError, RecruitRule
 from motionedit.core.priorities.trajectories import ControlPoint, active_interval
 from motionedit.dataclass import dataclass
 from motionedit.jobs.clip import resolve
+from motionedit.jobs.clip.axes import GivenAxes
 from motionedit.jobs.clip.faults import Faults
+from motionedit.spec import kinds
 from motionedit.spec.faults import listed
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
-    from motionedit.core.arrays import FloatArray
-    from motionedit.core.body.ground import Frame
+    from motionedit.core.priorities.kinds.constraint import Constraint
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.jobs.clip.resolve import Place
-    from motionedit.spec.constraints import AnyConstraint, ComConstraint
+    from motionedit.spec.constraints import ConstraintItem, OwnValue
     from motionedit.spec.edit_prioritized import EditPrioritizedSpec
     from motionedit.spec.load import LoadedSpec
+    from motionedit.spec.model import Kind
     from motionedit.spec.points import Point
-    from motionedit.spec.values import Recruit
+    from motionedit.spec.values import EffectorSpec, Recruit
 
 # Where a constraint gives no tolerance: metres at leg length 0.85 m, and degrees.
 DEFAULT_TOLERANCE = 1e-3
@@ -80,13 +82,13 @@ def clip_constraints(
     found = []
     for spec in loaded.model.constraints:
         own = Faults()
-        constraint = _Resolver(loaded, facts, events, own).constraint(spec)
+        constraint = _Resolver(loaded, facts, events, scale, own).constraint(spec)
         for error in own.errors:
             faults.add(error)
         met = spec.met_within
         found.append(
             ClipConstraint(
-                constraint=in_metres(constraint, scale),
+                constraint=constraint,
                 tolerance=DEFAULT_TOLERANCE / scale if met.position is None else met.position,
                 angle_tolerance=DEFAULT_ANGLE_TOLERANCE if met.angle is None else met.angle,
                 may_give_way=met.off,
@@ -97,69 +99,69 @@ def clip_constraints(
 
 
 @dataclass(frozen=True, eq=False)
-class _Axes:
-    """The axes that a constraint's numbers are along: those of `heading`, or the world's (or a joint's)."""
-
-    heading: Frame | None
-
-    @property
-    def measure(self) -> FloatArray:
-        return np.eye(3) if self.heading is None else self.heading.axes
-
-    def position(self, given: Sequence[float]) -> FloatArray:
-        """Return a position along the measuring axes, from the world's origin."""
-        position = np.array(given)
-        return position if self.heading is None else self.measure @ self.heading.world_points(position)
-
-    def rotation(self, q: FloatArray) -> FloatArray:
-        """Return a rotation in the world."""
-        return q if self.heading is None else rot.multiply(self.heading.rotation, q)
-
-
-@dataclass(frozen=True, eq=False)
 class _Resolver:
-    """One constraint's way into a clip; its errors are collected."""
+    """One constraint's way into a clip; its errors are collected.
+
+    What a type has of its own is resolved by what kind of value it is, so that no type is known here.
+    """
 
     loaded: LoadedSpec[EditPrioritizedSpec]
     facts: ClipFacts
     events: Mapping[str, float]
+    scale: float
     faults: Faults
 
-    def constraint(self, spec: AnyConstraint) -> Constraint:
-        """Return the constraint, lengths in clip units."""
+    def constraint(self, spec: ConstraintItem) -> Constraint:
+        """Return the constraint, lengths in normalised metres."""
         place = resolve.Place(self.loaded, spec.keys, self.facts.clip.label)
-        frame_time, skeleton = self.facts.clip.motion.frame_time, self.facts.clip.motion.skeleton
-        heading = self.facts.heading_frame() if spec.type != "posture" and spec.frame == "heading" else None
-        axes = _Axes(heading)
-        found = Constraint(
-            kind=spec.type,
+        frame_time = self.facts.clip.motion.frame_time
+        own = {each.key: each for each in spec.own_values()}
+        axes = GivenAxes.of(self.facts, own["frame"].value if "frame" in own else "world")
+        points = self._points(spec.points, axes, place)
+        given = {key: self._value(each, place) for key, each in own.items()}
+        if "frame" in own:
+            joint = "relative_to" in own and own["relative_to"].kind is kinds.JOINT
+            base = given.pop("relative_to") if joint else None
+            given["measure"] = Measure(axes.rows, given.pop("axes", (0, 1, 2)), base)
+            del given["frame"]
+        found = KINDS[spec.type](
             name=str(spec.name),
             priority=spec.priority,
             weight=spec.weight,
-            effector=_NOWHERE,
-            measure=axes.measure,
-            axes=spec.axes if spec.type in {"position", "com"} else (0, 1, 2),
-            points=self._points(spec.points, axes, place),
+            points=points,
             ease_in=spec.ease_in.in_frames(frame_time),
             ease_out=spec.ease_out.in_frames(frame_time),
+            **given,
         )
-        if spec.type == "posture":
-            return replace(found, joints=self._joints(spec.joints, place.at("joints")))
-        found = replace(found, recruit=self._rule(spec.recruit, resolve.recruit_place(place)))
-        if spec.type == "com":
-            return replace(found, support=self._support(spec, place.at("support")))
-        at = resolve.Place(self.loaded, spec.effector_keys, place.clip)
-        effector = self.faults.get(lambda: resolve.effector(spec.effector, skeleton, at), otherwise=_NOWHERE)
-        found = replace(found, effector=effector, base=self._joint(spec.relative_to, place.at("relative_to")))
-        if spec.type == "aim":
-            axis = np.array(spec.axis) / np.linalg.norm(spec.axis)
-            found = replace(found, axis=axis, target=self._joint(spec.target, place.at("target")))
         self._check_recruits(found, place)
         return found
 
-    def _joint(self, name: str | None, place: Place) -> int | None:
-        if name is None:
+    def _value(self, own: OwnValue, constraint: Place) -> Any:  # noqa: ANN401  of any kind
+        """Return what a key's value is in the clip; a value that names nothing there is what it is."""
+        kind, value = own.kind, own.value
+        if kind is kinds.FEET and value is None:
+            return tuple(joint for _, joint in self.facts.anatomy.foot_points)
+        if value is None:
             return None
+        ways: dict[Kind, Callable[[Any, Place], object]] = {
+            kinds.EFFECTORS: self._effector,
+            kinds.RECRUIT: self._rule,
+            kinds.JOINT: self._joint,
+            kinds.JOINTS: self._joints,
+            kinds.FEET: self._joints,
+            kinds.DIRECTION: lambda given, _place: np.array(given) / np.linalg.norm(given),
+        }
+        if kind not in ways:
+            return value
+        return ways[kind](value, constraint.below(own.keys))
+
+    def _effector(self, effectors: Sequence[EffectorSpec], place: Place) -> Effector:
+        """Return the one effector of a loaded spec's constraint, lengths in normalised metres."""
+        skeleton = self.facts.clip.motion.skeleton
+        found = self.faults.get(lambda: resolve.effector(effectors[0], skeleton, place), otherwise=_NOWHERE)
+        return Effector(found.joint, found.offset * self.scale)
+
+    def _joint(self, name: str, place: Place) -> int | None:
         return self.faults.get(lambda: resolve.joint(name, self.facts.clip.motion.skeleton, place), otherwise=None)
 
     def _joints(self, names: Sequence[str], place: Place) -> tuple[int, ...]:
@@ -167,16 +169,9 @@ class _Resolver:
         skeleton = self.facts.clip.motion.skeleton
         return self.faults.get(lambda: resolve.joints(names, skeleton, place), otherwise=none)
 
-    def _support(self, spec: ComConstraint, place: Place) -> tuple[int, ...]:
-        """Return the set A; by default the feet and toes that the skeleton has."""
-        if spec.relative_to == "world":
-            return ()
-        if spec.support is None:
-            return tuple(joint for _, joint in self.facts.anatomy.foot_points)
-        return self._joints(spec.support, place)
-
-    def _rule(self, recruit: Recruit, place: Place) -> RecruitRule:
-        if recruit.kind == "up_to":
+    def _rule(self, recruit: Recruit, constraint: Place) -> RecruitRule:
+        place = resolve.recruit_place(constraint)
+        if recruit.joint is not None:
             return RecruitRule("up_to", joint=self._joint(recruit.joint, place.at("up_to")))
         if recruit.kind != "joints":
             return RecruitRule(recruit.kind, levels=recruit.levels)
@@ -192,20 +187,18 @@ class _Resolver:
         """Find an `up_to` that is not above the effector."""
         if self.faults.errors:
             return
-        skeleton, rule = self.facts.clip.motion.skeleton, constraint.recruit
+        skeleton = self.facts.clip.motion.skeleton
         try:
-            recruits_of(constraint, skeleton, travel=self.facts.travel, body=frozenset())
-        except ValueError:
-            first = replace(constraint, recruit=RecruitRule())
-            way = recruits_of(first, skeleton, travel=self.facts.travel, body=frozenset()).joints
-            names = listed([skeleton.names[j] for j in sorted(way, reverse=True)])
-            joint = "" if rule.joint is None else skeleton.names[rule.joint]
+            constraint.recruits(Movable(skeleton, self.facts.travel, frozenset()))
+        except NotOnTheWayError as error:
+            names = listed([skeleton.names[j] for j in sorted(error.way, reverse=True)])
+            joint = skeleton.names[error.joint]
             message = (
                 f"'{joint}' is not on the way of '{constraint.name}' to the root in {place.clip}, which is {names}"
             )
             self.faults.add(resolve.recruit_place(place).at("up_to").error(message))
 
-    def _points(self, points: Sequence[Point], axes: _Axes, place: Place) -> tuple[ControlPoint, ...]:
+    def _points(self, points: Sequence[Point], axes: GivenAxes, place: Place) -> tuple[ControlPoint, ...]:
         found: list[ControlPoint] = []
         for i, point in enumerate(points):
             at = place.at("points", i)
@@ -219,7 +212,7 @@ class _Resolver:
             found.append(each)
         return tuple(found)
 
-    def _point(self, point: Point, axes: _Axes, place: Place) -> ControlPoint:
+    def _point(self, point: Point, axes: GivenAxes, place: Place) -> ControlPoint:
         motion, events = self.facts.clip.motion, self.events
         (mode,) = point.time_keys
         count, frame_time = len(motion), motion.frame_time
@@ -235,8 +228,8 @@ class _Resolver:
             mode="at" if interval is None else "during" if point.hold is None else "hold",
             start=start,
             stop=stop,
-            position=None if point.position is None else axes.position(point.position),
-            shift=None if point.shift is None else np.array(point.shift),
+            position=None if point.position is None else axes.position(point.position) * self.scale,
+            shift=None if point.shift is None else np.array(point.shift) * self.scale,
             orientation=None if point.orientation is None else axes.rotation(resolve.orientation(point.orientation)),
             tension=point.tension,
             continuity=point.continuity,

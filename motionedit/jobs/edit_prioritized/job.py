@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -9,14 +10,8 @@ import numpy as np
 from motionedit.core.bvh import edited_pieces, unedited_bytes
 from motionedit.core.compiled import solver_name
 from motionedit.core.motion import Motion
-from motionedit.core.priorities.edit import (
-    LayeredSettings,
-    PaperFilter,
-    Passes,
-    PrioritizedEdit,
-    RecruitingError,
-    edit_by_priorities,
-)
+from motionedit.core.priorities.edit import PrioritizedEdit, RecruitingError, edit_by_priorities
+from motionedit.core.priorities.settings import LayeredSettings, PaperFilter, Passes
 from motionedit.core.trace import blocks_of, forward_blocks, frame_blocks
 from motionedit.dataclass import dataclass
 from motionedit.jobs.batch.pool import threads_within
@@ -37,8 +32,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from motionedit.core.arrays import BoolArray
+    from motionedit.core.body.center_of_mass import Masses
     from motionedit.core.bvh import Clip
-    from motionedit.core.priorities.constraints import Constraint
+    from motionedit.core.priorities.kinds.constraint import Constraint
     from motionedit.core.trace import Trace
     from motionedit.jobs.batch.run import BatchResult, ClipTask, RunOptions
     from motionedit.jobs.edit_prioritized.body import SizedClip
@@ -46,8 +42,7 @@ if TYPE_CHECKING:
     from motionedit.spec.edit_prioritized import EditPrioritizedSpec
     from motionedit.spec.load import LoadedSpec
 
-# Kinds of constraints that keep an effector in place, and how far (metres at leg length 0.85 m) is a visible way.
-_HOLDS = frozenset({"position", "pose"})
+# Metres at leg length 0.85 m: a visible way.
 _LOOSE = 0.01
 
 
@@ -108,7 +103,7 @@ class EditByPriorities:
         sized = sized_clip(self.loaded, facts_of(clip, up=self.loaded.model.up), faults)
         constraints = self._constraints(sized, task, faults)
         faults.raise_all(f"what the spec names and {task.label} lacks")
-        return sized, constraints
+        return replace(sized, warnings=(*sized.warnings, *_warnings_of(constraints, sized.masses))), constraints
 
     def _constraints(self, sized: SizedClip, task: ClipTask, faults: Faults) -> list[ClipConstraint]:
         spec = self.loaded.model
@@ -178,6 +173,16 @@ class EditByPriorities:
         return {"unit": None if unit is None else unit.name, "metrics": metrics}
 
 
+def _warnings_of(constraints: Sequence[ClipConstraint], masses: Masses) -> list[str]:
+    """Return what the user should know of the constraints before they are solved, each line once."""
+    asked = [each.constraint for each in constraints]
+    lines = [
+        *(masses.warnings if any(each.weighs for each in asked) else ()),
+        *(w for c in asked for w in c.warnings()),
+    ]
+    return list(dict.fromkeys(lines))
+
+
 def _loose_feet(sized: SizedClip, constraints: Sequence[Constraint], metrics: dict[str, Any]) -> list[str]:
     """Return a warning where planted feet were dragged along and no constraint is about them: it is easily forgotten.
 
@@ -186,7 +191,8 @@ def _loose_feet(sized: SizedClip, constraints: Sequence[Constraint], metrics: di
     facts, drift = sized.facts, metrics["foot_drift_max"]
     ankles = {leg.ankle for leg in facts.anatomy.legs or ()}
     skeleton = facts.clip.motion.skeleton
-    held = any(ankles & set(map(int, skeleton.chain(c.effector.joint))) for c in constraints if c.kind in _HOLDS)
+    placed = [each.at.joint for each in constraints if each.places_effector and each.at is not None]
+    held = any(ankles & set(map(int, skeleton.chain(joint))) for joint in placed)
     if held or drift is None or drift * sized.scale < _LOOSE:
         return []
     return [f"planted feet move by up to {drift:.3g}, and no constraint holds them"]

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from motionedit.core.arrays import median
-from motionedit.core.priorities.constraints import order_of_layers
-from motionedit.core.priorities.edit import LayeredSettings, PaperFilter
+from motionedit.core.priorities.problem import order_of_layers
+from motionedit.core.priorities.settings import LayeredSettings, PaperFilter
 from motionedit.dataclass import dataclass
 from motionedit.jobs.clip.effector_record import effector_record
 from motionedit.jobs.edit_prioritized.recruits import recruited_names
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from motionedit.core.arrays import FloatArray
-    from motionedit.core.priorities.constraint_errors import ConstraintErrors
     from motionedit.core.priorities.edit import PrioritizedEdit
+    from motionedit.core.priorities.kinds.constraint import ConstraintErrors
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.jobs.edit_prioritized.constraints import ClipConstraint
 
@@ -207,7 +207,7 @@ def _record(one: _Measured, status: str, gave_way_to: list[str]) -> dict[str, An
     limits = not each.may_give_way
     return {
         "name": each.constraint.name,
-        "type": each.constraint.kind,
+        "type": each.constraint.type,
         "priority": each.constraint.priority,
         "error_max": None if lengths is None else float(lengths.max()),
         "error_rms": None if lengths is None else float(np.sqrt(np.mean(lengths**2))),
@@ -226,9 +226,8 @@ def _record(one: _Measured, status: str, gave_way_to: list[str]) -> dict[str, An
 def _about(one: _Measured, facts: ClipFacts, scale: float) -> dict[str, Any]:
     """Return what a constraint is about: its effector, and the frames of its points."""
     constraint, skeleton = one.each.constraint, facts.clip.motion.skeleton
-    at_a_joint = constraint.kind not in {"com", "posture"}
     return {
-        "effector": effector_record(constraint.effector, skeleton, scale=scale) if at_a_joint else None,
+        "effector": None if constraint.at is None else effector_record(constraint.at, skeleton, scale=scale),
         "points": [{"mode": point.mode, "first": point.start, "last": point.stop} for point in constraint.points],
     }
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from motionedit.core.priorities.constraints import order_of_layers
+from motionedit.core.priorities.problem import order_of_layers
 from motionedit.core.priorities.recruiting import Recruits
 from motionedit.jobs.clip import resolve
 
@@ -12,9 +12,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from motionedit.core.body.hinges import Hinge
-    from motionedit.core.priorities.constraints import Constraint
+    from motionedit.core.priorities.kinds.constraint import Constraint
     from motionedit.core.priorities.recruiting import Breach
-    from motionedit.core.skeleton import Skeleton
     from motionedit.errors import MotionEditError
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.spec.edit_prioritized import EditPrioritizedSpec
@@ -74,25 +73,13 @@ def layer_lines(
 def _constraint_line(constraint: Constraint, recruits: Recruits, facts: ClipFacts) -> str:
     skeleton = facts.clip.motion.skeleton
     first, last = constraint.active(len(facts.clip.motion))
-    parts = [f"{constraint.name}: {_what(constraint, skeleton)}, frames {first} to {last}"]
+    parts = [f"{constraint.name}: {constraint.words(skeleton.names)}, frames {first} to {last}"]
     if constraint.points:
         parts.append(", ".join(point.text for point in constraint.points))
     if constraint.weight != 1.0:
         parts.append(f"weight {constraint.weight:g}")
     moved = ", ".join(recruited_names(recruits, facts))
     return f"{'; '.join(parts)}; recruits {moved or 'nothing'}"
-
-
-def _what(constraint: Constraint, skeleton: Skeleton) -> str:
-    names = skeleton.names
-    if constraint.kind == "com":
-        on = ", ".join(names[j] for j in constraint.support)
-        return f"center of mass{f' over {on}' if on else ''}"
-    if constraint.kind == "posture":
-        return f"posture of {', '.join(names[j] for j in constraint.joints)}"
-    base = "" if constraint.base is None else f" relative to {names[constraint.base]}"
-    target = "" if constraint.target is None else f" at {names[constraint.target]}"
-    return f"{constraint.kind} of {names[constraint.effector.joint]}{base}{target}"
 
 
 def recruited_names(recruits: Recruits, facts: ClipFacts) -> list[str]:

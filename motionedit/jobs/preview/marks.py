@@ -9,6 +9,7 @@ import numpy as np
 
 from motionedit.core.body.center_of_mass import center_of_mass, find_masses
 from motionedit.core.kinematics import Effector, effector_positions
+from motionedit.core.priorities.kinds import KINDS
 from motionedit.dataclass import dataclass
 from motionedit.errors import UsageError
 from motionedit.jobs.preview.bodies import upright
@@ -18,9 +19,12 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from motionedit.core.arrays import FloatArray
+    from motionedit.core.priorities.kinds.constraint import Symbol
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.report.preview.body import Body
 
+# What stands at `type` for a goal of edit-pc.
+_GOAL = "goal"
 # An offset and an end site nearer to each other than this (leg lengths) are one point.
 _SAME_POINT = 1e-4
 
@@ -34,7 +38,7 @@ class Figure:
 
     def point(self, record: Mapping[str, Any], masses: Mapping[str, float]) -> int | None:
         """Return the body's point that is a mark's effector, None where the mark has none or the clip lacks it."""
-        if record.get("type") == "com":
+        if _look(record).weighs:
             return self._added(self._center_of_mass(masses))
         effector, skeleton = record.get("effector"), self.facts.clip.motion.skeleton
         if effector is None or effector["joint"] not in skeleton.names:
@@ -62,6 +66,25 @@ class Figure:
         positions = np.concatenate((self.body.positions, self.on_page(path)[:, None]), axis=1)
         self.body = replace(self.body, names=(*self.body.names, ""), positions=positions)
         return len(self.body.names) - 1
+
+
+@dataclass(frozen=True)
+class _Look:
+    """How a mark is drawn, and whether its place is the center of mass: see `Mark`, and the kinds of constraints."""
+
+    symbol: Symbol
+    looks: bool = False
+    instant: bool = False
+    weighs: bool = False
+
+
+def _look(record: Mapping[str, Any]) -> _Look:
+    """Return how a record's mark is drawn; a goal of edit-pc is a place at one instant."""
+    name = str(record["type"])
+    if name == _GOAL:
+        return _Look("ring", instant=True)
+    kind = KINDS[name]
+    return _Look(kind.symbol, looks=kind.looks, weighs=kind.weighs)
 
 
 def edit_of(
@@ -105,7 +128,7 @@ def _goal(record: Mapping[str, Any]) -> dict[str, Any]:
     frame, target = record["frame"], record.get("target")
     return {
         **record,
-        "type": "goal",
+        "type": _GOAL,
         "first_frame": frame,
         "last_frame": frame,
         "points": [{"mode": "at", "first": frame, "last": frame}],
@@ -133,9 +156,13 @@ def _mark(
     found = [(f, figures[f].point(record, masses)) for f in (edited, before) if f is not None]
     if record.get("effector") is not None and found[0][1] is None:
         raise ValueError("joint")
+    look = _look(record)
     return Mark(
         name=str(record["name"]),
         kind=str(record["type"]),
+        symbol=look.symbol,
+        looks=look.looks,
+        instant=look.instant,
         priority=int(record["priority"]),
         status=str(record["status"]),
         gave_way_to=tuple(map(str, record["gave_way_to"])),

@@ -79,7 +79,7 @@ function readEdit(record) {
 
 // A goal that is not too far from its clip belongs into the picture of the whole.
 function keepInView(mark) {
-  if (!mark.places || mark.kind === "aim") return;
+  if (!mark.places || mark.looks) return;
   for (const [, first] of mark.spans) {
     const place = mark.places.subarray(3 * (first - mark.first), 3 * (first - mark.first) + 3);
     const gap = Math.max(...[0, 1, 2].map((a) => Math.max(mark.clip.low[a] - place[a], place[a] - mark.clip.high[a])));

@@ -11,7 +11,7 @@ function force(mark, at) {
   const f = Math.round(at);
   const gap = Math.min(Infinity, ...mark.spans.map(([, a, b]) => Math.max(0, a - at, at - b) * mark.clip.frameTime));
   const near = Math.max(0, 1 - gap / NEAR);
-  if (f < mark.first || f > mark.last) return mark.kind === "goal" ? near : 0;
+  if (f < mark.first || f > mark.last) return mark.instant ? near : 0;
   return mark.spans.length ? Math.max(0.35, near) : 1;
 }
 
@@ -61,7 +61,7 @@ function drawGoals(ctx, eye, view) {
   const list = chosenMarks().filter((mark) => view.clips.some((clip) => mark.seenWith.has(clip.index) && clip.show !== "hidden"));
   const labels = [];
   ctx.lineJoin = ctx.lineCap = "round";
-  for (const mark of list) if (mark.places && mark.spans.length && mark.kind !== "aim") drawWay(ctx, eye, mark);
+  for (const mark of list) if (mark.places && mark.spans.length && !mark.looks) drawWay(ctx, eye, mark);
   for (const mark of list) if (mark.places) drawStations(ctx, eye, mark);
   // The most important last, on top.
   for (const mark of [...list].reverse()) drawNow(ctx, eye, mark, view, labels);
@@ -119,7 +119,7 @@ function diamond(ctx, x, y, r) {
 // The goal of this frame, the gap to its effector, and its name while it is in force.
 function drawNow(ctx, eye, mark, view, labels) {
   const at = state.time / mark.clip.frameTime, strength = force(mark, at);
-  const always = mark.kind === "goal";
+  const always = mark.instant;
   if (!strength && !always) return;
   const goal = [0, 0, 0, 0], tip = [0, 0, 0, 0], world = [0, 0, 0], hand = effectorAt(mark, [0, 0, 0]);
   const seen = hand && eye.project(hand[0], hand[1], hand[2], tip);
@@ -130,8 +130,8 @@ function drawNow(ctx, eye, mark, view, labels) {
   const missed = isMissedAt(mark, at), color = missed ? colors.miss : colors.goal;
   const weight = mark.spans.length || state.chosen ? 1 : 0.6;
   ctx.strokeStyle = color;
-  if (mark.places && seen && (missed || mark.kind === "aim") && strength) {
-    ctx.globalAlpha = mark.kind === "aim" ? 0.5 : 0.95;
+  if (mark.places && seen && (missed || mark.looks) && strength) {
+    ctx.globalAlpha = mark.looks ? 0.5 : 0.95;
     ctx.lineWidth = missed ? 2.4 : 1.4;
     ctx.setLineDash(missed ? [6, 4] : [2, 5]);
     ctx.beginPath();
@@ -142,7 +142,7 @@ function drawNow(ctx, eye, mark, view, labels) {
   }
   const r = weight * (0.75 + 0.25 * strength) * Math.min(20, Math.max(8, 0.06 * unitSize * goal[3]));
   ctx.globalAlpha = (always ? 0.55 : 0.2) + (always ? 0.45 : 0.75) * strength * weight;
-  symbol(ctx, mark.kind, goal[0], goal[1], r, missed, color);
+  drawSymbol(ctx, mark.symbol, goal[0], goal[1], r, missed, color);
   // Names where something stands still or is for an instant; what rides along would be named all the time.
   const told = state.chosen || always || missed || mark.spans.some(([mode, a, b]) => mode !== "during"
     && Math.max(0, a - at, at - b) * mark.clip.frameTime < 0.5 * NEAR);
@@ -153,17 +153,12 @@ function drawNow(ctx, eye, mark, view, labels) {
   }
 }
 
-// A ring with a cross: where a point is wanted; a quartered ball: the center of mass; an arc: how a joint is turned.
-function symbol(ctx, kind, x, y, r, missed, color) {
-  const ring = (radius, from, to) => { ctx.beginPath(); ctx.arc(x, y, radius, from, to); ctx.stroke(); };
-  const strokes = () => {
-    if (kind === "com") {
-      ring(r, 0, 2 * Math.PI);
-    } else if (kind === "orientation" || kind === "posture") {
-      ring(r, 0.75 * Math.PI, 1.75 * Math.PI);
-      ring(0.55 * r, 0.75 * Math.PI, 1.75 * Math.PI);
-    } else {
-      ring(r, 0, 2 * Math.PI);
+// How places are marked. A ring with a cross: where a point is wanted; a quartered ball: the center of mass; an arc: how a
+// joint is turned. Each is strokes, and what is filled over them.
+const SYMBOLS = {
+  ring: {
+    strokes(ctx, x, y, r, missed) {
+      arc(ctx, x, y, r, 0, 2 * Math.PI);
       for (const [dx, dy] of missed ? [[0.7, 0.7], [0.7, -0.7]] : [[1, 0], [0, 1]]) {
         for (const sign of [-1, 1]) {
           ctx.beginPath();
@@ -172,23 +167,47 @@ function symbol(ctx, kind, x, y, r, missed, color) {
           ctx.stroke();
         }
       }
-    }
-  };
+    },
+    fill() {},
+  },
+  ball: {
+    strokes(ctx, x, y, r) {
+      arc(ctx, x, y, r, 0, 2 * Math.PI);
+    },
+    fill(ctx, x, y, r) {
+      for (const start of [0, Math.PI]) {
+        ctx.beginPath();
+        ctx.moveTo(x, y);
+        ctx.arc(x, y, r, start, start + Math.PI / 2);
+        ctx.fill();
+      }
+    },
+  },
+  arc: {
+    strokes(ctx, x, y, r) {
+      arc(ctx, x, y, r, 0.75 * Math.PI, 1.75 * Math.PI);
+      arc(ctx, x, y, 0.55 * r, 0.75 * Math.PI, 1.75 * Math.PI);
+    },
+    fill() {},
+  },
+};
+
+function arc(ctx, x, y, radius, from, to) {
+  ctx.beginPath();
+  ctx.arc(x, y, radius, from, to);
+  ctx.stroke();
+}
+
+function drawSymbol(ctx, name, x, y, r, missed, color) {
+  const symbol = SYMBOLS[name];
   // A halo of the paper under it, so that it is seen on any limb.
   ctx.strokeStyle = css(colors.paper);
   ctx.lineWidth = 4.5;
-  strokes();
+  symbol.strokes(ctx, x, y, r, missed);
   ctx.strokeStyle = ctx.fillStyle = color;
   ctx.lineWidth = 2;
-  strokes();
-  if (kind === "com") {
-    for (const start of [0, Math.PI]) {
-      ctx.beginPath();
-      ctx.moveTo(x, y);
-      ctx.arc(x, y, r, start, start + Math.PI / 2);
-      ctx.fill();
-    }
-  }
+  symbol.strokes(ctx, x, y, r, missed);
+  symbol.fill(ctx, x, y, r);
 }
 
 // A name beside its goal, moved down until it stands free of those before it.

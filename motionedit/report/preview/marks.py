@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from motionedit.dataclass import dataclass
 
@@ -36,7 +36,13 @@ class Mark:
     ----------
     name : str
     kind : str
-        ``goal``, or the constraint's type.
+        ``goal``, or the constraint's type: a word.
+    symbol : {"ring", "ball", "arc"}
+        How its place is drawn.
+    looks : bool
+        Its places are looked at rather than gone to.
+    instant : bool
+        It is about one instant, and is shown all the time.
     priority : int
         Larger is more important.
     status : str
@@ -57,6 +63,9 @@ class Mark:
 
     name: str
     kind: str
+    symbol: Literal["ring", "ball", "arc"]
+    looks: bool
+    instant: bool
     priority: int
     status: str
     gave_way_to: tuple[str, ...]

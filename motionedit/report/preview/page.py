@@ -107,6 +107,9 @@ def _mark(mark: Mark) -> dict[str, Any]:
     return {
         "name": mark.name,
         "kind": mark.kind,
+        "symbol": mark.symbol,
+        "looks": mark.looks,
+        "instant": mark.instant,
         "priority": mark.priority,
         "status": mark.status,
         "gaveWayTo": mark.gave_way_to,

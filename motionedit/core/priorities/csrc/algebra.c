@@ -1,11 +1,6 @@
 /* A layer's rows of M, B and its step from G = J J^T: what _damped_step of layers.py gets from eigenvectors. Part of
    solver.c. */
 
-/* As in layers.py: singular values below this share of the largest (or of LEAST_SCALE) are no freedom. */
-#define RANK_TOLERANCE 1e-4
-#define LEAST_SCALE 1e-2
-/* Metres, as in layers.py: a stretched limb. */
-#define LIMB 1.0
 /* A pivot below this share of the trace is rounding: what is left of a row on a rigid part that has enough rows. */
 #define ROUNDING 1e-13
 /* Squared, of the off-diagonal part to the whole: Jacobi's rotations have come to their end. */
@@ -51,7 +46,7 @@ static void cholesky_solve(const V *L, int k, V *x)
 /* The trace of a layer's S = A~ A~^T. */
 static V remaining_trace(const Batch *batch, const Layer *layer)
 {
-    const int64_t R = batch->problem->rows;
+    const int64_t R = batch->problem->of.rows;
     V trace = all(0.0);
     for (int r = layer->first; r < layer->first + layer->rows; r++) {
         const V *row = batch->M + r * R;
@@ -67,7 +62,7 @@ static V remaining_trace(const Batch *batch, const Layer *layer)
    dependent, shape (k,): which rows got none. Returns |B|^2. */
 static V eliminate(Batch *batch, Layer *layer, V trace, Mask *dependent)
 {
-    const int k = layer->rows, first = layer->first, R = (int)batch->problem->rows;
+    const int k = layer->rows, first = layer->first, R = (int)batch->problem->of.rows;
     const V *G = batch->G_free;
     V *M = batch->M, inverse = all(0.0);
     layer->rank = all(0.0), layer->full = 0;
@@ -135,7 +130,7 @@ static void jacobi(double *S, int k, double *U)
    s u, a row of B u / s; scratch: 2 k^2 plain numbers. */
 static void factor_by_eigenvectors(Batch *batch, Layer *layer, int lane, const V *b, V d, V *c, double *S)
 {
-    const int k = layer->rows, first = layer->first, R = (int)batch->problem->rows;
+    const int k = layer->rows, first = layer->first, R = (int)batch->problem->of.rows;
     const V *G = batch->G_free;
     V *M = batch->M;
     double *U = S + k * k, most = 0.0, inverse = 0.0;
@@ -152,7 +147,8 @@ static void factor_by_eigenvectors(Batch *batch, Layer *layer, int lane, const V
         S[i] = sqrt(fmax(S[i * k + i], 0.0)); /* from here on the singular values, in the first row */
         most = fmax(most, S[i]);
     }
-    const double tolerance = RANK_TOLERANCE * fmax(most, LEAST_SCALE);
+    const Constants *constants = &batch->problem->constants;
+    const double tolerance = constants->rank_tolerance * fmax(most, constants->least_scale);
     for (int i = 0; i < k; i++)
         inverse += S[i] > tolerance ? 1.0 / (S[i] * S[i]) : 0.0;
     const V damped = damping(all(inverse > 0.0 ? 1.0 / sqrt(inverse) : INFINITY), d);
@@ -194,7 +190,7 @@ typedef struct {
 
 static Dependent dependent_rows(const Batch *batch, const Layer *layer, const Mask *dependent, V *scratch)
 {
-    const int k = layer->rows, R = (int)batch->problem->rows;
+    const int k = layer->rows, R = (int)batch->problem->of.rows;
     Dependent found = {.row = batch->dependent_row, .W = scratch};
     for (int r = 0; r < k; r++) {
         if (!any(dependent[r]))
@@ -255,7 +251,7 @@ static void solve_undamped(const Dependent *rows, const Layer *layer, const V *b
 /* c = (M^T M + lambda^2)^-1 M^T b; a column of zeros comes to 0. */
 static void solve_damped(const Batch *batch, const Layer *layer, const V *b, V lambda, V *c, V *N)
 {
-    const int k = layer->rows, R = (int)batch->problem->rows;
+    const int k = layer->rows, R = (int)batch->problem->of.rows;
     const V *M = batch->M + layer->first * R + layer->first;
     for (int i = 0; i < k; i++) {
         c[i] = all(0.0);
@@ -282,14 +278,15 @@ static void solve_damped(const Batch *batch, const Layer *layer, const V *b, V l
 static void factor_layer(Batch *batch, Layer *layer, const V *b, V largest, V *c)
 {
     const int k = layer->rows;
+    const Constants *constants = &batch->problem->constants;
     V *damped = batch->algebra, *scratch = damped + k;
     Mask *dependent = batch->dependent;
     const V size = root_of(dot_product(b, b, k)), trace = remaining_trace(batch, layer);
-    const V d = larger(size / largest, only(batch->steady, root_of(2.0 * LIMB * size)));
+    const V d = larger(size / largest, only(batch->steady, root_of(2.0 * constants->limb * size)));
     const V inverse = eliminate(batch, layer, trace, dependent);
     /* 1 / |B| is a lower bound of the least singular value, the root of the trace an upper one of the largest. */
     const V bound = only(less(all(0.0), inverse), 1.0 / root_of(inverse));
-    const Mask doubtful = ~less(RANK_TOLERANCE * larger(root_of(trace), all(LEAST_SCALE)), bound);
+    const Mask doubtful = ~less(constants->rank_tolerance * larger(root_of(trace), all(constants->least_scale)), bound);
     const Dependent rows = dependent_rows(batch, layer, dependent, scratch);
     const Mask near = ~less(d, bound);
     V lambda = all(0.0);

@@ -1,6 +1,6 @@
 /* The layered solver in C: a batch of frames on their way, side by side in lanes, and who does what with it.
 
-   The method is that of layers.py, homing.py and layered_numpy.py in core/ik; what differs is how the same numbers are
+   The method is that of layers.py, homing.py and numpy_solver.py above this folder; what differs is how the same numbers are
    found. The unknowns of a step are a world-axis increment for each column, or its angle alone where it is a hinge, and
    the root's shift: n = 3 (K - H) + H + 3. The Jacobian J of a frame is never formed. Every row of every task is a force
    f at a point and a torque t, shared by the columns of a chain:
@@ -80,7 +80,5 @@ typedef struct {
     V *z, *home, *step, *fast;    /* shape (n,) */
     V *home_before, *step_before; /* shape (n,) */
 } Batch;
-
-#define METRES_PER_RADIAN 0.3
 
 #endif

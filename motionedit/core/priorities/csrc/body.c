@@ -6,10 +6,10 @@ static void load(Batch *batch, int lane, int64_t at)
 {
     const Problem *problem = batch->problem;
     const int64_t own = problem->frames[at];
-    const double *local = problem->rotations + 4 * problem->joints * own;
-    const double *translations = problem->translations + 3 * problem->translated * own;
-    const double *reference = problem->reference_rotations + 4 * problem->joints * own;
-    for (int64_t i = 0; i < problem->nodes; i++) {
+    const double *local = problem->rotations + 4 * problem->of.joints * own;
+    const double *translations = problem->translations + 3 * problem->of.translated * own;
+    const double *reference = problem->reference_rotations + 4 * problem->of.joints * own;
+    for (int64_t i = 0; i < problem->of.nodes; i++) {
         const Node *node = problem->node + i;
         const double *offset = node->translation < 0 ? node->offset : translations + 3 * node->translation;
         for (int a = 0; a < 4; a++)
@@ -17,15 +17,15 @@ static void load(Batch *batch, int lane, int64_t at)
         for (int a = 0; a < 3; a++)
             LANE(batch->offsets[3 * i + a], lane) = offset[a];
     }
-    for (int64_t k = 0; k < problem->columns; k++)
+    for (int64_t k = 0; k < problem->of.columns; k++)
         for (int a = 0; a < 4; a++)
             LANE(batch->reference[4 * k + a], lane) = reference[4 * problem->node[problem->column_node[k]].joint + a];
-    for (int a = 0; a < 3 && problem->pulls_root; a++)
+    for (int a = 0; a < 3 && problem->of.pulls_root; a++)
         LANE(batch->reference_root[a], lane) = problem->reference_root[3 * own + a];
-    for (int64_t t = 0; t < problem->tasks; t++) {
+    for (int64_t t = 0; t < problem->of.tasks; t++) {
         const Task *task = problem->task + t;
         for (int64_t a = 0; a < task->width; a++)
-            LANE(batch->targets[4 * t + a], lane) = task->targets[task->width * at + a];
+            LANE(batch->targets[4 * t + a], lane) = problem->targets[task->targets + task->width * at + a];
     }
 }
 
@@ -34,16 +34,16 @@ static void store(const Batch *batch, int lane)
 {
     const Problem *problem = batch->problem;
     const int64_t own = problem->frames[batch->at[lane]];
-    double *local = problem->rotations + 4 * problem->joints * own;
-    for (int64_t k = 0; k < problem->columns; k++) {
+    double *local = problem->rotations + 4 * problem->of.joints * own;
+    for (int64_t k = 0; k < problem->of.columns; k++) {
         const int64_t i = problem->column_node[k];
         for (int a = 0; a < 4; a++)
             local[4 * problem->node[i].joint + a] = LANE(batch->local[4 * i + a], lane);
     }
-    if (problem->root >= 0) {
-        const int64_t place = problem->translated * own + problem->node[problem->root].translation;
+    if (problem->of.root >= 0) {
+        const int64_t place = problem->of.translated * own + problem->node[problem->of.root].translation;
         for (int a = 0; a < 3; a++)
-            problem->translations[3 * place + a] = LANE(batch->offsets[3 * problem->root + a], lane);
+            problem->translations[3 * place + a] = LANE(batch->offsets[3 * problem->of.root + a], lane);
     }
 }
 
@@ -59,9 +59,9 @@ static const V *parent_rotation(const Batch *batch, int64_t node)
 static void share_masses(Batch *batch)
 {
     const Problem *problem = batch->problem;
-    for (int64_t i = problem->nodes - 1; i >= 0; i--)
+    for (int64_t i = problem->of.nodes - 1; i >= 0; i--)
         batch->mass_shares[i] = 0.0;
-    for (int64_t i = problem->nodes - 1; i >= 0; i--) {
+    for (int64_t i = problem->of.nodes - 1; i >= 0; i--) {
         batch->mass_shares[i] += problem->node[i].share;
         if (problem->node[i].parent >= 0)
             batch->mass_shares[problem->node[i].parent] += batch->mass_shares[i];
@@ -73,7 +73,7 @@ static void weigh(Batch *batch)
 {
     const Problem *problem = batch->problem;
     V *moments = batch->mass_moments;
-    for (int64_t i = 0; i < problem->nodes; i++) {
+    for (int64_t i = 0; i < problem->of.nodes; i++) {
         const Node *node = problem->node + i;
         V arm[3] = {all(0.0), all(0.0), all(0.0)};
         if (node->share != 0.0) {
@@ -85,7 +85,7 @@ static void weigh(Batch *batch)
     }
     for (int a = 0; a < 3; a++)
         batch->center[a] = all(0.0);
-    for (int64_t i = problem->nodes - 1; i >= 0; i--) {
+    for (int64_t i = problem->of.nodes - 1; i >= 0; i--) {
         const int64_t parent = problem->node[i].parent;
         add(parent >= 0 ? moments + 3 * parent : batch->center, moments + 3 * i);
     }
@@ -95,7 +95,7 @@ static void weigh(Batch *batch)
 static void forward(Batch *batch)
 {
     const Problem *problem = batch->problem;
-    for (int64_t i = 0; i < problem->nodes; i++) {
+    for (int64_t i = 0; i < problem->of.nodes; i++) {
         const int64_t parent = problem->node[i].parent;
         V *position = batch->positions + 3 * i, own[9];
         if (parent < 0) {
@@ -135,7 +135,7 @@ static void attraction(Batch *batch)
 {
     const Problem *problem = batch->problem;
     V *root = batch->z + batch->unknowns - 3;
-    for (int64_t k = 0; k < problem->columns; k++) {
+    for (int64_t k = 0; k < problem->of.columns; k++) {
         const int64_t i = problem->column_node[k];
         const int h = batch->column_hinge[k];
         V turn[3], *z = batch->z + batch->column_unknown[k];
@@ -146,11 +146,11 @@ static void attraction(Batch *batch)
             turned(parent_rotation(batch, i), turn, z);
     }
     root[0] = root[1] = root[2] = all(0.0);
-    if (problem->pulls_root && problem->root >= 0) {
+    if (problem->of.pulls_root && problem->of.root >= 0) {
         V back[3];
         for (int a = 0; a < 3; a++)
-            back[a] = batch->reference_root[a] - batch->offsets[3 * problem->root + a];
-        turned(parent_rotation(batch, problem->root), back, root);
+            back[a] = batch->reference_root[a] - batch->offsets[3 * problem->of.root + a];
+        turned(parent_rotation(batch, problem->of.root), back, root);
     }
 }
 
@@ -158,7 +158,7 @@ static void attraction(Batch *batch)
 static void hinge_state(Batch *batch)
 {
     const Problem *problem = batch->problem;
-    for (int64_t h = 0; h < problem->hinges; h++) {
+    for (int64_t h = 0; h < problem->of.hinges; h++) {
         const Hinge *hinge = problem->hinge + h;
         const int64_t i = problem->column_node[hinge->column];
         V turn[3];
@@ -172,7 +172,7 @@ static void hinge_state(Batch *batch)
 static V apply_step(Batch *batch)
 {
     const Problem *problem = batch->problem;
-    for (int64_t k = 0; k < problem->columns; k++) {
+    for (int64_t k = 0; k < problem->of.columns; k++) {
         const V *w = batch->step + batch->column_unknown[k];
         const int64_t i = problem->column_node[k];
         const int h = batch->column_hinge[k];
@@ -191,10 +191,10 @@ static V apply_step(Batch *batch)
             q[a] = choose(stays, q[a], size * turn[a]);
     }
     const V *shift = batch->step + batch->unknowns - 3;
-    if (problem->root >= 0) {
+    if (problem->of.root >= 0) {
         V own[3];
-        turned_back(parent_rotation(batch, problem->root), shift, own);
-        add(batch->offsets + 3 * problem->root, own);
+        turned_back(parent_rotation(batch, problem->of.root), shift, own);
+        add(batch->offsets + 3 * problem->of.root, own);
     }
     return root_of(dot(shift, shift));
 }

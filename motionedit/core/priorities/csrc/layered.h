@@ -9,7 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { POSITION, ORIENTATION, CENTER_OF_MASS, AIM, POSTURE };
+/* Structures that come from Python are laid out there by the tables of module.c, field by field, by their names. */
 
 /* The joints that matter, an ancestor before its descendants. */
 typedef struct {
@@ -23,16 +23,15 @@ typedef struct {
 } Node;
 
 typedef struct {
-    int64_t kind, layer, rows, node, base; /* base: a node, or -1 */
+    int64_t kind, layer, rows, node, base; /* kind: in the table of kinds.c; base: a node, or -1 */
     int64_t root, base_root;               /* whether the root's translation moves the point, the base */
     int64_t axes[3];                       /* which of the targets' axes count, `rows` of them */
     int64_t width;                         /* numbers a target has: 3, 4, or 0 for none */
+    int64_t targets;                       /* where they begin among all targets: shape (N, width) */
     double weight;
-    double offset[3];         /* of the point, in its joint's frame */
-    double measure[3][3];     /* the axes that count, rows */
-    double axis[3];           /* what an aim looks along, in its joint's frame */
-    const double *targets;    /* shape (N, width) */
-    const uint8_t *recruited; /* shape (K,) */
+    double offset[3];     /* of the point, in its joint's frame */
+    double measure[3][3]; /* the axes that count, rows */
+    double axis[3];       /* what an aim looks along, in its joint's frame */
 } Task;
 
 typedef struct {
@@ -41,14 +40,29 @@ typedef struct {
     double limits[2];
 } Hinge;
 
+/* Those of core/priorities/constants.py, where each is explained. */
 typedef struct {
-    int64_t nodes, columns, tasks, hinges, layers, joints, translated, rows;
-    int64_t root, in_order, moves_root, pulls_root, max_iterations;
+    double largest_error, largest_turn, stop_step, stop_left, stop_error, gain_decay, on_limit;
+    double rank_tolerance, least_scale, limb, largest_task_share, largest_factor, no_change, metres_per_radian;
+    int64_t full_gain_iterations, hasty_iterations, annealed_iterations, limit_rounds;
+} Constants;
+
+/* How many there are of what, and how the frames are solved. */
+typedef struct {
+    int64_t frames, motion_frames, nodes, columns, tasks, hinges, layers, joints, translated, rows, targets;
+    int64_t root, in_order, moves_root, pulls_root, max_iterations; /* root: a node, or -1 */
     double attraction;
+} Settings;
+
+typedef struct {
+    Settings of;
+    Constants constants;
     const Node *node;
     const int64_t *column_node; /* shape (K,) */
     const Task *task;
     const Hinge *hinge;
+    const uint8_t *recruited;          /* shape (T, K) */
+    const double *targets;             /* task by task */
     const int64_t *frames;             /* shape (N,): the motion's frames that are solved */
     const double *reference_rotations; /* shape (F, J, 4) */
     const double *reference_root;      /* shape (F, 3), where the root is pulled */
@@ -59,6 +73,9 @@ typedef struct {
     uint8_t *converged;   /* shape (N,); in: frames that are left as they are */
     int64_t *ranks;       /* shape (N, L) */
 } Problem;
+
+/* The name of a kind of rows, NULL after the last. */
+const char *kind_name(int kind);
 
 /* Solve frames begin to end - 1; 0, or -1 where memory ran out. Both do the same, to the bit: the second for
    processors with AVX2. */

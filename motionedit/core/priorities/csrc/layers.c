@@ -1,12 +1,9 @@
 /* The pass down the layers among the rows of J: layers.py's `descend`, in rank space. Part of solver.c. */
 
-/* Metres: a layer's error is clamped to this much, all its rows by one factor. */
-#define LARGEST_ERROR 0.6
-
 /* Numbers of a layer's rows less what the layers above account for: rows - M_l q_above. */
 static void less_above(const Batch *batch, const Layer *layer, const V *rows, const V *above, V *rest)
 {
-    const int64_t R = batch->problem->rows;
+    const int64_t R = batch->problem->of.rows;
     for (int r = 0; r < layer->rows; r++)
         rest[r] = rows[r] - dot_product(batch->M + (layer->first + r) * R, above, layer->first);
 }
@@ -24,9 +21,9 @@ static void remaining_error(const Batch *batch, const Layer *layer, const V *fix
 /* G without the hinges that are on their limits: a rank-one part less for each. */
 static void free_gram(Batch *batch)
 {
-    const int64_t R = batch->problem->rows;
+    const int64_t R = batch->problem->of.rows;
     batch->G_free = batch->G;
-    for (int64_t h = 0; h < batch->problem->hinges; h++) {
+    for (int64_t h = 0; h < batch->problem->of.hinges; h++) {
         if (!any(~batch->hinge_free[h]))
             continue;
         if (batch->G_free == batch->G)
@@ -38,17 +35,18 @@ static void free_gram(Batch *batch)
 /* One pass: c, the steps of all layers in rank space, and for each layer its rank, B and columns of M. */
 static void descend(Batch *batch)
 {
-    const int64_t R = batch->problem->rows;
+    const int64_t R = batch->problem->of.rows;
+    const double clamp = batch->problem->constants.largest_error;
     V *fixed = batch->scratch_rows, *b = fixed + R;
     free_gram(batch);
     for (int64_t r = 0; r < R; r++)
         fixed[r] = all(0.0);
-    for (int64_t h = 0; h < batch->problem->hinges; h++)
+    for (int64_t h = 0; h < batch->problem->of.hinges; h++)
         if (any(~batch->hinge_free[h]))
             add_hinge_row(batch, h, batch->hinge_fixed[h], fixed);
-    for (int l = 0; l < batch->problem->layers; l++) {
+    for (int l = 0; l < batch->problem->of.layers; l++) {
         Layer *layer = batch->layers + l;
-        const V largest = l == 0 ? all(LARGEST_ERROR) : LARGEST_ERROR * batch->anneal;
+        const V largest = l == 0 ? all(clamp) : clamp * batch->anneal;
         remaining_error(batch, layer, fixed, largest, b);
         factor_layer(batch, layer, b, largest, batch->c + layer->first);
     }
@@ -58,7 +56,7 @@ static void descend(Batch *batch)
 static void into_rank_space(const Batch *batch, const V *Jv, V *Qv)
 {
     V *rest = batch->scratch_rows;
-    for (int l = 0; l < batch->problem->layers; l++) {
+    for (int l = 0; l < batch->problem->of.layers; l++) {
         const Layer *layer = batch->layers + l;
         const int k = layer->rows;
         less_above(batch, layer, Jv + layer->first, Qv, rest);
@@ -70,8 +68,8 @@ static void into_rank_space(const Batch *batch, const V *Jv, V *Qv)
 /* y with J^T y = Q^T q; shapes (R,). q is used up. */
 static void out_of_rank_space(const Batch *batch, V *q, V *y)
 {
-    const int64_t R = batch->problem->rows;
-    for (int l = (int)batch->problem->layers - 1; l >= 0; l--) {
+    const int64_t R = batch->problem->of.rows;
+    for (int l = (int)batch->problem->of.layers - 1; l >= 0; l--) {
         const Layer *layer = batch->layers + l;
         const int k = layer->rows;
         V *own = y + layer->first;

@@ -8,13 +8,19 @@ static void *take(char **memory, size_t *needed, size_t bytes)
     return place;
 }
 
+/* The columns that a task may use, shape (K,). */
+static const uint8_t *recruited(const Problem *problem, const Task *task)
+{
+    return problem->recruited + (task - problem->task) * problem->of.columns;
+}
+
 /* The columns from a node up to the root that a task recruits, growing; returns their number. */
 static int chain(const Problem *problem, const Task *task, int64_t node, int *columns)
 {
     int count = 0;
     for (int64_t i = node; i >= 0; i = problem->node[i].parent) {
         const int64_t column = problem->node[i].column;
-        if (column >= 0 && task->recruited[column]) {
+        if (column >= 0 && recruited(problem, task)[column]) {
             if (columns != NULL)
                 columns[count] = (int)column;
             count++;
@@ -31,8 +37,8 @@ static int chain(const Problem *problem, const Task *task, int64_t node, int *co
 static int carriers(const Problem *problem, const Task *task, int *columns)
 {
     int count = 0;
-    for (int64_t k = 0; k < problem->columns; k++) {
-        if (!task->recruited[k])
+    for (int64_t k = 0; k < problem->of.columns; k++) {
+        if (!recruited(problem, task)[k])
             continue;
         if (columns != NULL)
             columns[count] = (int)k;
@@ -43,7 +49,7 @@ static int carriers(const Problem *problem, const Task *task, int *columns)
 
 static int part_columns(const Problem *problem, const Task *task, int p, int *columns)
 {
-    if (task->kind == CENTER_OF_MASS)
+    if (KINDS[task->kind].weighs)
         return carriers(problem, task, columns);
     return chain(problem, task, p == 0 ? task->node : task->base, columns);
 }
@@ -73,8 +79,8 @@ static void lay_out_pull(const Problem *problem, const Task *task, Pull *pull, c
         memset(part, 0, sizeof *part);
         part->count = count, part->columns = columns, part->levers = levers;
         part->root = (int)(p == 0 ? task->root : task->base_root);
-        part->has_force = task->kind != ORIENTATION && task->kind != POSTURE;
-        part->has_torque = task->kind != POSITION && task->kind != CENTER_OF_MASS;
+        part->has_force = KINDS[task->kind].force;
+        part->has_torque = KINDS[task->kind].torque;
         part->plain = parts == 1 && !part->has_torque && measures_plainly(task);
         for (int r = 0; r < 3 && part->plain; r++)
             part->force[r][r] = all(task->weight);
@@ -108,8 +114,8 @@ static int common(const Batch *batch, const Part *a, const Part *b, int *places)
 static void list_felt(Batch *batch, int64_t h)
 {
     const Problem *problem = batch->problem;
-    int *felt = batch->hinge_felt + h * problem->rows, count = 0;
-    for (int64_t t = 0; t < problem->tasks; t++) {
+    int *felt = batch->hinge_felt + h * problem->of.rows, count = 0;
+    for (int64_t t = 0; t < problem->of.tasks; t++) {
         const Pull *pull = batch->pulls + t;
         int feels = 0;
         for (int p = 0; p < pull->parts; p++)
@@ -125,27 +131,27 @@ static void list_felt(Batch *batch, int64_t h)
 static void lay_out_tasks(Batch *batch, char **memory, size_t *needed)
 {
     const Problem *problem = batch->problem;
-    const int tasks = (int)problem->tasks;
+    const int tasks = (int)problem->of.tasks;
     batch->pulls = take(memory, needed, sizeof *batch->pulls * tasks);
-    batch->hinge_felt = take(memory, needed, sizeof *batch->hinge_felt * problem->hinges * problem->rows);
-    batch->hinge_felt_count = take(memory, needed, sizeof *batch->hinge_felt_count * problem->hinges);
+    batch->hinge_felt = take(memory, needed, sizeof *batch->hinge_felt * problem->of.hinges * problem->of.rows);
+    batch->hinge_felt_count = take(memory, needed, sizeof *batch->hinge_felt_count * problem->of.hinges);
     for (int t = 0; t < tasks; t++)
         lay_out_pull(problem, problem->task + t, batch->pulls == NULL ? NULL : batch->pulls + t, memory, needed);
     /* Every pair of parts, two a task at most: room for the longest lists. */
     const size_t pairs = (size_t)2 * tasks * (tasks + 1);
     batch->shared = take(memory, needed, sizeof *batch->shared * pairs);
-    int *places = take(memory, needed, 2 * sizeof *places * problem->columns * pairs);
+    int *places = take(memory, needed, 2 * sizeof *places * problem->of.columns * pairs);
     if (batch->pulls == NULL)
         return;
     for (int t = 0, row = 0; t < tasks; t++) {
         batch->pulls[t].first_row = row;
         row += (int)problem->task[t].rows;
     }
-    for (int64_t h = 0; h < problem->hinges; h++)
+    for (int64_t h = 0; h < problem->of.hinges; h++)
         list_felt(batch, h);
     batch->weighs = batch->shared_count = 0;
     for (int t = 0; t < tasks; t++)
-        batch->weighs |= problem->task[t].kind == CENTER_OF_MASS;
+        batch->weighs |= KINDS[problem->task[t].kind].weighs;
     for (int s = 0; s < tasks; s++)
         for (int p = 0; p < batch->pulls[s].parts; p++) {
             const Part *mine = batch->pulls[s].part + p;
@@ -164,10 +170,10 @@ static void lay_out_tasks(Batch *batch, char **memory, size_t *needed)
 static void lay_out_layers(Batch *batch, char **memory, size_t *needed)
 {
     const Problem *problem = batch->problem;
-    batch->layers = take(memory, needed, sizeof *batch->layers * problem->layers);
-    for (int64_t l = 0, t = 0, first = 0; l < problem->layers; l++) {
+    batch->layers = take(memory, needed, sizeof *batch->layers * problem->of.layers);
+    for (int64_t l = 0, t = 0, first = 0; l < problem->of.layers; l++) {
         int rows = 0;
-        for (; t < problem->tasks && problem->task[t].layer == l; t++)
+        for (; t < problem->of.tasks && problem->task[t].layer == l; t++)
             rows += (int)problem->task[t].rows;
         V *B = take(memory, needed, sizeof *B * rows * rows);
         if (batch->layers != NULL)
@@ -180,11 +186,11 @@ static void lay_out_layers(Batch *batch, char **memory, size_t *needed)
 static void number_unknowns(Batch *batch)
 {
     const Problem *problem = batch->problem;
-    for (int64_t k = 0; k < problem->columns; k++)
+    for (int64_t k = 0; k < problem->of.columns; k++)
         batch->column_hinge[k] = -1;
-    for (int64_t h = 0; h < problem->hinges; h++)
+    for (int64_t h = 0; h < problem->of.hinges; h++)
         batch->column_hinge[problem->hinge[h].column] = (int)h;
-    for (int64_t k = 0, unknown = 0; k < problem->columns; k++) {
+    for (int64_t k = 0, unknown = 0; k < problem->of.columns; k++) {
         batch->column_unknown[k] = (int)unknown;
         unknown += batch->column_hinge[k] < 0 ? 3 : 1;
     }
@@ -194,7 +200,7 @@ static void number_unknowns(Batch *batch)
 static size_t lay_out(Batch *batch, char *memory)
 {
     const Problem *problem = batch->problem;
-    const size_t nodes = problem->nodes, R = problem->rows, K = problem->columns, H = problem->hinges;
+    const size_t nodes = problem->of.nodes, R = problem->of.rows, K = problem->of.columns, H = problem->of.hinges;
     batch->unknowns = (int)(3 * (K - H) + H + 3);
     const size_t n = batch->unknowns;
     size_t needed = 0;
@@ -203,7 +209,7 @@ static size_t lay_out(Batch *batch, char *memory)
 #define MASKS(count) take(from, &needed, sizeof(Mask) * (count))
 #define PLACES(count) take(from, &needed, sizeof(int) * (count))
     batch->local = NUMBERS(4 * nodes), batch->reference = NUMBERS(4 * K), batch->offsets = NUMBERS(3 * nodes);
-    batch->targets = NUMBERS(4 * problem->tasks);
+    batch->targets = NUMBERS(4 * problem->of.tasks);
     batch->positions = NUMBERS(3 * nodes), batch->rotations = NUMBERS(9 * nodes);
     batch->mass_moments = NUMBERS(3 * nodes);
     batch->mass_shares = take(from, &needed, sizeof(double) * nodes);

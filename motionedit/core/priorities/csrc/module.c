@@ -1,7 +1,7 @@
 /* The Python module `_compiled`: buffers in, work without the interpreter's lock, results in buffers that came in.
 
-   core/priorities/compiled_solver.py lays out the buffers of `solve`, core/kinematics.py and core/priorities/continuity.py those of the
-   others; sizes are checked here, so that a slip there is an error and not a crash. */
+   compiled_solver.py lays out the buffers of `solve`, core/kinematics.py and continuity.py those of the others; sizes are
+   checked here, so that a slip there is an error and not a crash. */
 
 #define PY_SSIZE_T_CLEAN
 #define Py_LIMITED_API 0x030B0000
@@ -9,48 +9,51 @@
 
 #include "layered.h"
 
-#include <stdlib.h>
+#include <stddef.h>
 #include <string.h>
 
-enum {
-    SIZES,
-    NODE_INTEGERS,
-    NODE_NUMBERS,
-    COLUMN_NODES,
-    TASK_INTEGERS,
-    TASK_NUMBERS,
-    RECRUITED,
-    TARGETS,
-    HINGE_COLUMNS,
-    HINGE_NUMBERS,
-    FRAMES,
-    REFERENCE_ROTATIONS,
-    REFERENCE_ROOT,
-    ROTATIONS,
-    TRANSLATIONS,
-    ITERATIONS,
-    CONVERGED,
-    RANKS,
-    BUFFERS
+/* How a structure lies in memory: what Python makes a record of, so that the order of its fields stands here alone. */
+typedef struct {
+    const char *name, *format; /* as numpy has formats */
+    size_t offset;
+} Field;
+
+#define FIELD(structure, name, format) {#name, format, offsetof(structure, name)}
+#define INTEGER(structure, name) FIELD(structure, name, "i8")
+#define NUMBER(structure, name) FIELD(structure, name, "f8")
+
+static const Field SETTINGS_FIELDS[] = {INTEGER(Settings, frames), INTEGER(Settings, motion_frames),
+    INTEGER(Settings, nodes), INTEGER(Settings, columns), INTEGER(Settings, tasks), INTEGER(Settings, hinges),
+    INTEGER(Settings, layers), INTEGER(Settings, joints), INTEGER(Settings, translated), INTEGER(Settings, rows),
+    INTEGER(Settings, targets), INTEGER(Settings, root), INTEGER(Settings, in_order), INTEGER(Settings, moves_root),
+    INTEGER(Settings, pulls_root), INTEGER(Settings, max_iterations), NUMBER(Settings, attraction), {0}};
+static const Field CONSTANTS_FIELDS[] = {NUMBER(Constants, largest_error), NUMBER(Constants, largest_turn),
+    NUMBER(Constants, stop_step), NUMBER(Constants, stop_left), NUMBER(Constants, stop_error),
+    NUMBER(Constants, gain_decay), NUMBER(Constants, on_limit), NUMBER(Constants, rank_tolerance),
+    NUMBER(Constants, least_scale), NUMBER(Constants, limb), NUMBER(Constants, largest_task_share),
+    NUMBER(Constants, largest_factor), NUMBER(Constants, no_change), NUMBER(Constants, metres_per_radian),
+    INTEGER(Constants, full_gain_iterations), INTEGER(Constants, hasty_iterations),
+    INTEGER(Constants, annealed_iterations), INTEGER(Constants, limit_rounds), {0}};
+static const Field NODE_FIELDS[] = {INTEGER(Node, joint), INTEGER(Node, parent), INTEGER(Node, translation),
+    INTEGER(Node, column), FIELD(Node, offset, "3f8"), NUMBER(Node, share), FIELD(Node, center, "3f8"), {0}};
+static const Field TASK_FIELDS[] = {INTEGER(Task, kind), INTEGER(Task, layer), INTEGER(Task, rows), INTEGER(Task, node),
+    INTEGER(Task, base), INTEGER(Task, root), INTEGER(Task, base_root), FIELD(Task, axes, "3i8"), INTEGER(Task, width),
+    INTEGER(Task, targets), NUMBER(Task, weight), FIELD(Task, offset, "3f8"), FIELD(Task, measure, "(3,3)f8"),
+    FIELD(Task, axis, "3f8"), {0}};
+static const Field HINGE_FIELDS[] = {
+    INTEGER(Hinge, column), FIELD(Hinge, axis, "3f8"), FIELD(Hinge, limits, "2f8"), {0}};
+
+static const struct {
+    const char *name;
+    size_t bytes;
+    const Field *fields;
+} RECORDS[] = {
+    {"settings", sizeof(Settings), SETTINGS_FIELDS},
+    {"constants", sizeof(Constants), CONSTANTS_FIELDS},
+    {"nodes", sizeof(Node), NODE_FIELDS},
+    {"tasks", sizeof(Task), TASK_FIELDS},
+    {"hinges", sizeof(Hinge), HINGE_FIELDS},
 };
-enum {
-    N_FRAMES,
-    N_NODES,
-    N_COLUMNS,
-    N_TASKS,
-    N_HINGES,
-    N_LAYERS,
-    N_JOINTS,
-    N_TRANSLATED,
-    ROOT,
-    IN_ORDER,
-    MOVES_ROOT,
-    PULLS_ROOT,
-    MAX_ITERATIONS,
-    MOTION_FRAMES,
-    N_SIZES
-};
-enum { NODE_INTEGER_COUNT = 4, NODE_NUMBER_COUNT = 7, TASK_INTEGER_COUNT = 11, TASK_NUMBER_COUNT = 16 };
 
 static int has_size(const Py_buffer *buffer, int64_t count, size_t bytes, const char *name)
 {
@@ -61,134 +64,121 @@ static int has_size(const Py_buffer *buffer, int64_t count, size_t bytes, const 
     return 0;
 }
 
-static void read_node(Node *node, const int64_t *integers, const double *numbers)
-{
-    node->joint = integers[0], node->parent = integers[1], node->translation = integers[2], node->column = integers[3];
-    memcpy(node->offset, numbers, sizeof node->offset);
-    node->share = numbers[3];
-    memcpy(node->center, numbers + 4, sizeof node->center);
-}
+/* The buffers of `solve`, by their names, held as long as it runs. */
+enum { MOST_BUFFERS = 20 };
+typedef struct {
+    PyObject *given; /* a dictionary */
+    Py_buffer held[MOST_BUFFERS];
+    int count;
+} Buffers;
 
-static void read_task(Task *task, const int64_t *integers, const double *numbers)
+/* Whether the buffer `name` has `count` items of so many bytes; `place` is then where they are. */
+static int take_buffer(Buffers *buffers, const char *name, int64_t count, size_t bytes, int writable, void *place)
 {
-    task->kind = integers[0], task->layer = integers[1], task->rows = integers[2];
-    task->node = integers[3], task->base = integers[4], task->root = integers[5], task->base_root = integers[6];
-    memcpy(task->axes, integers + 7, sizeof task->axes);
-    task->width = integers[10];
-    task->weight = numbers[0];
-    memcpy(task->offset, numbers + 1, sizeof task->offset);
-    memcpy(task->measure, numbers + 4, sizeof task->measure);
-    memcpy(task->axis, numbers + 13, sizeof task->axis);
-}
-
-/* Read the problem out of the buffers; nodes, tasks and hinges are allocated in `memory`. */
-static int read_problem(Problem *problem, Py_buffer *buffers, void **memory)
-{
-    if (!has_size(buffers + SIZES, N_SIZES, sizeof(int64_t), "sizes"))
+    PyObject *given = PyDict_GetItemString(buffers->given, name);
+    Py_buffer *held = buffers->held + buffers->count;
+    if (given == NULL) {
+        PyErr_Format(PyExc_ValueError, "%s is missing", name);
         return 0;
-    const int64_t *sizes = buffers[SIZES].buf;
-    const int64_t frames = sizes[N_FRAMES], nodes = sizes[N_NODES], columns = sizes[N_COLUMNS], tasks = sizes[N_TASKS];
-    const int64_t whole = sizes[MOTION_FRAMES], hinges = sizes[N_HINGES], joints = sizes[N_JOINTS],
-                  moved = sizes[N_TRANSLATED];
+    }
+    if (PyObject_GetBuffer(given, held, writable ? PyBUF_WRITABLE : PyBUF_SIMPLE) < 0)
+        return 0;
+    buffers->count++;
+    memcpy(place, &held->buf, sizeof held->buf);
+    return has_size(held, count, bytes, name);
+}
+
+static int between(int64_t least, int64_t index, int64_t count)
+{
+    return least <= index && index < count;
+}
+
+/* Whether a task's indices are some: nodes, its layer, its kind, its part of the targets. */
+static int is_task(const Settings *of, const Task *task, int64_t kinds)
+{
+    return between(0, task->kind, kinds) && between(0, task->layer, of->layers) && between(0, task->rows, 4) &&
+           between(-1, task->node, of->nodes) && between(-1, task->base, of->nodes) && between(0, task->width, 5) &&
+           0 <= task->targets && task->targets + task->width * of->frames <= of->targets;
+}
+
+/* Whether every index is one: a slip is an error and no crash. */
+static int has_sense(const Problem *problem)
+{
+    const Settings *of = &problem->of;
+    int64_t rows = 0, kinds = 0;
+    int sense = between(-1, of->root, of->nodes);
+    while (kind_name((int)kinds) != NULL)
+        kinds++;
+    for (int64_t i = 0; i < of->nodes; i++) {
+        const Node *node = problem->node + i;
+        sense &= between(0, node->joint, of->joints) && between(-1, node->parent, i) &&
+                 between(-1, node->translation, of->translated) && between(-1, node->column, of->columns);
+    }
+    for (int64_t t = 0; t < of->tasks; t++) {
+        sense &= is_task(of, problem->task + t, kinds);
+        rows += problem->task[t].rows;
+    }
+    for (int64_t h = 0; h < of->hinges; h++)
+        sense &= between(0, problem->hinge[h].column, of->columns);
+    for (int64_t k = 0; k < of->columns; k++)
+        sense &= between(0, problem->column_node[k], of->nodes);
+    for (int64_t f = 0; f < of->frames; f++)
+        sense &= between(0, problem->frames[f], of->motion_frames);
+    sense &= rows == of->rows;
+    if (!sense)
+        PyErr_SetString(PyExc_ValueError, "indices that are none");
+    return sense;
+}
+
+/* Read the problem out of the buffers. */
+static int read_problem(Problem *problem, Buffers *buffers)
+{
+    const Settings *of;
+    const Constants *constants;
+    enum { READ, WRITE };
+    if (!take_buffer(buffers, "settings", 1, sizeof *of, READ, &of) ||
+        !take_buffer(buffers, "constants", 1, sizeof *constants, READ, &constants))
+        return 0;
+    problem->of = *of, problem->constants = *constants;
     const size_t integer = sizeof(int64_t), number = sizeof(double);
-    if (!has_size(buffers + NODE_INTEGERS, nodes * NODE_INTEGER_COUNT, integer, "node integers") ||
-        !has_size(buffers + NODE_NUMBERS, nodes * NODE_NUMBER_COUNT, number, "node numbers") ||
-        !has_size(buffers + COLUMN_NODES, columns, integer, "column nodes") ||
-        !has_size(buffers + TASK_INTEGERS, tasks * TASK_INTEGER_COUNT, integer, "task integers") ||
-        !has_size(buffers + TASK_NUMBERS, tasks * TASK_NUMBER_COUNT, number, "task numbers") ||
-        !has_size(buffers + RECRUITED, tasks * columns, 1, "recruited") ||
-        !has_size(buffers + HINGE_COLUMNS, hinges, integer, "hinge columns") ||
-        !has_size(buffers + HINGE_NUMBERS, hinges * 5, number, "hinge numbers") ||
-        !has_size(buffers + FRAMES, frames, integer, "frames") ||
-        !has_size(buffers + REFERENCE_ROTATIONS, whole * joints * 4, number, "reference rotations") ||
-        !has_size(buffers + REFERENCE_ROOT, sizes[PULLS_ROOT] ? whole * 3 : 0, number, "reference root") ||
-        !has_size(buffers + ROTATIONS, whole * joints * 4, number, "rotations") ||
-        !has_size(buffers + TRANSLATIONS, whole * moved * 3, number, "translations") ||
-        !has_size(buffers + ITERATIONS, frames, integer, "iterations") ||
-        !has_size(buffers + CONVERGED, frames, 1, "converged") ||
-        !has_size(buffers + RANKS, frames * sizes[N_LAYERS], integer, "ranks"))
-        return 0;
-    *memory = malloc(sizeof(Node) * nodes + sizeof(Task) * tasks + sizeof(Hinge) * hinges + 1);
-    if (*memory == NULL) {
-        PyErr_NoMemory();
-        return 0;
-    }
-    Node *node = *memory;
-    Task *task = (Task *)(node + nodes);
-    Hinge *hinge = (Hinge *)(task + tasks);
-    for (int64_t i = 0; i < nodes; i++)
-        read_node(node + i, (int64_t *)buffers[NODE_INTEGERS].buf + NODE_INTEGER_COUNT * i,
-            (double *)buffers[NODE_NUMBERS].buf + NODE_NUMBER_COUNT * i);
-    int64_t rows = 0, given = 0;
-    for (int64_t t = 0; t < tasks; t++) {
-        read_task(task + t, (int64_t *)buffers[TASK_INTEGERS].buf + TASK_INTEGER_COUNT * t,
-            (double *)buffers[TASK_NUMBERS].buf + TASK_NUMBER_COUNT * t);
-        task[t].targets = (double *)buffers[TARGETS].buf + given;
-        task[t].recruited = (uint8_t *)buffers[RECRUITED].buf + columns * t;
-        rows += task[t].rows, given += task[t].width * frames;
-    }
-    if (!has_size(buffers + TARGETS, given, number, "targets"))
-        return 0;
-    for (int64_t h = 0; h < hinges; h++) {
-        const double *numbers = (double *)buffers[HINGE_NUMBERS].buf + 5 * h;
-        hinge[h].column = ((int64_t *)buffers[HINGE_COLUMNS].buf)[h];
-        memcpy(hinge[h].axis, numbers, sizeof hinge[h].axis);
-        memcpy(hinge[h].limits, numbers + 3, sizeof hinge[h].limits);
-    }
-    *problem = (Problem){
-        .nodes = nodes,
-        .columns = columns,
-        .tasks = tasks,
-        .hinges = hinges,
-        .layers = sizes[N_LAYERS],
-        .joints = joints,
-        .translated = moved,
-        .rows = rows,
-        .root = sizes[ROOT],
-        .in_order = sizes[IN_ORDER],
-        .moves_root = sizes[MOVES_ROOT],
-        .pulls_root = sizes[PULLS_ROOT],
-        .max_iterations = sizes[MAX_ITERATIONS],
-        .node = node,
-        .column_node = buffers[COLUMN_NODES].buf,
-        .task = task,
-        .hinge = hinge,
-        .frames = buffers[FRAMES].buf,
-        .reference_rotations = buffers[REFERENCE_ROTATIONS].buf,
-        .reference_root = buffers[REFERENCE_ROOT].buf,
-        .rotations = buffers[ROTATIONS].buf,
-        .translations = buffers[TRANSLATIONS].buf,
-        .iterations = buffers[ITERATIONS].buf,
-        .converged = buffers[CONVERGED].buf,
-        .ranks = buffers[RANKS].buf,
-    };
-    return 1;
+    const int64_t angles = of->motion_frames * of->joints * 4, roots = of->pulls_root ? of->motion_frames * 3 : 0;
+    const int64_t shifts = of->motion_frames * of->translated * 3;
+    return take_buffer(buffers, "nodes", of->nodes, sizeof(Node), READ, &problem->node) &&
+           take_buffer(buffers, "column_nodes", of->columns, integer, READ, &problem->column_node) &&
+           take_buffer(buffers, "tasks", of->tasks, sizeof(Task), READ, &problem->task) &&
+           take_buffer(buffers, "hinges", of->hinges, sizeof(Hinge), READ, &problem->hinge) &&
+           take_buffer(buffers, "recruited", of->tasks * of->columns, 1, READ, &problem->recruited) &&
+           take_buffer(buffers, "targets", of->targets, number, READ, &problem->targets) &&
+           take_buffer(buffers, "frames", of->frames, integer, READ, &problem->frames) &&
+           take_buffer(buffers, "reference_rotations", angles, number, READ, &problem->reference_rotations) &&
+           take_buffer(buffers, "reference_root", roots, number, READ, &problem->reference_root) &&
+           take_buffer(buffers, "rotations", angles, number, WRITE, &problem->rotations) &&
+           take_buffer(buffers, "translations", shifts, number, WRITE, &problem->translations) &&
+           take_buffer(buffers, "iterations", of->frames, integer, WRITE, &problem->iterations) &&
+           take_buffer(buffers, "converged", of->frames, 1, WRITE, &problem->converged) &&
+           take_buffer(buffers, "ranks", of->frames * of->layers, integer, WRITE, &problem->ranks) &&
+           has_sense(problem);
 }
 
 static PyObject *solve_with(int (*solver)(const Problem *, int64_t, int64_t), PyObject *arguments)
 {
-    Py_buffer buffers[BUFFERS] = {{0}};
-    Py_buffer *b = buffers;
-    double attraction;
+    Buffers buffers = {0};
+    Problem problem = {0};
     long long begin, end;
-    if (!PyArg_ParseTuple(arguments, "y*y*y*y*y*y*y*y*y*y*y*y*y*w*w*w*w*w*dLL", b, b + 1, b + 2, b + 3, b + 4, b + 5,
-            b + 6, b + 7, b + 8, b + 9, b + 10, b + 11, b + 12, b + 13, b + 14, b + 15, b + 16, b + 17, &attraction,
-            &begin, &end))
-        return NULL;
-    Problem problem;
-    void *memory = NULL;
     int status = -2;
-    if (read_problem(&problem, buffers, &memory)) {
-        problem.attraction = attraction;
-        if (0 <= begin && begin <= end && end <= ((int64_t *)buffers[SIZES].buf)[N_FRAMES]) {
+    if (!PyArg_ParseTuple(arguments, "OLL", &buffers.given, &begin, &end))
+        return NULL;
+    if (!PyDict_Check(buffers.given))
+        PyErr_SetString(PyExc_TypeError, "buffers come in a dictionary");
+    else if (read_problem(&problem, &buffers)) {
+        if (0 <= begin && begin <= end && end <= problem.of.frames) {
             Py_BEGIN_ALLOW_THREADS status = solver(&problem, begin, end);
             Py_END_ALLOW_THREADS if (status < 0) PyErr_NoMemory();
         } else
             PyErr_SetString(PyExc_ValueError, "no such frames");
     }
-    free(memory);
-    for (int i = 0; i < BUFFERS; i++)
-        PyBuffer_Release(buffers + i);
+    for (int i = 0; i < buffers.count; i++)
+        PyBuffer_Release(buffers.held + i);
     if (status < 0)
         return NULL;
     Py_RETURN_NONE;
@@ -267,14 +257,59 @@ static PyObject *smooth(PyObject *self, PyObject *arguments)
 }
 
 static PyMethodDef methods[] = {
-    {"solve", solve, METH_VARARGS, "Solve frames begin to end - 1 in place."},
+    {"solve", solve, METH_VARARGS, "Solve frames begin to end - 1 in place, given buffers by their names."},
     {"solve_narrow", solve_narrow, METH_VARARGS, "As solve, with what every processor has: the same to the bit."},
     {"forward", forward_frames, METH_VARARGS, "Write the world transforms of all joints at all frames."},
     {"smooth", smooth, METH_VARARGS, "Write rotations plus their low-passed displacement."},
     {NULL, NULL, 0, NULL},
 };
 
-static PyModuleDef_Slot slots[] = {{0, NULL}};
+/* What a record's fields are called, and how and where they lie: what numpy.dtype takes. */
+static PyObject *record_of(const Field *fields, size_t bytes)
+{
+    PyObject *names = PyList_New(0), *formats = PyList_New(0), *offsets = PyList_New(0), *record = NULL;
+    int fits = names != NULL && formats != NULL && offsets != NULL;
+    for (; fits && fields->name != NULL; fields++) {
+        PyObject *name = PyUnicode_FromString(fields->name), *format = PyUnicode_FromString(fields->format);
+        PyObject *offset = PyLong_FromSize_t(fields->offset);
+        fits = name != NULL && format != NULL && offset != NULL && PyList_Append(names, name) == 0 &&
+               PyList_Append(formats, format) == 0 && PyList_Append(offsets, offset) == 0;
+        Py_XDECREF(name);
+        Py_XDECREF(format);
+        Py_XDECREF(offset);
+    }
+    if (fits)
+        record = Py_BuildValue(
+            "{sOsOsOsn}", "names", names, "formats", formats, "offsets", offsets, "itemsize", (Py_ssize_t)bytes);
+    Py_XDECREF(names);
+    Py_XDECREF(formats);
+    Py_XDECREF(offsets);
+    return record;
+}
+
+/* Add to the module `records`, how its structures lie, by their buffers' names, and `kinds`, the rows that it knows. */
+static int add_tables(PyObject *module)
+{
+    PyObject *records = PyDict_New(), *kinds = PyList_New(0);
+    int fits = records != NULL && kinds != NULL;
+    for (size_t i = 0; fits && i < sizeof RECORDS / sizeof *RECORDS; i++) {
+        PyObject *record = record_of(RECORDS[i].fields, RECORDS[i].bytes);
+        fits = record != NULL && PyDict_SetItemString(records, RECORDS[i].name, record) == 0;
+        Py_XDECREF(record);
+    }
+    for (int i = 0; fits && kind_name(i) != NULL; i++) {
+        PyObject *name = PyUnicode_FromString(kind_name(i));
+        fits = name != NULL && PyList_Append(kinds, name) == 0;
+        Py_XDECREF(name);
+    }
+    fits = fits && PyModule_AddObjectRef(module, "records", records) == 0 &&
+           PyModule_AddObjectRef(module, "kinds", kinds) == 0;
+    Py_XDECREF(records);
+    Py_XDECREF(kinds);
+    return fits ? 0 : -1;
+}
+
+static PyModuleDef_Slot slots[] = {{Py_mod_exec, (void *)add_tables}, {0, NULL}};
 
 static struct PyModuleDef definition = {
     PyModuleDef_HEAD_INIT,

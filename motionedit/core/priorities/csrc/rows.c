@@ -4,9 +4,9 @@
 static void hinge_rows(Batch *batch)
 {
     const Problem *problem = batch->problem;
-    for (int64_t i = 0; i < problem->hinges * problem->rows; i++)
+    for (int64_t i = 0; i < problem->of.hinges * problem->of.rows; i++)
         batch->hinge_rows[i] = all(0.0);
-    for (int64_t t = 0; t < problem->tasks; t++) {
+    for (int64_t t = 0; t < problem->of.tasks; t++) {
         const Pull *pull = batch->pulls + t;
         for (int p = 0; p < pull->parts; p++) {
             const Part *part = pull->part + p;
@@ -14,7 +14,7 @@ static void hinge_rows(Batch *batch)
                 const int h = batch->column_hinge[part->columns[i]];
                 if (h < 0)
                     continue;
-                V *out = batch->hinge_rows + h * problem->rows + pull->first_row, lever[3];
+                V *out = batch->hinge_rows + h * problem->of.rows + pull->first_row, lever[3];
                 const V *axis = batch->hinge_axes + 3 * h;
                 cross(axis, part->levers + 3 * i, lever); /* a . (l x f) = f . (a x l) */
                 for (int64_t r = 0; r < problem->task[t].rows; r++)
@@ -63,8 +63,8 @@ static void add_block(Batch *batch, const Shared *shared)
     const V between = outer[0][0] + outer[1][1] + outer[2][2] + (a->root && b->root ? 1.0 : 0.0);
     if (a->plain && b->plain) { /* the world's axes on both sides: (l x e_r) . (m x e_s) = (l . m) [r = s] - m_r l_s */
         const V scale = a->force[0][0] * b->force[0][0];
-        V *out = batch->G + mine->first_row * problem->rows + theirs->first_row;
-        for (int r = 0; r < 3; r++, out += problem->rows)
+        V *out = batch->G + mine->first_row * problem->of.rows + theirs->first_row;
+        for (int r = 0; r < 3; r++, out += problem->of.rows)
             for (int s = 0; s < 3; s++)
                 out[s] += scale * (r == s ? between - outer[r][s] : -outer[r][s]);
         return;
@@ -72,7 +72,7 @@ static void add_block(Batch *batch, const Shared *shared)
     for (int64_t r = 0; r < rows; r++) {
         const V *f = a->force[r], *t = a->torque[r];
         V pushed[3] = {all(0.0), all(0.0), all(0.0)};
-        V *out = batch->G + (mine->first_row + r) * problem->rows + theirs->first_row;
+        V *out = batch->G + (mine->first_row + r) * problem->of.rows + theirs->first_row;
         /* (l x f) . (m x g) = (l . m) (f . g) - (m . f) (l . g) */
         for (int x = 0; x < 3 && a->has_force && b->has_force; x++)
             pushed[x] = between * f[x] - (outer[0][x] * f[0] + outer[1][x] * f[1] + outer[2][x] * f[2]);
@@ -101,7 +101,7 @@ static void add_block(Batch *batch, const Shared *shared)
 /* G += factor times a hinge's rank-one part, in the rows that feel it. */
 static void add_hinge(const Batch *batch, int64_t h, V factor, V *G)
 {
-    const int64_t R = batch->problem->rows;
+    const int64_t R = batch->problem->of.rows;
     const V *turns = batch->hinge_rows + h * R;
     const int *felt = batch->hinge_felt + h * R;
     for (int i = 0; i < batch->hinge_felt_count[h]; i++) {
@@ -116,28 +116,28 @@ static void add_hinge(const Batch *batch, int64_t h, V factor, V *G)
 static void gram(Batch *batch)
 {
     const Problem *problem = batch->problem;
-    for (int64_t i = 0; i < problem->rows * problem->rows; i++)
+    for (int64_t i = 0; i < problem->of.rows * problem->of.rows; i++)
         batch->G[i] = all(0.0);
     for (int i = 0; i < batch->shared_count; i++)
         add_block(batch, batch->shared + i);
     hinge_rows(batch);
-    for (int64_t h = 0; h < problem->hinges; h++)
+    for (int64_t h = 0; h < problem->of.hinges; h++)
         add_hinge(batch, h, all(1.0), batch->G);
 }
 
 /* out += factor times what the rows have of a hinge, shape (R,). */
 static void add_hinge_row(const Batch *batch, int64_t h, V factor, V *out)
 {
-    const int *felt = batch->hinge_felt + h * batch->problem->rows;
+    const int *felt = batch->hinge_felt + h * batch->problem->of.rows;
     for (int i = 0; i < batch->hinge_felt_count[h]; i++)
-        out[felt[i]] += factor * batch->hinge_rows[h * batch->problem->rows + felt[i]];
+        out[felt[i]] += factor * batch->hinge_rows[h * batch->problem->of.rows + felt[i]];
 }
 
 /* J v, shape (R,), of a step v, shape (n,). */
 static void rows_times(const Batch *batch, const V *v, V *out)
 {
     const Problem *problem = batch->problem;
-    for (int64_t t = 0; t < problem->tasks; t++) {
+    for (int64_t t = 0; t < problem->of.tasks; t++) {
         const Pull *pull = batch->pulls + t;
         for (int64_t r = 0; r < problem->task[t].rows; r++)
             out[pull->first_row + r] = all(0.0);
@@ -177,7 +177,7 @@ static void rows_times(const Batch *batch, const V *v, V *out)
 static void add_rows_transposed(const Batch *batch, const V *y, V *out)
 {
     const Problem *problem = batch->problem;
-    for (int64_t t = 0; t < problem->tasks; t++) {
+    for (int64_t t = 0; t < problem->of.tasks; t++) {
         const Pull *pull = batch->pulls + t;
         for (int p = 0; p < pull->parts; p++) {
             const Part *part = pull->part + p;
@@ -206,7 +206,7 @@ static void add_rows_transposed(const Batch *batch, const V *y, V *out)
                 add(out + batch->unknowns - 3, force);
         }
     }
-    for (int64_t h = 0; h < problem->hinges; h++) {
+    for (int64_t h = 0; h < problem->of.hinges; h++) {
         V *turn = out + batch->column_unknown[problem->hinge[h].column];
         *turn = only(batch->hinge_free[h], *turn);
     }

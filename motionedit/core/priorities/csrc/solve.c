@@ -1,19 +1,5 @@
-/* The iteration of a batch: layered_numpy.py and homing.py, each lane with its own frame. Part of solver.c. */
+/* The iteration of a batch: numpy_solver.py and homing.py, each lane with its own frame. Part of solver.c. */
 
-/* As in layered_numpy.py and homing.py, where each is explained. */
-#define LARGEST_TURN 0.5
-#define STOP_STEP 1e-4
-#define STOP_LEFT 2e-5
-#define STOP_ERROR 1e-5
-#define FULL_GAIN_ITERATIONS 8
-#define GAIN_DECAY 0.85
-#define HASTY_ITERATIONS 8
-#define ANNEALED_ITERATIONS 10
-#define LIMIT_ROUNDS 4
-#define ON_LIMIT 1e-12
-#define LARGEST_TASK_SHARE 0.5
-#define LARGEST_FACTOR 3.0
-#define NO_CHANGE 1e-24
 /* Metres and radians: what is less is rounding. */
 #define AT_REST 1e-13
 
@@ -25,7 +11,7 @@ static V length(const V *v, int n)
 /* Scratch of R numbers; layers.c uses the first two. */
 static V *scratch(const Batch *batch, int which)
 {
-    return batch->scratch_rows + (2 + which) * batch->problem->rows;
+    return batch->scratch_rows + (2 + which) * batch->problem->of.rows;
 }
 
 static V *hinge_turn(const Batch *batch, V *v, int64_t h)
@@ -36,7 +22,7 @@ static V *hinge_turn(const Batch *batch, V *v, int64_t h)
 /* Hinges on their limits take no part. */
 static void without_fixed_hinges(const Batch *batch, V *v)
 {
-    for (int64_t h = 0; h < batch->problem->hinges; h++) {
+    for (int64_t h = 0; h < batch->problem->of.hinges; h++) {
         V *turn = hinge_turn(batch, v, h);
         *turn = only(batch->hinge_free[h], *turn);
     }
@@ -47,7 +33,7 @@ static void subtract_rank_space(const Batch *batch, V *q, V *v)
 {
     V *y = scratch(batch, 0);
     out_of_rank_space(batch, q, y);
-    for (int64_t r = 0; r < batch->problem->rows; r++)
+    for (int64_t r = 0; r < batch->problem->of.rows; r++)
         y[r] = -y[r];
     add_rows_transposed(batch, y, v);
 }
@@ -68,7 +54,7 @@ static void pull_home(Batch *batch)
     V *q = scratch(batch, 1);
     memcpy(batch->home, batch->z, sizeof *batch->z * batch->unknowns);
     without_fixed_hinges(batch, batch->home);
-    memcpy(q, batch->Qz, sizeof *q * batch->problem->rows);
+    memcpy(q, batch->Qz, sizeof *q * batch->problem->of.rows);
     subtract_rank_space(batch, q, batch->home);
 }
 
@@ -76,8 +62,8 @@ static void pull_home(Batch *batch)
 static void pull_in_rank_space(Batch *batch, const V *Jz)
 {
     V *rest = scratch(batch, 0);
-    memcpy(rest, Jz, sizeof *rest * batch->problem->rows);
-    for (int64_t h = 0; h < batch->problem->hinges; h++)
+    memcpy(rest, Jz, sizeof *rest * batch->problem->of.rows);
+    for (int64_t h = 0; h < batch->problem->of.hinges; h++)
         if (any(~batch->hinge_free[h]))
             add_hinge_row(batch, h, only(~batch->hinge_free[h], -*hinge_turn(batch, batch->z, h)), rest);
     into_rank_space(batch, rest, batch->Qz);
@@ -86,10 +72,11 @@ static void pull_in_rank_space(Batch *batch, const V *Jz)
 /* Where a turn takes a hinge (rad), and whether that is beyond its limits. */
 static Mask beyond(const Batch *batch, int64_t h, V turn, V *limited)
 {
+    const Constants *constants = &batch->problem->constants;
     const Hinge *hinge = batch->problem->hinge + h;
     const V after = batch->hinge_angles[h] + turn;
     *limited = smaller(larger(after, all(hinge->limits[0])), all(hinge->limits[1]));
-    return less(all(ON_LIMIT), size_of(after - *limited)) & batch->hinge_free[h];
+    return less(all(constants->on_limit), size_of(after - *limited)) & batch->hinge_free[h];
 }
 
 /* Set on their limits the hinges that gain z + J^T y would take beyond them; returns whether there were any. */
@@ -97,11 +84,11 @@ static int set_on_limits(Batch *batch, const V *y)
 {
     const Problem *problem = batch->problem;
     int out = 0;
-    for (int64_t h = 0; h < problem->hinges; h++) {
+    for (int64_t h = 0; h < problem->of.hinges; h++) {
         V turn = batch->gain * *hinge_turn(batch, batch->z, h), limited;
         for (int i = 0; i < batch->hinge_felt_count[h]; i++) {
-            const int r = batch->hinge_felt[h * problem->rows + i];
-            turn += batch->hinge_rows[h * problem->rows + r] * y[r];
+            const int r = batch->hinge_felt[h * problem->of.rows + i];
+            turn += batch->hinge_rows[h * problem->of.rows + r] * y[r];
         }
         const Mask leaves = beyond(batch, h, turn, &limited);
         batch->hinge_fixed[h] = choose(leaves, limited - batch->hinge_angles[h], batch->hinge_fixed[h]);
@@ -116,31 +103,32 @@ static int set_on_limits(Batch *batch, const V *y)
    step = fixed hinges + gain z + Q^T (c - gain Q z) = fixed hinges + gain z + J^T y */
 static void descend_within_limits(Batch *batch)
 {
+    const Constants *constants = &batch->problem->constants;
     const Problem *problem = batch->problem;
     V *y = scratch(batch, 0), *q = scratch(batch, 1), *Jz = scratch(batch, 2), *step = batch->step;
-    for (int64_t h = 0; h < problem->hinges; h++)
+    for (int64_t h = 0; h < problem->of.hinges; h++)
         batch->hinge_free[h] = everywhere(), batch->hinge_fixed[h] = all(0.0);
     rows_times(batch, batch->z, Jz);
     for (int round = 0;; round++) {
         descend(batch);
         pull_in_rank_space(batch, Jz);
-        for (int64_t p = 0; p < problem->rows; p++)
+        for (int64_t p = 0; p < problem->of.rows; p++)
             q[p] = batch->c[p] - batch->gain * batch->Qz[p];
         out_of_rank_space(batch, q, y);
-        if (round == LIMIT_ROUNDS || !set_on_limits(batch, y))
+        if (round == constants->limit_rounds || !set_on_limits(batch, y))
             break;
     }
     for (int i = 0; i < batch->unknowns; i++)
         step[i] = batch->gain * batch->z[i];
     add_rows_transposed(batch, y, step);
-    for (int64_t h = 0; h < problem->hinges; h++)
+    for (int64_t h = 0; h < problem->of.hinges; h++)
         *hinge_turn(batch, step, h) += batch->hinge_fixed[h];
 }
 
 /* The length of Q^T c and the fixed hinges, which are orthogonal. */
 static V task_length(const Batch *batch)
 {
-    const int64_t rows = batch->problem->rows, hinges = batch->problem->hinges;
+    const int64_t rows = batch->problem->of.rows, hinges = batch->problem->of.hinges;
     return root_of(
         dot_product(batch->c, batch->c, (int)rows) + dot_product(batch->hinge_fixed, batch->hinge_fixed, (int)hinges));
 }
@@ -148,6 +136,7 @@ static V task_length(const Batch *batch)
 /* homing.py: a secant step for the pull where it applies and leaves every hinge within its limits. */
 static void accelerate(Batch *batch, Mask usable, V task)
 {
+    const Constants *constants = &batch->problem->constants;
     const int n = batch->unknowns;
     V size = all(0.0), share = size;
     for (int i = 0; i < n; i++) {
@@ -156,18 +145,18 @@ static void accelerate(Batch *batch, Mask usable, V task)
         batch->fast[i] = batch->step_before[i] + change;
     }
     const V home = length(batch->home, n);
-    usable &= less(all(NO_CHANGE), size) & less(task, LARGEST_TASK_SHARE * home);
+    usable &= less(all(constants->no_change), size) & less(task, constants->largest_task_share * home);
     if (!any(usable))
         return;
     off_layers(batch, batch->fast);
     share /= choose(usable, size, all(1.0));
     for (int i = 0; i < n; i++)
         batch->fast[i] = batch->home[i] - share * batch->fast[i];
-    const V factor = smaller(all(1.0), LARGEST_FACTOR * home / larger(length(batch->fast, n), all(1e-300)));
+    const V factor = smaller(all(1.0), constants->largest_factor * home / larger(length(batch->fast, n), all(1e-300)));
     /* step + gain (fast - home) */
     for (int i = 0; i < n; i++)
         batch->fast[i] = batch->step[i] + batch->gain * (factor * batch->fast[i] - batch->home[i]);
-    for (int64_t h = 0; h < batch->problem->hinges; h++) {
+    for (int64_t h = 0; h < batch->problem->of.hinges; h++) {
         V limited;
         usable &= ~beyond(batch, h, *hinge_turn(batch, batch->fast, h), &limited);
     }
@@ -175,28 +164,30 @@ static void accelerate(Batch *batch, Mask usable, V task)
         batch->step[i] = choose(usable, batch->fast[i], batch->step[i]);
 }
 
-/* Scale the step so that no joint turns further than LARGEST_TURN; returns the largest turn. */
+/* Scale the step so that no joint turns further than the largest allowed; returns the largest turn. */
 static V bound_turns(Batch *batch)
 {
+    const Constants *constants = &batch->problem->constants;
     V largest = all(0.0);
-    for (int64_t k = 0; k < batch->problem->columns; k++) {
+    for (int64_t k = 0; k < batch->problem->of.columns; k++) {
         const V *w = batch->step + batch->column_unknown[k];
         largest = larger(largest, batch->column_hinge[k] < 0 ? dot(w, w) : w[0] * w[0]);
     }
     largest = root_of(largest);
-    if (!any(less(all(LARGEST_TURN), largest)))
+    if (!any(less(all(constants->largest_turn), largest)))
         return largest;
-    const V factor = LARGEST_TURN / larger(largest, all(LARGEST_TURN));
+    const V factor = constants->largest_turn / larger(largest, all(constants->largest_turn));
     for (int i = 0; i < batch->unknowns; i++)
         batch->step[i] *= factor;
-    return smaller(largest, all(LARGEST_TURN));
+    return smaller(largest, all(constants->largest_turn));
 }
 
 /* Remember the pull and the step where the next iteration may compare with them: see homing.py. */
 static void remember(Batch *batch, V task, int has_home)
 {
-    const size_t n = batch->unknowns, hinges = batch->problem->hinges;
-    batch->remembers = less(task, LARGEST_TASK_SHARE * length(batch->step, (int)n));
+    const Constants *constants = &batch->problem->constants;
+    const size_t n = batch->unknowns, hinges = batch->problem->of.hinges;
+    batch->remembers = less(task, constants->largest_task_share * length(batch->step, (int)n));
     if (!any(batch->remembers))
         return;
     if (!has_home)
@@ -206,19 +197,20 @@ static void remember(Batch *batch, V task, int has_home)
     memcpy(batch->hinge_free_before, batch->hinge_free, sizeof *batch->hinge_free * hinges);
 }
 
-/* Which lanes meet every layer to STOP_ERROR. */
+/* Which lanes meet every layer. */
 static Mask are_met(const Batch *batch)
 {
+    const Constants *constants = &batch->problem->constants;
     Mask met = everywhere();
-    for (int l = 0; l < batch->problem->layers; l++)
-        met &= less(length(batch->errors + batch->layers[l].first, batch->layers[l].rows), all(STOP_ERROR));
+    for (int l = 0; l < batch->problem->of.layers; l++)
+        met &= less(length(batch->errors + batch->layers[l].first, batch->layers[l].rows), all(constants->stop_error));
     return met;
 }
 
 /* Rounding is no error and no pull. */
 static void drop_rounding(Batch *batch)
 {
-    const int rows = (int)batch->problem->rows;
+    const int rows = (int)batch->problem->of.rows;
     const Mask pulls = less(all(AT_REST), length(batch->z, batch->unknowns));
     const Mask errs = less(all(AT_REST), length(batch->errors, rows)) | pulls;
     for (int i = 0; i < batch->unknowns; i++)
@@ -242,23 +234,24 @@ static void end_frame(Batch *batch, int lane, int converged)
     const Problem *problem = batch->problem;
     const int64_t at = batch->at[lane];
     problem->converged[at] = (uint8_t)converged, problem->iterations[at] = batch->iteration[lane];
-    for (int l = 0; l < problem->layers; l++)
-        problem->ranks[at * problem->layers + l] = (int64_t)LANE(batch->layers[l].rank, lane);
+    for (int l = 0; l < problem->of.layers; l++)
+        problem->ranks[at * problem->of.layers + l] = (int64_t)LANE(batch->layers[l].rank, lane);
     store(batch, lane);
 }
 
 /* How each lane goes about its iteration. */
 static void set_pace(Batch *batch)
 {
+    const Constants *constants = &batch->problem->constants;
     const Problem *problem = batch->problem;
     for (int lane = 0; lane < LANES; lane++) {
         const int64_t iteration = batch->iteration[lane];
-        const int64_t left_over = problem->max_iterations - ANNEALED_ITERATIONS - iteration - 1;
+        const int64_t left_over = problem->of.max_iterations - constants->annealed_iterations - iteration - 1;
         LANE(batch->anneal, lane) = left_over < 0 ? ldexp(1.0, (int)left_over) : 1.0;
-        LANE(batch->gain, lane) = problem->attraction * LANE(batch->anneal, lane);
-        for (int64_t i = FULL_GAIN_ITERATIONS; i < iteration + 1; i++)
-            LANE(batch->gain, lane) *= GAIN_DECAY;
-        MASK_LANE(batch->steady, lane) = iteration >= HASTY_ITERATIONS ? -1 : 0;
+        LANE(batch->gain, lane) = problem->of.attraction * LANE(batch->anneal, lane);
+        for (int64_t i = constants->full_gain_iterations; i < iteration + 1; i++)
+            LANE(batch->gain, lane) *= constants->gain_decay;
+        MASK_LANE(batch->steady, lane) = iteration >= constants->hasty_iterations ? -1 : 0;
     }
 }
 
@@ -273,7 +266,7 @@ static V iterate(Batch *batch)
     descend_within_limits(batch);
     const V task = task_length(batch);
     Mask compares = batch->remembers;
-    for (int64_t h = 0; h < problem->hinges; h++)
+    for (int64_t h = 0; h < problem->of.hinges; h++)
         compares &= ~(batch->hinge_free[h] ^ batch->hinge_free_before[h]);
     const int compare = any(compares);
     if (compare) {
@@ -289,15 +282,15 @@ static V iterate(Batch *batch)
 static void start_where_the_last_ended(const Problem *problem, int64_t at)
 {
     at = problem->frames[at];
-    double *here = problem->rotations + 4 * problem->joints * at;
-    for (int64_t k = 0; k < problem->columns; k++) {
+    double *here = problem->rotations + 4 * problem->of.joints * at;
+    for (int64_t k = 0; k < problem->of.columns; k++) {
         const int64_t joint = problem->node[problem->column_node[k]].joint;
-        memcpy(here + 4 * joint, here + 4 * (joint - problem->joints), 4 * sizeof *here);
+        memcpy(here + 4 * joint, here + 4 * (joint - problem->of.joints), 4 * sizeof *here);
     }
-    if (problem->moves_root && problem->root >= 0) {
-        const int64_t place = problem->node[problem->root].translation;
-        double *root = problem->translations + 3 * (problem->translated * at + place);
-        memcpy(root, root - 3 * problem->translated, 3 * sizeof *root);
+    if (problem->of.moves_root && problem->of.root >= 0) {
+        const int64_t place = problem->node[problem->of.root].translation;
+        double *root = problem->translations + 3 * (problem->of.translated * at + place);
+        memcpy(root, root - 3 * problem->of.translated, 3 * sizeof *root);
     }
 }
 
@@ -306,12 +299,12 @@ static void start_where_the_last_ended(const Problem *problem, int64_t at)
 static int64_t fill(Batch *batch, int64_t next, int64_t end)
 {
     const Problem *problem = batch->problem;
-    for (int lane = 0; lane < (problem->in_order ? 1 : LANES); lane++) {
+    for (int lane = 0; lane < (problem->of.in_order ? 1 : LANES); lane++) {
         while (next < end && problem->converged[next])
             next++;
         if (batch->at[lane] >= 0 || next == end)
             continue;
-        if (problem->in_order && next > 0)
+        if (problem->of.in_order && next > 0)
             start_where_the_last_ended(problem, next);
         begin_frame(batch, lane, next++);
     }
@@ -332,7 +325,7 @@ static void end_before_iterating(Batch *batch)
     const Mask met = any(batch->nearly) ? batch->nearly & are_met(batch) : batch->nearly;
     for (int lane = 0; lane < LANES; lane++)
         if (batch->at[lane] >= 0 &&
-            (MASK_LANE(met, lane) || batch->iteration[lane] == batch->problem->max_iterations)) {
+            (MASK_LANE(met, lane) || batch->iteration[lane] == batch->problem->of.max_iterations)) {
             end_frame(batch, lane, MASK_LANE(met, lane) != 0);
             batch->at[lane] = -1;
         }
@@ -341,12 +334,13 @@ static void end_before_iterating(Batch *batch)
 /* End the frames whose last step was short enough; expect that of others. */
 static void end_after_iterating(Batch *batch, V moved)
 {
+    const Constants *constants = &batch->problem->constants;
     const V ratio = moved / larger(batch->moved_before, all(1e-300));
-    batch->nearly = less(ratio, all(0.5)) & less(moved * ratio, STOP_LEFT * (1.0 - ratio));
+    batch->nearly = less(ratio, all(0.5)) & less(moved * ratio, constants->stop_left * (1.0 - ratio));
     batch->moved_before = moved;
     for (int lane = 0; lane < LANES; lane++) {
         batch->iteration[lane] += batch->at[lane] >= 0;
-        if (batch->at[lane] >= 0 && LANE(moved, lane) < STOP_STEP) {
+        if (batch->at[lane] >= 0 && LANE(moved, lane) < constants->stop_step) {
             end_frame(batch, lane, 1);
             batch->at[lane] = -1;
         }

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "body.c"
-#include "tasks.c"
+#include "kinds.c"
 #include "rows.c"
 #include "algebra.c"
 #include "layers.c"

@@ -1,7 +1,7 @@
 """The compiled solver, kinematics and smoothing beside numpy's, on random skeletons, tasks, ranks and hinges."""
 
 import os
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -15,14 +15,18 @@ from motionedit.core.body.center_of_mass import Masses
 from motionedit.core.body.hinges import Hinge
 from motionedit.core.compiled import CHOICE, compiled, solver_name
 from motionedit.core.kinematics import Effector, effector_positions, forward
+from motionedit.core.measure import Measure
 from motionedit.core.motion import Motion
-from motionedit.core.priorities import compiled_solver as kernel
-from motionedit.core.priorities.constraints import Constraint
+from motionedit.core.priorities import compiled_solver
 from motionedit.core.priorities.continuity import smoothed_displacement
-from motionedit.core.priorities.edit import Body, LayeredSettings, PaperFilter, Passes, edit_by_priorities
+from motionedit.core.priorities.edit import edit_by_priorities
+from motionedit.core.priorities.kinds import KINDS, Position
+from motionedit.core.priorities.kinds.position import PositionTask
+from motionedit.core.priorities.points import Columns, Point, Recruited
+from motionedit.core.priorities.problem import HingeColumns, Problem, Reference, WeightedTask
 from motionedit.core.priorities.recruiting import RecruitRule
-from motionedit.core.priorities.solver import HingeColumns, Problem, Reference, WeightedTask, solve_layers
-from motionedit.core.priorities.tasks import Columns, Point, PositionTask, Recruited
+from motionedit.core.priorities.settings import Body, LayeredSettings, PaperFilter, Passes
+from motionedit.core.priorities.solver import prepared, solve_layers
 from motionedit.core.priorities.trajectories import ControlPoint
 from motionedit.core.skeleton import Skeleton
 
@@ -31,7 +35,7 @@ pytestmark = pytest.mark.skipif(solver_name() == "numpy", reason="no compiled so
 FRAMES = 5
 # What the two may differ by (rad, m) where everything can be met, and where something cannot.
 FEASIBLE, INFEASIBLE = 1e-9, 1e-8
-KINDS = ("position", "orientation", "pose", "com", "aim", "posture")
+NAMES = ("position", "orientation", "pose", "com", "aim", "posture")
 
 
 def by_numpy(monkeypatch, function):
@@ -81,7 +85,7 @@ def hinges_of(rng, skeleton, motion):
 
 def constraint_of(rng, skeleton, number, reach):
     joint = int(rng.integers(1, len(skeleton)))
-    kind = KINDS[int(rng.integers(len(KINDS)))]
+    kind = NAMES[int(rng.integers(len(NAMES)))]
     offset = rng.normal(scale=0.1, size=3) * (rng.uniform() < 0.5)
     base = int(rng.integers(len(skeleton))) if rng.uniform() < 0.3 and kind in {"position", "orientation"} else None
     axes = ((0, 1, 2), (0, 2), (1,))[int(rng.integers(3))] if kind in {"position", "com"} else (0, 1, 2)
@@ -91,19 +95,18 @@ def constraint_of(rng, skeleton, number, reach):
     place = rng.normal(scale=2.0, size=3) if kind == "aim" else None
     point = ControlPoint("hold", 0, FRAMES - 1, position=place, shift=shift, orientation=turn)
     axis = rng.normal(size=3)
-    return Constraint(
-        kind,
-        f"c{number}",
-        int(rng.integers(1, 4)),
-        float(rng.uniform(0.3, 3.0)),
-        Effector(joint, offset),
-        base=base if base != joint else None,
-        axes=axes,
-        recruit=rules[int(rng.integers(2))] if kind in {"position", "orientation"} else rules[0],
-        points=() if kind == "posture" else (point,),
-        axis=axis / np.linalg.norm(axis),
-        joints=(joint,) if kind == "posture" else (),
-    )
+    priority, weight = int(rng.integers(1, 4)), float(rng.uniform(0.3, 3.0))
+    whole = {
+        "effector": Effector(joint, offset),
+        "measure": Measure(counted=axes, base=base if base != joint else None),
+        "recruit": rules[int(rng.integers(2))] if kind in {"position", "orientation"} else rules[0],
+        "points": () if kind == "posture" else (point,),
+        "axis": axis / np.linalg.norm(axis),
+        "joints": (joint,) if kind == "posture" else (),
+    }
+    has = {each.name for each in fields(KINDS[kind])}
+    own = {key: value for key, value in whole.items() if key in has}
+    return KINDS[kind](name=f"c{number}", priority=priority, weight=weight, **own)
 
 
 def problem_of(seed, joints, count, reach):
@@ -166,10 +169,10 @@ def test_neither_the_width_of_vectors_nor_the_neighbours_change_a_bit(patch, see
     setting = LayeredSettings(smoothing=Passes(0), max_iterations=12)
     wide = edit_by_priorities(motion, constraints, body, setting)
     with patch.context() as narrowed:
-        narrowed.setattr(kernel, "compiled", Narrow)
+        narrowed.setattr(compiled_solver, "compiled", Narrow)
         same_bits(edit_by_priorities(motion, constraints, body, setting), wide)
     with patch.context() as parted:
-        parted.setattr(kernel, "_LEAST_SHARE", 1)
+        parted.setattr(compiled_solver, "_LEAST_SHARE", 1)
         same_bits(edit_by_priorities(motion, constraints, body, replace(setting, threads=FRAMES)), wide)
 
 
@@ -188,7 +191,7 @@ def arms_of(seed, frames=8):
 
     def point(effector, recruited, shift):
         targets = effector_positions(forward(motion), effector) + shift
-        task = PositionTask(Point(columns, effector, recruited), targets, np.eye(3), (0, 1, 2))
+        task = PositionTask(Point(columns, effector, recruited), targets)
         return WeightedTask(task, float(rng.uniform(0.7, 1.3)))
 
     shift = rng.normal(scale=0.1, size=(frames, 3))
@@ -207,7 +210,7 @@ def arms_of(seed, frames=8):
 def solved(problem, motion, frames, **how):
     """Return a copy of a motion, solved at some frames, and how that went."""
     own = Motion(motion.skeleton, motion.rotations.copy(), motion.translations.copy(), motion.frame_time)
-    return solve_layers(problem, own, Reference(motion.rotations.copy(), None), frames, **how)
+    return solve_layers(prepared(problem), own, Reference(motion.rotations.copy(), None), frames, **how)
 
 
 @pytest.mark.parametrize("seed", range(30))
@@ -216,7 +219,7 @@ def test_rows_that_depend_on_each_other_in_a_neighbour_alone_change_no_bit(patch
     frames = np.arange(len(motion))
     together = solved(problem, motion, frames)
     with patch.context() as parted:
-        parted.setattr(kernel, "_LEAST_SHARE", 1)
+        parted.setattr(compiled_solver, "_LEAST_SHARE", 1)
         same_bits(solved(problem, motion, frames, threads=len(motion)), together)
 
 
@@ -250,14 +253,8 @@ def test_the_number_of_threads_changes_no_bit(threads):
     rng = np.random.default_rng(4)
     skeleton = skeleton_of(rng, 12)
     motion = motion_of(rng, skeleton, 300)
-    hand = Constraint(
-        "position",
-        "hand",
-        1,
-        1.0,
-        Effector(11, np.zeros(3)),
-        points=(ControlPoint("hold", 0, 299, shift=np.ones(3) * 0.05),),
-    )
+    hold = ControlPoint("hold", 0, 299, shift=np.ones(3) * 0.05)
+    hand = Position(name="hand", effector=Effector(11, np.zeros(3)), points=(hold,))
     body = Body(masses_of(rng, skeleton), (), 0, 0)
     one = edit_by_priorities(motion, [hand], body, LayeredSettings())
     other = edit_by_priorities(motion, [hand], body, replace(LayeredSettings(), threads=threads))
@@ -291,8 +288,10 @@ def test_smoothing_is_the_same(patch, first, sigma):
 
 def test_buffers_of_a_wrong_size_are_an_error_and_no_crash():
     empty = np.zeros(0)
-    with pytest.raises(ValueError, match="sizes has 0 bytes"):
-        compiled().solve(*[empty] * 18, 1.0, 0, 0)
+    with pytest.raises(ValueError, match="settings has 0 bytes"):
+        compiled().solve({"settings": empty}, 0, 0)
+    with pytest.raises(ValueError, match="settings is missing"):
+        compiled().solve({}, 0, 0)
     with pytest.raises(ValueError, match="places has 0 bytes"):
         compiled().forward(np.array([-1]), empty, empty, empty, empty, empty, empty, 1)
     with pytest.raises(ValueError, match="rotations after"):

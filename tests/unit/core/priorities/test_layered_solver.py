@@ -10,16 +10,10 @@ from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.center_of_mass import find_masses
 from motionedit.core.body.hinges import Hinge
 from motionedit.core.kinematics import Effector
-from motionedit.core.priorities.constraints import Constraint
-from motionedit.core.priorities.edit import (
-    Body,
-    LayeredSettings,
-    PaperFilter,
-    Passes,
-    RecruitingError,
-    edit_by_priorities,
-)
+from motionedit.core.priorities.edit import RecruitingError, edit_by_priorities
+from motionedit.core.priorities.kinds import Aim, CenterOfMass, Orientation, Pose, Position, Posture
 from motionedit.core.priorities.recruiting import RecruitRule
+from motionedit.core.priorities.settings import Body, LayeredSettings, PaperFilter, Passes
 from motionedit.core.priorities.trajectories import ControlPoint
 
 SKELETON = skeleton_of()
@@ -60,7 +54,7 @@ def held(name, shift=(0.0, 0.0, 0.0), *, priority=1, weight=1.0, offset=(0.0, 0.
     """Return a constraint that holds a joint where it is in frame 0, shifted, over the whole clip."""
     point = ControlPoint("hold", 0, FRAMES - 1, None, np.array(shift), None, 0.0, 0.0, 0.0)
     effector = Effector(joint(name), np.array(offset))
-    return Constraint("position", name, priority, weight, effector, points=(point,), **more)
+    return Position(name=name, priority=priority, weight=weight, effector=effector, points=(point,), **more)
 
 
 def feet(priority=10):
@@ -77,7 +71,7 @@ def run(motion, constraints, body, settings=NOW):
 
 
 def test_feasible_layers_are_met(motion, body):
-    com = Constraint("com", "com", 1, 1.0, Effector(0, np.zeros(3)))
+    com = CenterOfMass(name="com")
     edit = run(motion, [*feet(), held("RightHand", (0.1, 0.1, 0.15), priority=4), com], body)
     assert max(errors(edit)) < 0.01
     assert edit.converged.all()
@@ -86,7 +80,7 @@ def test_feasible_layers_are_met(motion, body):
 
 def balance(priority=1):
     support = tuple(joint(name) for name in ("LeftFoot", "LeftToeBase", "RightFoot", "RightToeBase"))
-    return Constraint("com", "com", priority, 1.0, Effector(0, np.zeros(3)), support=support)
+    return CenterOfMass(name="com", priority=priority, support=support)
 
 
 def furthest(motion, edit, name):
@@ -114,7 +108,7 @@ def test_a_center_of_mass_goes_with_a_body_that_is_moved(motion, body):
     assert max(errors(edit)) < 0.01
     assert furthest(motion, edit, "LeftFoot") == pytest.approx(furthest(motion, edit, "RightFoot"), abs=100.0)
     bent = rot.angle_between(edit.motion.rotations, motion.rotations).max()
-    upright = run(motion, [hips, Constraint("com", "com", 1, 1.0, Effector(0, np.zeros(3)))], body)
+    upright = run(motion, [hips, CenterOfMass(name="com")], body)
     assert bent < 0.5 * rot.angle_between(upright.motion.rotations, motion.rotations).max()
 
 
@@ -234,10 +228,10 @@ def test_orientation_pose_aim_and_posture_are_met(motion, body):
     ahead = ControlPoint("hold", 0, FRAMES - 1, np.array([0.5, 1.5, 3.0]), None, None, 0.0, 0.0, 0.0)
     zero = np.zeros(3)
     constraints = [
-        Constraint("pose", "foot", 9, 1.0, Effector(joint("LeftFoot"), zero), points=(still,)),
-        Constraint("orientation", "hand", 5, 1.0, Effector(joint("RightHand"), zero), points=(whole,)),
-        Constraint("aim", "eyes", 4, 1.0, Effector(joint("Head"), zero), points=(ahead,)),
-        Constraint("posture", "neck", 1, 1.0, Effector(0, zero), joints=(joint("LeftArm"),)),
+        Pose(name="foot", priority=9, effector=Effector(joint("LeftFoot"), zero), points=(still,)),
+        Orientation(name="hand", priority=5, effector=Effector(joint("RightHand"), zero), points=(whole,)),
+        Aim(name="eyes", priority=4, effector=Effector(joint("Head"), zero), points=(ahead,)),
+        Posture(name="neck", priority=1, joints=(joint("LeftArm"),)),
     ]
     edit = run(motion, constraints, body)
     foot, hand, eyes, neck = edit.errors
@@ -248,8 +242,8 @@ def test_orientation_pose_aim_and_posture_are_met(motion, body):
 
 def test_passes_smooth_the_edit_and_keep_the_constraints(motion, body):
     point = ControlPoint("at", 6, 6, None, np.array([0.2, 0.2, 0.2]), None, 0.0, 0.0, 0.0)
-    hand = Constraint(
-        "position", "hand", 1, 1.0, Effector(joint("RightHand"), np.zeros(3)), points=(point,), ease_in=4, ease_out=4
+    hand = Position(
+        name="hand", effector=Effector(joint("RightHand"), np.zeros(3)), points=(point,), ease_in=4, ease_out=4
     )
     edit = run(motion, [*feet(), hand], body, LayeredSettings(smoothing=Passes(3, 1.0)))
     assert max(errors(edit)) < 0.01
@@ -258,8 +252,8 @@ def test_passes_smooth_the_edit_and_keep_the_constraints(motion, body):
 def test_frames_far_from_every_interval_are_the_input_bit_for_bit(body):
     long = standing(SKELETON, 60)
     point = ControlPoint("at", 20, 20, None, np.array([0.1, 0.1, 0.1]), None, 0.0, 0.0, 0.0)
-    hand = Constraint(
-        "position", "hand", 1, 1.0, Effector(joint("RightHand"), np.zeros(3)), points=(point,), ease_in=3, ease_out=3
+    hand = Position(
+        name="hand", effector=Effector(joint("RightHand"), np.zeros(3)), points=(point,), ease_in=3, ease_out=3
     )
     edit = run(long, [hand], body, LayeredSettings(smoothing=Passes(2, 1.0)))
     far = [*range(17 - 6), *range(24 + 6, 60)]

@@ -1,4 +1,5 @@
-/* Tasks: errors, and rows as forces and torques on chains of columns ([PRIO] 3, 4). Part of solver.c. */
+/* The kinds of rows that the compiled solver knows: errors, and rows as forces and torques on columns ([PRIO] 3, 4). A new
+   one is a function and its line in the table at the end. Part of solver.c. */
 
 /* Put w times the measuring axes, turned by R, into the rows of a force. */
 static void turned_axes(const Task *task, const V *R, V rows[3][3])
@@ -70,7 +71,7 @@ static void evaluate_center_of_mass(const Batch *batch, const Task *task, Pull *
 static void evaluate_orientation(const Batch *batch, const Task *task, Pull *pull, const V *target, V *e)
 {
     const V *base = task->base >= 0 ? batch->rotations + 9 * task->base : IDENTITY;
-    const double scale = task->weight * METRES_PER_RADIAN;
+    const double scale = task->weight * batch->problem->constants.metres_per_radian;
     V q[4], turn[3];
     world_quaternion(batch, task->node, q);
     if (task->base >= 0) {
@@ -92,7 +93,7 @@ static void evaluate_orientation(const Batch *batch, const Task *task, Pull *pul
 /* One joint's local rotation: e = log(q_target q^-1) as a world-axis increment, the identity in its own column. */
 static void evaluate_posture(const Batch *batch, const Task *task, Pull *pull, const V *target, V *e)
 {
-    const double scale = task->weight * METRES_PER_RADIAN;
+    const double scale = task->weight * batch->problem->constants.metres_per_radian;
     V turn[3];
     turn_to(target, batch->local + 4 * task->node, turn);
     turned(parent_rotation(batch, task->node), turn, turn);
@@ -118,7 +119,7 @@ static void any_side(const V *d, int lane, V *side)
 /* The turn from d to the target's direction, and (I - d d^T) w + d x (dp_e - dp_t) / r. */
 static void evaluate_aim(const Batch *batch, const Task *task, Pull *pull, const V *target, V *e)
 {
-    const double scale = task->weight * METRES_PER_RADIAN;
+    const double scale = task->weight * batch->problem->constants.metres_per_radian;
     const V *turn = batch->rotations + 9 * task->node;
     V d[3], from[3], at[3], t[3], side[3], angle;
     turned_plain(turn, task->axis, d);
@@ -164,20 +165,33 @@ static void evaluate_aim(const Batch *batch, const Task *task, Pull *pull, const
     }
 }
 
+/* What is known of a kind: its name in Python, whether its rows push and twist, whether they pull at all that carries mass
+   instead of at a chain, and how they are evaluated: errors into e, rows into the parts of the pull. */
+typedef struct {
+    const char *name;
+    int force, torque, weighs;
+    void (*evaluate)(const Batch *batch, const Task *task, Pull *pull, const V *target, V *e);
+} Kind;
+
+static const Kind KINDS[] = {
+    {"position", 1, 0, 0, evaluate_position},
+    {"orientation", 0, 1, 0, evaluate_orientation},
+    {"center of mass", 1, 0, 1, evaluate_center_of_mass},
+    {"aim", 1, 1, 0, evaluate_aim},
+    {"posture", 0, 1, 0, evaluate_posture},
+};
+
+const char *kind_name(int kind)
+{
+    return kind < (int)(sizeof KINDS / sizeof *KINDS) ? KINDS[kind].name : NULL;
+}
+
 /* Errors, shape (R,), and the rows of every task, at the pose that `forward` has laid out. */
 static void evaluate_tasks(Batch *batch)
 {
-    for (int64_t t = 0; t < batch->problem->tasks; t++) {
+    for (int64_t t = 0; t < batch->problem->of.tasks; t++) {
         const Task *task = batch->problem->task + t;
         Pull *pull = batch->pulls + t;
-        const V *target = batch->targets + 4 * t;
-        V *e = batch->errors + pull->first_row;
-        switch (task->kind) {
-        case POSITION: evaluate_position(batch, task, pull, target, e); break;
-        case CENTER_OF_MASS: evaluate_center_of_mass(batch, task, pull, target, e); break;
-        case ORIENTATION: evaluate_orientation(batch, task, pull, target, e); break;
-        case POSTURE: evaluate_posture(batch, task, pull, target, e); break;
-        default: evaluate_aim(batch, task, pull, target, e);
-        }
+        KINDS[task->kind].evaluate(batch, task, pull, batch->targets + 4 * t, batch->errors + pull->first_row);
     }
 }

@@ -1,0 +1,34 @@
+"""The constants of the layered solver, once for both: csrc gets them by their names (`Constants` in layered.h)."""
+
+# Metres at leg length 0.85 m: a layer's error is clamped to this much per iteration.
+LARGEST_ERROR = 0.6
+# Radians: no joint turns further than this in one iteration.
+LARGEST_TURN = 0.5
+# Radians and metres: a frame is done when its largest step falls below,
+STOP_STEP = 1e-4
+# or when the steps to come, by the ratio of the last two, add up to less than this, and the layers are met to that.
+STOP_LEFT, STOP_ERROR = 2e-5, 1e-5
+# The gain of the attraction: 1 at first, then this factor per iteration.
+FULL_GAIN_ITERATIONS = 8
+GAIN_DECAY = 0.85
+# After so many iterations what is left may be out of reach, and steps are kept from swinging.
+HASTY_ITERATIONS = 8
+# Over so many last iterations the lower layers' largest error and the gain are halved each time.
+ANNEALED_ITERATIONS = 10
+# A hinge that leaves its limits is set on them and leaves the system; this many times at most.
+LIMIT_ROUNDS = 4
+# Radians: so far beyond its limit a hinge is on it.
+ON_LIMIT = 1e-12
+
+# Singular values below this share of the layer's largest (or of the least scale) are no freedom.
+RANK_TOLERANCE = 1e-4
+LEAST_SCALE = 1e-2
+# Metres at leg length 0.85 m: a stretched limb. A turn t of it takes its end t^2 / 2 of this off its tangent.
+LIMB = 1.0
+
+# The secant of the pull speaks of the pull alone: the step for the tasks must be shorter than this share of the others.
+LARGEST_TASK_SHARE = 0.5
+# An accelerated pull is at most so many times the plain one.
+LARGEST_FACTOR = 3.0
+# Squared length (rad, m) of a change of the pull that is rounding.
+NO_CHANGE = 1e-24

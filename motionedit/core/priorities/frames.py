@@ -1,0 +1,147 @@
+"""Every frame of a motion solved, group by group, and what one solve leaves for the next."""
+
+from __future__ import annotations
+
+from operator import itemgetter
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core.motion import Motion
+from motionedit.core.priorities.groups import Asked, Group, groups_of, part_of, spans_of
+from motionedit.core.priorities.problem import Reference
+from motionedit.core.priorities.solver import solve_layers
+from motionedit.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from motionedit.core.arrays import BoolArray, IntArray
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """One edit ready to be solved: what is asked, and the groups of its frames."""
+
+    asked: Asked
+    groups: tuple[Group, ...]
+
+    @property
+    def motion(self) -> Motion:
+        """The input."""
+        return self.asked.motion
+
+    @property
+    def place(self) -> int:
+        """The root's place among the joints with translations."""
+        return int(np.searchsorted(self.motion.skeleton.translated, self.asked.body.travel))
+
+
+def run_of(asked: Asked) -> Run:
+    """Return an edit ready to be solved."""
+    return Run(asked, groups_of(asked))
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """A motion with every frame solved, and how it went: iterations (F,), converged (F,), ranks (F, L)."""
+
+    motion: Motion
+    iterations: IntArray
+    converged: BoolArray
+    ranks: IntArray
+
+
+@dataclass(frozen=True, eq=False)
+class Known:
+    """What a solve leaves for the next: frames (F,) that need nothing, and their ranks (F, L)."""
+
+    done: BoolArray
+    ranks: IntArray
+
+
+def solve_frames(run: Run, start: Motion, *, reference: Motion, pull_root: bool, known: Known | None = None) -> Solved:
+    """Return the motion with every frame solved from `start`, attracted to `reference`.
+
+    Parameters
+    ----------
+    pull_root : bool
+        Whether the root's translation is attracted, too.
+    known : Known, optional
+        What is known from the solve before.
+    """
+    solved = _unsolved(run, start)
+    for group in run.groups:
+        done = None if known is None else known.done[group.frames]
+        _solve(run, solved, group, reference, done=done, pull_root=pull_root)
+    if known is not None:
+        solved.ranks[known.done] = known.ranks[known.done]
+    return solved
+
+
+def solve_in_order(run: Run) -> Solved:
+    """Return the motion solved frame by frame, eq. (4): joints that a constraint controls start where they were."""
+    solved = _unsolved(run, run.motion)
+    spans = [(int(span[0]), span, group) for group in run.groups for span in spans_of(group.frames)]
+    before = -2
+    for first, span, group in sorted(spans, key=itemgetter(0)):
+        part = part_of(run.asked, group, span)
+        if before == first - 1:
+            motion, joints = solved.motion, part.problem.columns.joints
+            motion.rotations[first, joints] = motion.rotations[first - 1, joints]
+            if part.problem.moves_root:
+                motion.translations[first, run.place] = motion.translations[first - 1, run.place]
+        _solve(run, solved, part, run.motion, pull_root=False, in_order=True)
+        before = first + len(span) - 1
+    return solved
+
+
+def known_after(run: Run, previous: Solved, start: Motion) -> Known:
+    """Return what a solve from `start` that follows another may leave alone.
+
+    Frames that were left as in the input, and that start from there again, need nothing.
+    """
+    done = _same(start, run.motion) & _same(previous.motion, run.motion) & previous.converged
+    return Known(done, previous.ranks)
+
+
+def _unsolved(run: Run, start: Motion) -> Solved:
+    motion = Motion(start.skeleton, start.rotations.copy(), start.translations.copy(), start.frame_time)
+    count = len(start)
+    return Solved(
+        motion,
+        np.zeros(count, dtype=np.intp),
+        np.ones(count, dtype=np.bool_),
+        np.zeros((count, len(run.asked.levels)), dtype=np.intp),
+    )
+
+
+def _solve(
+    run: Run,
+    solved: Solved,
+    group: Group,
+    reference: Motion,
+    *,
+    pull_root: bool,
+    done: BoolArray | None = None,
+    in_order: bool = False,
+) -> None:
+    """Solve a group's frames of `solved` from where they are, in place."""
+    travels = bool(run.motion.translations.shape[1])
+    root = np.ascontiguousarray(reference.translations[:, run.place]) if pull_root and travels else None
+    solution = solve_layers(
+        group.prepared,
+        solved.motion,
+        Reference(reference.rotations, root),
+        group.frames,
+        done=done,
+        in_order=in_order,
+        threads=run.asked.settings.threads,
+    )
+    solved.iterations[group.frames], solved.converged[group.frames] = solution.iterations, solution.converged
+    solved.ranks[group.frames[:, None], group.levels] = solution.ranks
+
+
+def _same(one: Motion, other: Motion) -> BoolArray:
+    """Return the frames at which two motions are alike to the bit, shape (F,)."""
+    turned = (one.rotations == other.rotations).all(axis=(1, 2))
+    same: BoolArray = turned & (one.translations == other.translations).all(axis=(1, 2))
+    return same

@@ -1,0 +1,227 @@
+"""What every kind of constraint has, and what each answers: the only face that the rest of the edit knows.
+
+A kind is one file beside this one. It says what a constraint of it recruits and what moves it, where it shall be, its
+task, what is left of it, and its words. What it does not say stands here.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from functools import cached_property
+from typing import TYPE_CHECKING, ClassVar, Literal
+
+import numpy as np
+
+from motionedit.core.kinematics import Effector
+from motionedit.core.priorities.points import Point, Recruited
+from motionedit.core.priorities.trajectories import active_interval
+from motionedit.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from motionedit.core.arrays import FloatArray, IntArray
+    from motionedit.core.body.center_of_mass import Masses
+    from motionedit.core.motion import Motion
+    from motionedit.core.priorities.points import Columns
+    from motionedit.core.priorities.problem import Task
+    from motionedit.core.priorities.recruiting import Recruits
+    from motionedit.core.priorities.sight import Sight
+    from motionedit.core.priorities.trajectories import ControlPoint, Curve
+    from motionedit.core.skeleton import Skeleton
+
+# How a page marks where a constraint is: a ring with a cross, a quartered ball, an arc.
+Symbol = Literal["ring", "ball", "arc"]
+
+
+@dataclass(frozen=True, eq=False)
+class Movable:
+    """What of a body constraints may recruit: the joint that carries the `travel`, the joints that carry mass."""
+
+    skeleton: Skeleton
+    travel: int
+    carriers: frozenset[int]
+
+
+@dataclass(frozen=True, eq=False)
+class Targets:
+    """Where a constraint's task shall be: frames `first` to `last`; positions (n, 3), rotations (n, 4), or None."""
+
+    first: int
+    last: int
+    positions: FloatArray | None = None
+    rotations: FloatArray | None = None
+
+    @property
+    def span(self) -> slice:
+        """Their frames."""
+        return slice(self.first, self.last + 1)
+
+    @property
+    def all_positions(self) -> FloatArray:
+        """The positions, of targets that have them."""
+        if self.positions is None:
+            raise ValueError("these targets have no positions")
+        return self.positions
+
+    def positions_at(self, frames: IntArray) -> FloatArray:
+        """Return the positions at frames of the clip, shape (N, 3)."""
+        at: FloatArray = self.all_positions[frames - self.first]
+        return at
+
+    def rotations_at(self, frames: IntArray) -> FloatArray:
+        """Return the rotations at frames of the clip, shape (N, 4)."""
+        if self.rotations is None:
+            raise ValueError("these targets have no rotations")
+        at: FloatArray = self.rotations[frames - self.first]
+        return at
+
+
+@dataclass(frozen=True, eq=False)
+class ConstraintErrors:
+    """What is left of a constraint: frames `first` on; lengths (n,) and radians (n,), None where it has none.
+
+    `places` (n, 3) is where its effector is wanted in the world, or what an aim looks at; None for what only turns.
+    Along axes that the constraint leaves free it is where the effector is.
+    """
+
+    first: int
+    positions: FloatArray | None
+    angles: FloatArray | None
+    places: FloatArray | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """What targets are made from.
+
+    Attributes
+    ----------
+    before : Sight
+        The input, as far as the constraints look at it.
+    curve : Curve
+        What the parameter of splines is.
+    goals : mapping from joints to shape (F, 3)
+        Where constraints that do not wait for others want joints in the world, nan where nothing does.
+    others : callable
+        Returns the Sight of the motion that the constraints which do not wait for others ask for, solved once.
+    """
+
+    before: Sight
+    curve: Curve
+    goals: Mapping[int, FloatArray]
+    others: Callable[[], Sight]
+
+
+@dataclass(frozen=True, eq=False)
+class Stage:
+    """What a task is made for: the frames (N,) that are solved together, and what the constraint may use of them.
+
+    `reference` is the input.
+    """
+
+    frames: IntArray
+    columns: Columns
+    recruits: Recruits
+    masses: Masses
+    reference: Motion
+
+    @cached_property
+    def recruited(self) -> Recruited:
+        """The recruited unknowns."""
+        mine = np.zeros(len(self.columns.skeleton), dtype=np.bool_)
+        mine[list(self.recruits.joints)] = True
+        return Recruited(mine[self.columns.joints], self.recruits.root)
+
+    def point(self, effector: Effector) -> Point:
+        """Return an effector as the recruited unknowns move it."""
+        return Point(self.columns, effector, self.recruited)
+
+    def joint(self, joint: int | None) -> Point | None:
+        """Return a joint's own place as the recruited unknowns move it; None for none."""
+        return None if joint is None else self.point(Effector(joint, np.zeros(3)))
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Constraint(ABC):
+    """What the user asks for, resolved in one clip; lengths are normalised metres.
+
+    Attributes
+    ----------
+    name, priority, weight
+        Larger priorities are more important; only their order matters.
+    points : tuple of ControlPoint
+        When and where; none: as in the input, the whole clip. Positions along the measuring axes.
+    ease_in, ease_out : float
+        Frames.
+    """
+
+    type: ClassVar[str]
+    # Its targets ask for what the other constraints alone make of the motion.
+    waits_for_others: ClassVar[bool] = False
+    # It keeps its effector in place, or brings it there.
+    places_effector: ClassVar[bool] = False
+    # Its place is the body's center of mass, which needs masses.
+    weighs: ClassVar[bool] = False
+    # On a page: its symbol, and whether its places are looked at rather than gone to.
+    symbol: ClassVar[Symbol] = "ring"
+    looks: ClassVar[bool] = False
+
+    name: str
+    priority: int = 1
+    weight: float = 1.0
+    points: tuple[ControlPoint, ...] = ()
+    ease_in: float = 0.0
+    ease_out: float = 0.0
+
+    @property
+    def at(self) -> Effector | None:
+        """The effector that it is about; None where it is about no one point."""
+        return None
+
+    def active(self, frames: int) -> tuple[int, int]:
+        """Return the first and last frame at which the constraint is active."""
+        return active_interval(self.points, ease_in=self.ease_in, ease_out=self.ease_out, frames=frames)
+
+    @abstractmethod
+    def recruits(self, movable: Movable) -> Recruits:
+        """Return what the user lets it move.
+
+        Raises
+        ------
+        NotOnTheWayError
+            If its `up_to` is not on the way to the root.
+        """
+
+    @abstractmethod
+    def moved_by(self, movable: Movable) -> Recruits:
+        """Return what moves its task, recruited or not."""
+
+    def looked_at(self) -> frozenset[int]:
+        """Return the joints whose world transforms its targets and errors ask for."""
+        return frozenset()
+
+    @abstractmethod
+    def targets(self, scene: Scene) -> Targets:
+        """Return where its task shall be."""
+
+    def goal(self, targets: Targets) -> tuple[int, FloatArray] | None:
+        """Return the joint that it puts in a place, and where, world positions (n, 3); None where it does not."""
+        del targets
+        return None
+
+    @abstractmethod
+    def task(self, targets: Targets, stage: Stage) -> Task:
+        """Return its task at the stage's frames, all of them in its active interval."""
+
+    @abstractmethod
+    def errors(self, targets: Targets, after: Sight, *, reference: Motion) -> ConstraintErrors:
+        """Return what is left of it over its active interval, not weighted; `reference` is the input."""
+
+    @abstractmethod
+    def words(self, names: tuple[str, ...]) -> str:
+        """Return what it is about, in the words of a plan; `names` are the joints'."""
+
+    def warnings(self) -> Iterator[str]:
+        """Yield what the user should know of it before it is solved."""
+        yield from ()

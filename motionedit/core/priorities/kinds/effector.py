@@ -1,0 +1,115 @@
+"""What constraints on an effector share: the chain that they recruit, what moves them, and how they are seen."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from motionedit.core import rotations as rot
+from motionedit.core.kinematics import Effector, WorldPoses, effector_positions
+from motionedit.core.measure import WORLD, Measure
+from motionedit.core.priorities.kinds.constraint import Constraint, ConstraintErrors, Movable, Targets
+from motionedit.core.priorities.points import moved_by
+from motionedit.core.priorities.recruiting import EVERYTHING, RecruitRule, Recruits, recruit_chain
+from motionedit.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from motionedit.core.arrays import FloatArray
+    from motionedit.core.priorities.kinds.constraint import Scene
+    from motionedit.core.priorities.sight import Sight
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class EffectorConstraint(Constraint):
+    """A constraint on a point of the body, or on a joint that turns.
+
+    Attributes
+    ----------
+    effector : Effector
+    measure : Measure
+        What its positions and rotations are measured in.
+    recruit : RecruitRule
+    """
+
+    # Turning the effector's own joint moves the task, wherever the effector is in it; the root's shift does.
+    turns: ClassVar[bool] = False
+    shifts: ClassVar[bool] = True
+
+    effector: Effector
+    measure: Measure = WORLD
+    recruit: RecruitRule = EVERYTHING
+
+    @property
+    def at(self) -> Effector:
+        """The effector."""
+        return self.effector
+
+    @property
+    def base(self) -> int | None:
+        """The joint in whose frame targets are."""
+        return self.measure.base
+
+    @property
+    def own_joint_moves_it(self) -> bool:
+        """Whether turning the effector's own joint moves the task."""
+        return self.turns or bool(np.any(self.effector.offset))
+
+    @property
+    def base_turns_it(self) -> bool:
+        """Whether turning the base's own joint moves the task."""
+        return True
+
+    def recruits(self, movable: Movable) -> Recruits:
+        """Return the chain from the effector up, as far as the user lets it."""
+        joint, skeleton = self.effector.joint, movable.skeleton
+        start = joint if self.own_joint_moves_it else max(int(skeleton.parents[joint]), 0)
+        return recruit_chain(skeleton, self.recruit, start=start, travel=movable.travel)
+
+    def moved_by(self, movable: Movable) -> Recruits:
+        """Return the ancestors of the effector and of its base, and whether the root's translation moves it."""
+        skeleton, joint = movable.skeleton, self.effector.joint
+        moved = moved_by(skeleton, joint, itself=self.own_joint_moves_it)
+        if self.base is not None:
+            # What moves both alike moves neither against the other.
+            both = moved_by(skeleton, joint, itself=False) & moved_by(skeleton, self.base, itself=False)
+            moved = (moved | moved_by(skeleton, self.base, itself=self.base_turns_it)) & ~both
+        return Recruits(frozenset(map(int, np.flatnonzero(moved))), self.shifts and self.base is None)
+
+    def looked_at(self) -> frozenset[int]:
+        """Return the effector's joint and its base."""
+        return frozenset({self.effector.joint} if self.base is None else {self.effector.joint, self.base})
+
+    def words(self, names: tuple[str, ...]) -> str:
+        """Return ``position of LeftHand relative to Hips``."""
+        base = "" if self.measure.base is None else f" relative to {names[self.measure.base]}"
+        return f"{self.type} of {names[self.effector.joint]}{base}"
+
+    def path(self, scene: Scene) -> FloatArray:
+        """Return the effector's path in the input, shape (F, 3), as positions are measured."""
+        poses = scene.before.poses
+        return self.measure.positions(effector_positions(poses, self.effector), poses)
+
+    def own_turns(self, scene: Scene) -> FloatArray:
+        """Return the joint's rotations in the input, shape (F, 4), as rotations are measured."""
+        poses = scene.before.poses
+        return self.measure.rotations(poses.rotations[:, self.effector.joint], poses)
+
+    def left(self, targets: Targets, after: Sight) -> ConstraintErrors:
+        """Return how far the effector is from its targets' positions, and its joint from their rotations."""
+        poses = poses_at(after.poses, targets.span)
+        lengths = angles = places = None
+        if targets.rotations is not None:
+            turn = self.measure.rotations(poses.rotations[:, self.effector.joint], poses)
+            angles = rot.angle_between(turn, targets.rotations)
+        if targets.positions is not None:
+            place = self.measure.positions(effector_positions(poses, self.effector), poses)
+            wanted = self.measure.aimed(place, targets.positions)
+            lengths = np.linalg.norm(place - wanted, axis=1)
+            places = self.measure.in_world(wanted, poses)
+        return ConstraintErrors(targets.first, lengths, angles, places)
+
+
+def poses_at(poses: WorldPoses, span: slice) -> WorldPoses:
+    """Return the poses of some frames."""
+    return WorldPoses(poses.positions[span], poses.rotations[span])

@@ -1,0 +1,56 @@
+"""What an edit is given beside its constraints: the body, and how it is to be solved and smoothed."""
+
+from __future__ import annotations
+
+from dataclasses import field
+from typing import TYPE_CHECKING, Literal
+
+from motionedit.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from motionedit.core.body.center_of_mass import Masses
+    from motionedit.core.body.hinges import Hinge
+    from motionedit.core.priorities.trajectories import Curve
+
+RecruitingRule = Literal["expand", "error", "ignore"]
+
+
+@dataclass(frozen=True)
+class Passes:
+    """The default smoothing: low-pass the displacement map, solve again attracted to it; sigma in frames."""
+
+    count: int = 3
+    sigma: float = 1.5
+
+
+@dataclass(frozen=True)
+class PaperFilter:
+    """The paper's: eq. (4) start states, an FIR low-pass on the root's translation (Hz), further passes."""
+
+    count: int = 2
+    cutoff: float = 3.0
+
+
+@dataclass(frozen=True)
+class LayeredSettings:
+    """How an edit is solved: what the spec says beside its constraints."""
+
+    smoothing: Passes | PaperFilter = field(default_factory=Passes)
+    curve: Curve = "time"
+    attraction: float = 1.0
+    max_iterations: int = 40
+    recruiting_rule: RecruitingRule = "expand"
+    threads: int = 1
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """What the edit knows of the body: its masses, hinges, the joint that carries the travel, the first moving frame.
+
+    Frames before `first` are a rest pose.
+    """
+
+    masses: Masses
+    hinges: tuple[Hinge, ...]
+    travel: int
+    first: int

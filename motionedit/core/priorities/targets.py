@@ -1,0 +1,75 @@
+"""Where constraints shall be: the targets of all of them, those first that do not wait for others."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core.priorities.frames import run_of, solve_frames
+from motionedit.core.priorities.groups import Asked
+from motionedit.core.priorities.kinds.constraint import Scene, Targets
+from motionedit.core.priorities.sight import Sight, sight_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from motionedit.core.arrays import FloatArray
+    from motionedit.core.motion import Motion
+    from motionedit.core.priorities.kinds.constraint import Constraint, ConstraintErrors
+    from motionedit.core.priorities.recruiting import Recruits
+    from motionedit.core.priorities.settings import Body, LayeredSettings
+
+
+def with_targets(
+    motion: Motion,
+    constraints: Sequence[Constraint],
+    recruits: Sequence[Recruits],
+    body: Body,
+    settings: LayeredSettings,
+) -> Asked:
+    """Return all that is asked of a motion, with the targets of every constraint."""
+    joints = _looked_at(constraints)
+    before = sight_of(motion, joints, body.masses)
+    free = [i for i, each in enumerate(constraints) if not each.waits_for_others]
+    first = Scene(before, settings.curve, {}, lambda: before)
+    found = {i: constraints[i].targets(first) for i in free}
+
+    @cache
+    def others() -> Sight:
+        """Return what is seen of the motion that those which do not wait ask for, solved once."""
+        if not free:
+            return before
+        own = tuple(constraints[i] for i in free), tuple(recruits[i] for i in free), tuple(found[i] for i in free)
+        alone = run_of(Asked(motion, *own, body, settings))
+        solved = solve_frames(alone, motion, reference=motion, pull_root=False)
+        return sight_of(solved.motion, joints, body.masses)
+
+    scene = Scene(before, settings.curve, _goals(constraints, found, len(motion)), others)
+    targets = tuple(found[i] if i in found else each.targets(scene) for i, each in enumerate(constraints))
+    return Asked(motion, tuple(constraints), tuple(recruits), targets, body, settings)
+
+
+def errors_of(asked: Asked, motion: Motion) -> tuple[ConstraintErrors, ...]:
+    """Return what an edited motion leaves of every constraint, by forward kinematics."""
+    after = sight_of(motion, _looked_at(asked.constraints), asked.body.masses)
+    return tuple(
+        each.errors(targets, after, reference=asked.motion)
+        for each, targets in zip(asked.constraints, asked.targets, strict=True)
+    )
+
+
+def _looked_at(constraints: Iterable[Constraint]) -> frozenset[int]:
+    return frozenset().union(*(each.looked_at() for each in constraints))
+
+
+def _goals(constraints: Sequence[Constraint], found: dict[int, Targets], frames: int) -> dict[int, FloatArray]:
+    """Return where constraints put joints in the world, shape (F, 3), nan where none does; a later one stands."""
+    goals: dict[int, FloatArray] = {}
+    for i, targets in found.items():
+        goal = constraints[i].goal(targets)
+        if goal is not None:
+            joint, places = goal
+            goals.setdefault(joint, np.full((frames, 3), np.nan))[targets.span] = places
+    return goals

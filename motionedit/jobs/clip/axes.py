@@ -1,0 +1,43 @@
+"""The axes that a spec's numbers are along, and how such numbers are taken into the world."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from motionedit.core import rotations as rot
+from motionedit.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from motionedit.core.arrays import FloatArray
+    from motionedit.core.body.ground import Frame
+    from motionedit.jobs.clip.facts import ClipFacts
+
+
+@dataclass(frozen=True, eq=False)
+class GivenAxes:
+    """The axes of the heading frame, or the world's (or those of a joint's frame)."""
+
+    heading: Frame | None
+
+    @classmethod
+    def of(cls, facts: ClipFacts, frame: Literal["world", "heading"]) -> GivenAxes:
+        """Return the axes that a spec names."""
+        return cls(facts.heading_frame() if frame == "heading" else None)
+
+    @property
+    def rows(self) -> FloatArray:
+        """The axes in the world, rows of shape (3, 3)."""
+        return np.eye(3) if self.heading is None else self.heading.axes
+
+    def position(self, given: Sequence[float]) -> FloatArray:
+        """Return a position along these axes, from the world's origin."""
+        position = np.array(given)
+        return position if self.heading is None else self.rows @ self.heading.world_points(position)
+
+    def rotation(self, q: FloatArray) -> FloatArray:
+        """Return a rotation in the world."""
+        return q if self.heading is None else rot.multiply(self.heading.rotation, q)

@@ -1,0 +1,171 @@
+"""The types of constraints of edit-prioritized, each with the keys it may have; a new one is a class here, [PRIO] 4."""
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
+
+from pydantic import BeforeValidator, Field
+
+from motionedit.spec import kinds
+from motionedit.spec.constraints import TYPES, ConstraintItem, Placed, Recruiting, type_words
+from motionedit.spec.faults import Fault, FaultyValueError, faulty, show
+from motionedit.spec.items import EffectorItem
+from motionedit.spec.model import mappings_in
+from motionedit.spec.points import SPLINE_KEYS
+from motionedit.spec.scalars import Vector, one_of, word
+
+# Named in the contract for later work.
+LATER_TYPES = ("footplants",)
+
+
+class PositionConstraint(Recruiting, Placed, EffectorItem, ConstraintItem):
+    """An effector follows a trajectory: a shape constraint S(T(t))."""
+
+    point_keys = ("position", "shift", *SPLINE_KEYS)
+
+    type: Literal["position"] = Field(description="The type: position.")
+    axes: Annotated[tuple[int, ...], kinds.AXES] = Field(
+        default=(0, 1, 2), description="Axes that count; default: all of [x, y, z]."
+    )
+
+
+class OrientationConstraint(Recruiting, Placed, EffectorItem, ConstraintItem):
+    """A joint is turned as asked."""
+
+    point_keys = ("orientation",)
+    has_position = False
+    has_angle = True
+
+    type: Literal["orientation"] = Field(description="The type: orientation.")
+
+
+class PoseConstraint(Recruiting, Placed, EffectorItem, ConstraintItem):
+    """Position and orientation together: a footplant that cannot roll."""
+
+    point_keys = ("position", "shift", "orientation", *SPLINE_KEYS)
+    has_angle = True
+
+    type: Literal["pose"] = Field(description="The type: pose.")
+
+
+class ComConstraint(Recruiting, ConstraintItem):
+    """The center of mass keeps its place over the support, section 4.3."""
+
+    point_keys = ("shift", *SPLINE_KEYS)
+    only_warns = True
+
+    type: Literal["com"] = Field(description="The type: com.")
+    support: Annotated[tuple[str, ...] | None, kinds.FEET] = Field(
+        default=None, description="Joints the body stands on, the set A; default: feet and toes found in the skeleton."
+    )
+    relative_to: Annotated[Literal["support", "world"], kinds.word("support", "world")] = Field(
+        default="support",
+        description="support: moves as the other constraints move the support; world: the input's own path.",
+    )
+    frame: Annotated[kinds.Frame, kinds.FRAME] = Field(
+        default="world", description="Axes of shifts: world, or the character's heading."
+    )
+    axes: Annotated[tuple[int, ...], kinds.AXES] = Field(
+        default=(0, 1, 2), description="Axes that count; default: all of [x, y, z]."
+    )
+
+    @property
+    def default_name(self) -> str:
+        """The name of one that gives none."""
+        return self.type
+
+    @classmethod
+    def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
+        """Yield what is wrong between keys."""
+        yield from super().faults_between_keys(data)
+        recruit = data.get("recruit")
+        for key in ("up_to", "levels"):
+            if isinstance(recruit, dict) and key in recruit:
+                yield Fault("does not go with com, which has no chain; use all or {joints: [...]}", ("recruit", key))
+
+
+class AimConstraint(Recruiting, Placed, EffectorItem, ConstraintItem):
+    """An axis of a joint looks at a point or at another joint."""
+
+    point_keys = ("position", *SPLINE_KEYS)
+    has_position = False
+    has_angle = True
+    only_warns = True
+
+    type: Literal["aim"] = Field(description="The type: aim.")
+    axis: Annotated[Vector, kinds.DIRECTION] = Field(
+        description="The direction that looks, in the joint's frame; any length."
+    )
+    target: Annotated[str | None, kinds.JOINT] = Field(
+        default=None, description="The joint that is looked at, instead of positions in points."
+    )
+
+    @classmethod
+    def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
+        """Yield what is wrong between keys."""
+        yield from super().faults_between_keys(data)
+        if "target" not in data and not data.get("points"):
+            yield Fault("needs one of target, points: what shall be looked at")
+        for i, point in mappings_in(data, "points"):
+            if "target" in data and "position" in point:
+                yield Fault("stands beside target; give one of them", ("points", i, "position"))
+            if "target" not in data and "position" not in point and "during" not in point:
+                yield Fault("is missing; it is three numbers [x, y, z]", ("points", i, "position"))
+            if "target" not in data and "during" in point:
+                yield Fault("needs a target: JOINT; at a position, use hold", ("points", i, "during"))
+
+
+class PostureConstraint(ConstraintItem):
+    """Joints keep the local rotations they have in the input."""
+
+    has_position = False
+    has_angle = True
+    only_warns = True
+
+    type: Literal["posture"] = Field(description="The type: posture.")
+    joints: Annotated[tuple[str, ...], kinds.JOINTS] = Field(description="The joints that keep their rotations.")
+
+    @property
+    def default_name(self) -> str:
+        """The name of one that gives none."""
+        return self.type
+
+
+def _with_known_type(value: object) -> object:
+    """Return the value itself where it is a mapping whose type is known; pydantic's union needs no words then."""
+    if not isinstance(value, dict):
+        raise faulty(f"must be a mapping with a type, not {show(value)}")
+    names = tuple(TYPES)
+    if "type" not in value:
+        raise faulty(f"is missing; it is {one_of(names)}", "type")
+    if value["type"] in LATER_TYPES:
+        raise faulty(f"{value['type']} is not supported yet", "type")
+    try:
+        word(value["type"], names)
+    except FaultyValueError as error:
+        raise faulty(str(error), "type") from None
+    return value
+
+
+if TYPE_CHECKING:
+    Constraint = ConstraintItem
+else:
+    Constraint = Annotated[
+        Union[tuple(TYPES.values())], Field(discriminator="type"), BeforeValidator(_with_known_type)  # noqa: UP007
+    ]
+
+
+def _foreign_keys(type_name: str) -> dict[str, str]:
+    """Return what to say of each key that only other types have."""
+    owners: dict[str, list[str]] = {}
+    for other, model in TYPES.items():
+        for key in model.key_names():
+            owners.setdefault(key, []).append(other)
+    return {
+        key: f"belongs to {type_words(names)}, not {type_name}"
+        for key, names in owners.items()
+        if type_name not in names
+    }
+
+
+for _name, _model in TYPES.items():
+    _model.foreign_keys = _foreign_keys(_name)
