@@ -5,6 +5,7 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 OUT ?= out
+CSRC := $(wildcard motionedit/core/priorities/csrc/*.[ch])
 JOBS ?= 2
 
 # One BLAS thread: the results do not depend on the machine's cores, and small solves are faster.
@@ -19,7 +20,7 @@ help:  ## list the targets
 
 install: $(STAMP)  ## set up a virtual environment in .venv with everything that the other targets need
 
-$(STAMP): pyproject.toml $(wildcard motionedit/core/priorities/csrc/*)
+$(STAMP): pyproject.toml $(CSRC)
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade pip
 	$(BIN)/python -m pip install --quiet --editable '.[plot,dev]'
@@ -37,6 +38,7 @@ demo: $(STAMP)  ## normalize ten golf swings, fit the motion PCA, move the ball,
 test: $(STAMP)  ## run the tests that take less than two minutes, and the linters
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+	$(BIN)/clang-format --dry-run -Werror $(CSRC)
 	$(BIN)/mypy
 	$(BIN)/python -m pytest -n $(JOBS) -m 'not slow'
 
@@ -52,6 +54,7 @@ test-all: $(STAMP)  ## run every test, with branch coverage
 lint: $(STAMP)  ## check style, and format
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
+	$(BIN)/clang-format -i $(CSRC)
 
 types: $(STAMP)  ## check types
 	$(BIN)/mypy
