@@ -1,8 +1,13 @@
 # motionedit: everything a user or a builder does, in one word each. `make` alone lists the targets.
 
-PYTHON ?= python3
+# Where Python is installed on Windows, `python3` may be another one.
+PYTHON ?= $(if $(filter Windows_NT,$(OS)),python,python3)
 VENV ?= .venv
+ifeq ($(OS),Windows_NT)
+BIN := $(VENV)/Scripts
+else
 BIN := $(VENV)/bin
+endif
 STAMP := $(VENV)/.installed
 OUT ?= out
 CSRC := $(wildcard motionedit/core/priorities/csrc/*.[ch])
@@ -13,7 +18,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 export OMP_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install demo test test-numpy sanitize test-all lint types docs docs-check golden bench bench-peers bench-scale figures paper data clean
+.PHONY: help install demo test test-numpy sanitize test-all changelog lint types docs docs-check golden bench bench-peers bench-scale figures paper data clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -41,6 +46,7 @@ test: $(STAMP)  ## run the tests that take less than two minutes, and the linter
 	$(BIN)/clang-format --dry-run -Werror $(CSRC)
 	$(BIN)/mypy
 	$(BIN)/python -m pytest -n $(JOBS) -m 'not slow'
+	$(BIN)/python .ci/changelog.py
 
 test-numpy: $(STAMP)  ## run the same tests without the compiled solver, as where there is no C compiler
 	MOTIONEDIT_SOLVER=numpy $(BIN)/python -m pytest -n $(JOBS) -m 'not slow'
@@ -50,6 +56,9 @@ sanitize: $(STAMP)  ## run the compiled part's tests under the address and undef
 
 test-all: $(STAMP)  ## run every test, with branch coverage
 	$(BIN)/python -m pytest -n $(JOBS) --cov --cov-report=term-missing:skip-covered
+
+changelog: $(STAMP)  ## fail where a user can notice what was committed, and CHANGELOG.md does not say it
+	$(BIN)/python .ci/changelog.py
 
 lint: $(STAMP)  ## check style, and format
 	$(BIN)/ruff check --fix .
