@@ -18,7 +18,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 export OMP_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install demo test test-numpy sanitize test-all changelog lint types docs docs-check golden bench bench-peers bench-scale figures paper data clean
+.PHONY: help install demo test test-numpy sanitize test-all changelog release-check lint types docs docs-check golden bench bench-peers bench-scale figures paper data clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -59,6 +59,9 @@ test-all: $(STAMP)  ## run every test, with branch coverage
 
 changelog: $(STAMP)  ## fail where a user can notice what was committed, and CHANGELOG.md does not say it
 	$(BIN)/python .ci/changelog.py
+
+release-check: $(STAMP)  ## fail where the places that name the version disagree; TAG=v1.2.3: where it cannot be released
+	$(BIN)/python .ci/release.py $(if $(TAG),--tag $(TAG))
 
 lint: $(STAMP)  ## check style, and format
 	$(BIN)/ruff check --fix .

@@ -45,7 +45,9 @@ class NothingToCompareError(Exception):
 def main(arguments: list[str]) -> int:
     """Return 0 where the gate is open, 1 where a line is missing; say which, and why, in a line."""
     try:
-        base = base_commit(arguments[0] if arguments else os.environ.get("CHANGELOG_BASE", ""))
+        named = arguments[0] if arguments else os.environ.get("CHANGELOG_BASE", "")
+        # A workflow calls the commit before the first one of a new branch 000...
+        base = base_commit(named if named.strip("0") else "")
         paths = sorted(noticed_paths(base))
         if paths and not new_lines(base):
             more = f" and {len(paths) - _PATHS_SHOWN} more" if len(paths) > _PATHS_SHOWN else ""

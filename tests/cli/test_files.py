@@ -120,6 +120,7 @@ def test_what_a_killed_run_left_is_hidden_no_clip_and_removed_by_the_next(tmp_pa
     assert names_in(tmp_path) == []
 
 
+@pytest.mark.skipif(files.fcntl is None, reason="without locks a file is closed before it is renamed")
 def test_the_temporary_file_of_a_living_run_stays(tmp_path, stuck_writer):
     (left,) = names_in(tmp_path)
     clean_leftovers([tmp_path])

@@ -39,7 +39,7 @@ class Repository:
         for name, text in files.items():
             path = self.folder / PLACES.get(name, name)
             path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(text, encoding="utf-8")
+            path.write_text(text, encoding="utf-8", newline="\n")
         self.git("add", "--all")
         self.git("commit", "--quiet", "--allow-empty", "--message", message)
         return self.git("rev-parse", "HEAD")
@@ -219,7 +219,12 @@ def test_a_shallow_clone_of_one_branch_says_that_it_cannot_tell(repository, clon
     assert copy.gate() == (0, "changelog: no default branch here; nothing is compared\n")
 
 
-@pytest.mark.parametrize("base", ["0" * 40, "nowhere", "--help"])
+def test_a_new_branch_that_has_no_base_yet_compares_with_the_default_branch(repository):
+    repository.commit(code="2\n")
+    assert repository.gate(CHANGELOG_BASE="0" * 40)[0] == 1
+
+
+@pytest.mark.parametrize("base", ["1" * 40, "nowhere", "--help"])
 def test_a_base_that_is_not_here_is_said(repository, base):
     assert repository.gate(CHANGELOG_BASE=base) == (0, f"changelog: no commit {base} here; nothing is compared\n")
 
