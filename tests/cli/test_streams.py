@@ -1,5 +1,6 @@
 """Names of any letters can be printed, whatever the encoding of the terminal, the pipe or the system."""
 
+import errno
 import io
 import os
 import subprocess
@@ -7,6 +8,7 @@ import sys
 
 import pytest
 
+from motionedit.cli.boundary import run_guarded
 from motionedit.cli.streams import take_every_letter
 
 NAMES = ("Hips", "LeftHüfte→")
@@ -40,3 +42,17 @@ def test_what_somebody_chose_for_letters_that_lack_stays(monkeypatch):
     monkeypatch.setattr(sys, "stderr", None)
     take_every_letter()
     assert sys.stdout.errors == "replace"
+
+
+@pytest.mark.parametrize(
+    ("system", "path", "silent"), [("win32", None, True), ("win32", "a.bvh", False), ("linux", None, False)]
+)
+def test_a_reader_that_stops_reading_is_no_error_on_windows_either(monkeypatch, capsys, system, path, silent):
+    def write():
+        raise OSError(errno.EINVAL, "Invalid argument", path)
+
+    monkeypatch.setattr(sys, "platform", system)
+    monkeypatch.setattr(sys, "stdout", sys.stdout)
+    assert run_guarded(write) == 1
+    assert (capsys.readouterr().err == "") == silent
+    assert (sys.stdout is None) == silent
