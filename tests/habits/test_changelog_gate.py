@@ -178,6 +178,17 @@ def test_what_the_default_branch_did_meanwhile_is_not_this_branchs(repository):
     assert repository.gate()[0] == 0
 
 
+def test_a_merge_needs_no_word_of_its_own(repository):
+    repository.commit("Move\n\nChangelog: none", code="2\n")
+    repository.git("switch", "--quiet", "main")
+    repository.commit(code="3\n")
+    repository.git("switch", "--quiet", "branch")
+    with pytest.raises(subprocess.CalledProcessError):
+        repository.git("merge", "--quiet", "main")
+    repository.commit("Merge", code="2 and 3\n")
+    assert repository.gate()[0] == 0
+
+
 def test_a_clone_compares_with_its_remotes_default_branch(repository, clone):
     repository.git("switch", "--quiet", "main")
     copy = clone()
