@@ -1,10 +1,16 @@
 # motionedit: everything a user or a builder does, in one word each. `make` alone lists the targets.
 
-PYTHON ?= python3
+# Where Python is installed on Windows, `python3` may be another one.
+PYTHON ?= $(if $(filter Windows_NT,$(OS)),python,python3)
 VENV ?= .venv
+ifeq ($(OS),Windows_NT)
+BIN := $(VENV)/Scripts
+else
 BIN := $(VENV)/bin
+endif
 STAMP := $(VENV)/.installed
 OUT ?= out
+CSRC := $(wildcard motionedit/core/priorities/csrc/*.[ch])
 JOBS ?= 2
 
 # One BLAS thread: the results do not depend on the machine's cores, and small solves are faster.
@@ -12,14 +18,14 @@ export OPENBLAS_NUM_THREADS ?= 1
 export OMP_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install demo test test-numpy sanitize test-all lint types docs docs-check golden bench bench-peers bench-scale figures paper data clean
+.PHONY: help install demo test test-numpy sanitize test-all changelog release-check lint types docs docs-check golden bench bench-peers bench-scale figures paper data clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
 
 install: $(STAMP)  ## set up a virtual environment in .venv with everything that the other targets need
 
-$(STAMP): pyproject.toml $(wildcard motionedit/core/priorities/csrc/*)
+$(STAMP): pyproject.toml $(CSRC)
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade pip
 	$(BIN)/python -m pip install --quiet --editable '.[plot,dev]'
@@ -37,8 +43,10 @@ demo: $(STAMP)  ## normalize ten golf swings, fit the motion PCA, move the ball,
 test: $(STAMP)  ## run the tests that take less than two minutes, and the linters
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+	$(BIN)/clang-format --dry-run -Werror $(CSRC)
 	$(BIN)/mypy
 	$(BIN)/python -m pytest -n $(JOBS) -m 'not slow'
+	$(BIN)/python .ci/changelog.py
 
 test-numpy: $(STAMP)  ## run the same tests without the compiled solver, as where there is no C compiler
 	MOTIONEDIT_SOLVER=numpy $(BIN)/python -m pytest -n $(JOBS) -m 'not slow'
@@ -49,9 +57,16 @@ sanitize: $(STAMP)  ## run the compiled part's tests under the address and undef
 test-all: $(STAMP)  ## run every test, with branch coverage
 	$(BIN)/python -m pytest -n $(JOBS) --cov --cov-report=term-missing:skip-covered
 
+changelog: $(STAMP)  ## fail where a user can notice what was committed, and CHANGELOG.md does not say it
+	$(BIN)/python .ci/changelog.py
+
+release-check: $(STAMP)  ## fail where the places that name the version disagree; TAG=v1.2.3: where it cannot be released
+	$(BIN)/python .ci/release.py $(if $(TAG),--tag $(TAG))
+
 lint: $(STAMP)  ## check style, and format
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
+	$(BIN)/clang-format -i $(CSRC)
 
 types: $(STAMP)  ## check types
 	$(BIN)/mypy

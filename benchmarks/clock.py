@@ -88,12 +88,21 @@ sys.exit(child.returncode)
 
 
 def peak_of(command: Sequence[str | Path], folder: Path) -> tuple[float, int]:
-    """Return the seconds and the peak of resident bytes of a command that is run to its end."""
+    """Return the seconds and the peak of resident bytes of a command that is run to its end; not on Windows.
+
+    Raises
+    ------
+    OSError
+        The system does not tell the peak of a process that has ended.
+    """
+    if not hasattr(os, "wait4"):
+        raise OSError("this system does not tell the peak memory of a process that has ended")
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
     watch = [sys.executable, "-c", _WATCH, *map(str, command)]
     done = subprocess.run(watch, cwd=folder, env=environment, check=True, stdout=subprocess.PIPE, text=True)
-    seconds, kilobytes = done.stdout.split()
-    return float(seconds), int(kilobytes) * 1024
+    seconds, peak = done.stdout.split()
+    # In bytes on a Mac, in kilobytes elsewhere.
+    return float(seconds), int(peak) * (1 if sys.platform == "darwin" else 1024)
 
 
 def duration(seconds: float) -> str:

@@ -64,7 +64,7 @@ def motions(count: int, spent: list[float]) -> Iterator[DatabaseMotion]:
 
 
 def _peak() -> int:
-    """Return the peak of resident bytes since this program began; getrusage counts who started it, too."""
+    """Return the peak of resident bytes since this program began (Linux); getrusage counts who started it, too."""
     words = Path("/proc/self/status").read_text().split()
     return int(words[words.index("VmHWM:") + 1]) * 1024
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import sys
 from typing import TYPE_CHECKING
 
 import click
@@ -26,7 +28,8 @@ class Interrupted(Exception):  # noqa: N818  no error: the user asked for it
 def run_guarded(call: Callable[[], int | None]) -> int:
     """Return the exit code of a call; what it raises is said in one line each, with no traceback.
 
-    A reader that stops reading, such as `head`, is click's to answer: silently, with exit code 1.
+    A reader that stops reading, such as `head`, is click's to answer: silently, with exit code 1. On Windows
+    it is ours.
     """
     try:
         return call() or EXIT_DONE
@@ -34,6 +37,9 @@ def run_guarded(call: Callable[[], int | None]) -> int:
         complain("interrupted")
         return EXIT_INTERRUPTED
     except Exception as error:  # noqa: BLE001  the last stop: whatever it is becomes one line
+        if _is_reader_gone(error):
+            sys.stdout = None  # or it would be tried once more at the end
+            return EXIT_CLIP_FAILED
         lines, exit_code = _explained(error)
         for line in lines:
             complain(line)
@@ -57,6 +63,13 @@ def show_unexpected(error: Exception, *, verbosity: int) -> None:
         import traceback
 
         traceback.print_exception(error)
+
+
+def _is_reader_gone(error: Exception) -> bool:
+    """Tell whether this is how Windows says that a pipe has no reader: an invalid argument, of no file."""
+    if sys.platform != "win32" or not isinstance(error, OSError):
+        return False
+    return error.errno == errno.EINVAL and error.filename is None
 
 
 def _explained(error: Exception) -> tuple[list[str], int]:

@@ -13,6 +13,7 @@ import click
 
 from motionedit import __version__
 from motionedit.cli.boundary import Interrupted, run_guarded, show_unexpected
+from motionedit.cli.streams import take_every_letter
 from motionedit.cli.verbosity import verbosity_of, verbosity_options
 
 # In the order of work. Help must not load the commands, so their first lines stand here; a test compares them.
@@ -45,6 +46,7 @@ class _Program(click.Group):
 
     def main(self, *args: Any, **extra: Any) -> NoReturn:  # noqa: ANN401  as click's own
         """Run one command line and exit with its code."""
+        take_every_letter()
         for name in _BLAS_THREADS:
             os.environ[name] = "1"
         os.environ.setdefault(*_PYDANTIC_PLUGINS)

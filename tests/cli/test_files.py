@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from motionedit.jobs.batch.files import atomic_write, clean_leftovers, identity
+from motionedit.jobs.batch import files
+from motionedit.jobs.batch.files import atomic_write, clean_leftovers, identity, place
 
 STUCK_WRITER = """
 import sys, time
@@ -20,6 +21,34 @@ def stuck(self, target):
 Path.replace = stuck
 atomic_write(Path(sys.argv[1]), b"half")
 """
+
+
+@pytest.fixture
+def without_locks(monkeypatch):
+    """Windows, as far as it can be had here: no locks, and no file that is open can be removed or replaced."""
+    opened = []
+    usual = {name: getattr(Path, name) for name in ("open", "replace", "unlink")}
+
+    def open_(self, *arguments, **options):
+        stream = usual["open"](self, *arguments, **options)
+        opened.append((self, stream))
+        return stream
+
+    def refuse(*paths):
+        if any(one in paths and not stream.closed for one, stream in opened):
+            raise PermissionError(13, "The process cannot access the file because it is being used by another process")
+
+    def replace(self, target):
+        refuse(self, Path(target))
+        return usual["replace"](self, target)
+
+    def unlink(self, **options):
+        refuse(self)
+        return usual["unlink"](self, **options)
+
+    monkeypatch.setattr(files, "fcntl", None)
+    for name, function in (("open", open_), ("replace", replace), ("unlink", unlink)):
+        monkeypatch.setattr(Path, name, function)
 
 
 def names_in(folder):
@@ -80,6 +109,7 @@ def test_a_write_that_stops_keeps_the_old_file_and_no_other(tmp_path, monkeypatc
     assert names_in(tmp_path) == ["walk.bvh"]
 
 
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="the system has no such signal")
 def test_what_a_killed_run_left_is_hidden_no_clip_and_removed_by_the_next(tmp_path, stuck_writer):
     stuck_writer.send_signal(signal.SIGKILL)
     stuck_writer.wait()
@@ -90,6 +120,7 @@ def test_what_a_killed_run_left_is_hidden_no_clip_and_removed_by_the_next(tmp_pa
     assert names_in(tmp_path) == []
 
 
+@pytest.mark.skipif(files.fcntl is None, reason="without locks a file is closed before it is renamed")
 def test_the_temporary_file_of_a_living_run_stays(tmp_path, stuck_writer):
     (left,) = names_in(tmp_path)
     clean_leftovers([tmp_path])
@@ -105,6 +136,45 @@ def test_cleaning_touches_nothing_else_and_minds_no_missing_folder(tmp_path):
     assert names_in(tmp_path) == names
 
 
+@pytest.mark.usefixtures("without_locks")
+def test_without_locks_a_file_is_written_and_what_a_killed_run_left_goes(tmp_path):
+    atomic_write(tmp_path / "walk.bvh", b"new")
+    (tmp_path / ".walk.bvh.1.motionedit-partial").touch()
+    clean_leftovers([tmp_path])
+    assert names_in(tmp_path) == ["walk.bvh"]
+    assert (tmp_path / "walk.bvh").read_bytes() == b"new"
+
+
+@pytest.mark.usefixtures("without_locks")
+def test_without_locks_the_temporary_file_of_a_living_run_stays(tmp_path):
+    left = tmp_path / ".walk.bvh.1.motionedit-partial"
+    with left.open("wb"):
+        clean_leftovers([tmp_path])
+        assert left.exists()
+
+
+@pytest.mark.usefixtures("without_locks")
+def test_a_file_that_another_program_has_open_is_replaced_once_it_lets_go(tmp_path, monkeypatch):
+    target = tmp_path / "walk.bvh"
+    target.write_bytes(b"old")
+    scanner = target.open("rb")
+    monkeypatch.setattr(files.time, "sleep", lambda _: scanner.close())
+    atomic_write(target, b"new")
+    assert target.read_bytes() == b"new"
+
+
+@pytest.mark.usefixtures("without_locks")
+def test_a_file_that_another_program_keeps_open_stays_as_it_is(tmp_path, monkeypatch):
+    target = tmp_path / "walk.bvh"
+    target.write_bytes(b"old")
+    monkeypatch.setattr(files, "_SECONDS_TO_REPLACE", 0.1)
+    with target.open("rb"), pytest.raises(PermissionError):
+        atomic_write(target, b"new")
+    assert target.read_bytes() == b"old"
+    assert names_in(tmp_path) == ["walk.bvh"]
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no named pipes")
 def test_a_pipe_is_written_to_and_not_replaced(tmp_path):
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
@@ -122,3 +192,16 @@ def test_one_file_is_the_same_by_every_name(tmp_path, monkeypatch):
     names = ["walk.bvh", "./walk.bvh", f"../{tmp_path.name}/walk.bvh", "link.bvh", "hard.bvh"]
     assert len({identity(Path(name)) for name in names}) == 1
     assert identity(Path("new.bvh")) == identity(tmp_path / "new.bvh") != identity(Path("walk.bvh"))
+
+
+def test_where_files_have_no_numbers_their_places_tell_them_apart(tmp_path, monkeypatch):
+    for name in ("walk.bvh", "kick.bvh"):
+        (tmp_path / name).write_bytes(b"")
+    monkeypatch.setattr(Path, "stat", lambda _: os.stat_result([0] * 10))
+    assert identity(tmp_path / "walk.bvh") == identity(tmp_path / "." / "walk.bvh") != identity(tmp_path / "kick.bvh")
+
+
+@pytest.mark.parametrize(("system", "same"), [("linux", False), ("win32", True), ("darwin", True)])
+def test_capitals_make_another_place_only_where_the_system_says_so(monkeypatch, system, same):
+    monkeypatch.setattr(files.sys, "platform", system)
+    assert (place(Path("out/Walk.bvh")) == place(Path("out/walk.bvh"))) == same

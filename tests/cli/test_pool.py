@@ -1,6 +1,8 @@
 """Results come in the items' order from any number of workers, and workers do not outlive their run."""
 
 import contextlib
+import json
+import math
 import multiprocessing
 import os
 import signal
@@ -95,6 +97,30 @@ def test_closing_early_leaves_no_worker():
     assert multiprocessing.active_children() == []
 
 
+def test_workers_that_are_started_anew_give_the_same_results(monkeypatch):
+    monkeypatch.setattr(pool.sys, "platform", "darwin")
+    assert list(results_in_order(math.isqrt, [16, 9, 4], options=RunOptions(jobs=2))) == [4, 3, 2]
+
+
+def test_a_batch_of_workers_that_are_started_anew_writes_the_same_bytes(clip, run, monkeypatch, tmp_path):
+    spec = tmp_path / "lift.yaml"
+    lift = {"type": "position", "effector": "LeftForeArm", "points": [{"at": 4, "shift": [0, 2, 0]}]}
+    spec.write_text(json.dumps({"schema": "motionedit/edit-prioritized/v1", "constraints": [lift]}), encoding="utf-8")
+    clips = [clip(f"in/{seed}.bvh", seed=seed) for seed in range(2)]
+    assert run("edit-prioritized", "in", "-s", spec, "-o", "one").exit_code == 0
+    monkeypatch.setattr(pool.sys, "platform", "darwin")
+    assert run("edit-prioritized", "in", "-s", spec, "-o", "two", "-j", "2").exit_code == 0
+    for path in clips:
+        written = (tmp_path / "one" / path.name).read_bytes()
+        assert (tmp_path / "two" / path.name).read_bytes() == written != path.read_bytes()
+
+
+def test_a_wait_for_a_result_is_many_short_ones_so_that_ctrl_c_is_heard_in_between(monkeypatch):
+    monkeypatch.setattr(pool, "_SECONDS_WITHOUT_CTRL_C", 0.01)
+    assert list(results_in_order(slow_first, range(2), options=RunOptions(jobs=2))) == [0, 1]
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="the system has no such signal")
 def test_workers_end_when_their_parent_is_killed():
     code = """
 import os, time

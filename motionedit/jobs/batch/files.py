@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import contextlib
 import os
+import sys
+import time
 from typing import TYPE_CHECKING, BinaryIO
 
 try:
     import fcntl
-except ImportError:  # Windows, where an open file cannot be removed anyway
+except ImportError:  # Windows, where a file that a run has open cannot be removed anyway
     fcntl = None  # type: ignore[assignment]
 
 if TYPE_CHECKING:
@@ -16,6 +18,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 _PARTIAL = ".motionedit-partial"
+# Windows replaces no file that another program has open; virus scanners and indexers let go in less than this.
+_SECONDS_TO_REPLACE = 2.0
+_SECONDS_BETWEEN_TRIES = 0.05
 
 
 def atomic_write(path: Path, data: bytes | Iterable[bytes | memoryview]) -> None:
@@ -47,7 +52,7 @@ def atomic_write(path: Path, data: bytes | Iterable[bytes | memoryview]) -> None
             if fcntl is not None:  # renamed while it is held, so that no other run takes it for a leftover
                 temporary.replace(path)
         if fcntl is None:
-            temporary.replace(path)
+            _replace_when_let_go(temporary, path)
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise
@@ -61,9 +66,8 @@ def clean_leftovers(folders: Iterable[Path]) -> None:
         for path in sorted(folder.iterdir()):
             if path.name.startswith(".") and path.name.endswith(_PARTIAL):
                 # What cannot be opened, held or removed is another's, and harms nobody.
-                with contextlib.suppress(OSError), path.open("rb") as stream:
-                    _hold(stream)
-                    path.unlink()
+                with contextlib.suppress(OSError):
+                    _remove_leftover(path)
 
 
 def identity(path: Path) -> tuple[int, int] | str:
@@ -71,8 +75,41 @@ def identity(path: Path) -> tuple[int, int] | str:
     try:
         status = path.stat()
     except OSError:
-        return os.path.realpath(path)
-    return status.st_dev, status.st_ino
+        return place(path)
+    # Some file systems of Windows number no files: every one of theirs would be the same.
+    return (status.st_dev, status.st_ino) if status.st_ino else place(path)
+
+
+def place(path: Path) -> str:
+    """Return what is equal for two spellings of one place, in letters of any case where the system makes no difference.
+
+    Of a Mac it is not known whether it does: the usual ones make none, and one file in place of two would be lost.
+    """
+    real = os.path.realpath(path)
+    return real.casefold() if sys.platform in ("win32", "darwin") else real
+
+
+def _replace_when_let_go(temporary: Path, path: Path) -> None:
+    """Give a closed file its name, though others may have the old one open for a moment, as on Windows."""
+    until = time.monotonic() + _SECONDS_TO_REPLACE
+    while True:
+        try:
+            temporary.replace(path)
+        except PermissionError:
+            if time.monotonic() > until:
+                raise
+            time.sleep(_SECONDS_BETWEEN_TRIES)
+        else:
+            return
+
+
+def _remove_leftover(path: Path) -> None:
+    if fcntl is None:  # one that is open here, too, could not be removed
+        path.unlink()
+        return
+    with path.open("rb") as stream:
+        _hold(stream)
+        path.unlink()
 
 
 def _hold(stream: BinaryIO) -> None:

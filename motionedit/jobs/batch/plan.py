@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from motionedit.dataclass import dataclass
 from motionedit.errors import UsageError
-from motionedit.jobs.batch.files import identity
+from motionedit.jobs.batch.files import identity, place
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -239,10 +239,10 @@ def _with_outputs(tasks: list[ClipTask], output: str) -> list[ClipTask]:
 
 
 def _refuse_shared_outputs(tasks: list[ClipTask], report: Path | None) -> None:
-    first = {} if report is None else {os.path.realpath(report): "the report"}
+    first = {} if report is None else {place(report): "the report"}
     for task in tasks:
         for output in task.outputs:
-            name = os.path.realpath(output)
+            name = place(output)
             if name in first:
                 raise UsageError(f"{first[name]} and {task.label} would both be written to {output}")
             first[name] = task.label

@@ -23,6 +23,8 @@ Result = TypeVar("Result")
 # Windows cannot wait for more processes at once.
 _MOST_WORKERS = 60
 _SECONDS_TO_CONNECT = 10
+# Windows answers Ctrl-C only between waits.
+_SECONDS_WITHOUT_CTRL_C = 0.2
 # Items that are given to each worker before their results are taken.
 _AHEAD = 16
 
@@ -97,6 +99,7 @@ def _in_processes(
             # Those that never will be begun are the rest.
             if future.cancelled():
                 break
+            _wait_for(future)
             try:
                 result: Result | WorkerDiedError = future.result()
             except BrokenProcessPool:
@@ -126,6 +129,13 @@ def _begun(executor: Executor, function: Callable[[Item], Result], item: Item) -
         future: Future[Result] = Future()
         future.set_exception(error)
         return future
+
+
+def _wait_for(future: Future[Result]) -> None:
+    from concurrent.futures import wait
+
+    while not wait([future], timeout=_SECONDS_WITHOUT_CTRL_C).done:
+        pass
 
 
 def _start_worker() -> None:
