@@ -47,7 +47,8 @@ static void sum_levers(const Shared *shared, const Part *a, const Part *b, Sums 
         yx += m[1] * l[0], yy += m[1] * l[1], yz += m[1] * l[2];
         zx += m[2] * l[0], zy += m[2] * l[1], zz += m[2] * l[2];
     }
-    memcpy(sums->outer, (V[3][3]){{xx, xy, xz}, {yx, yy, yz}, {zx, zy, zz}}, sizeof sums->outer);
+    const V outer[3][3] = {{xx, xy, xz}, {yx, yy, yz}, {zx, zy, zz}};
+    memcpy(sums->outer, outer, sizeof outer);
 }
 
 /* Add sum_j (l_j x f_r + t_r) . (m_j x g_s + u_s) over the shared columns, and the root's f_r . g_s. */
@@ -59,7 +60,7 @@ static void add_block(Batch *batch, const Shared *shared)
     const int64_t rows = problem->task[shared->task[0]].rows, others = problem->task[shared->task[1]].rows;
     Sums sums;
     sum_levers(shared, a, b, &sums);
-    const V(*outer)[3] = sums.outer;
+    V(*outer)[3] = sums.outer;
     const V between = outer[0][0] + outer[1][1] + outer[2][2] + (a->root && b->root ? 1.0 : 0.0);
     if (a->plain && b->plain) { /* the world's axes on both sides: (l x e_r) . (m x e_s) = (l . m) [r = s] - m_r l_s */
         const V scale = a->force[0][0] * b->force[0][0];

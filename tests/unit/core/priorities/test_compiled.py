@@ -1,7 +1,7 @@
 """The compiled solver, kinematics and smoothing beside numpy's, on random skeletons, tasks, ranks and hinges."""
 
 import os
-from dataclasses import fields, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +23,7 @@ from motionedit.core.priorities.edit import edit_by_priorities
 from motionedit.core.priorities.kinds import KINDS, Position
 from motionedit.core.priorities.kinds.position import PositionTask
 from motionedit.core.priorities.points import Columns, Point, Recruited
-from motionedit.core.priorities.problem import HingeColumns, Problem, Reference, WeightedTask
+from motionedit.core.priorities.problem import HingeColumns, LayeredSolution, Problem, Reference, WeightedTask
 from motionedit.core.priorities.recruiting import RecruitRule
 from motionedit.core.priorities.settings import Body, LayeredSettings, PaperFilter, Passes
 from motionedit.core.priorities.solver import prepared, solve_layers
@@ -303,3 +303,44 @@ def test_a_variable_of_the_environment_keeps_the_compiled_part_out(patch):
     patch.setenv(CHOICE, "numpy")
     assert solver_name() == "numpy"
     assert os.environ[CHOICE] == "numpy"
+
+
+@dataclass(frozen=True, eq=False)
+class Unknown:
+    """A task that the compiled solver does not know."""
+
+    task: PositionTask
+
+    def evaluate(self, poses, local, frames):
+        return self.task.evaluate(poses, local, frames)
+
+    def compiled(self):
+        return None
+
+
+def test_a_task_that_the_compiled_solver_does_not_know_is_solved_by_numpy(patch):
+    problem, motion = arms_of(3)
+    (layer,) = problem.layers
+    unknown = replace(problem, layers=((replace(layer[0], task=Unknown(layer[0].task)), *layer[1:]),))
+    frames = np.arange(len(motion))
+    assert prepared(problem).layout is not None
+    assert prepared(unknown).layout is None
+    mine, theirs = solved(unknown, motion, frames), by_numpy(patch, lambda: solved(problem, motion, frames))
+    # Forward kinematics are compiled here and numpy's there.
+    assert difference(mine, theirs) < FEASIBLE
+    np.testing.assert_array_equal(mine.iterations, theirs.iterations)
+    assert mine.iterations.max() > 0
+
+
+def test_an_index_that_is_none_is_an_error_and_no_crash():
+    problem, motion = arms_of(0)
+    layout = prepared(problem).layout
+    for buffer, field in (("tasks", "node"), ("tasks", "kind"), ("tasks", "targets"), ("hinges", "column")):
+        broken = {name: array.copy() for name, array in layout.buffers.items()}
+        broken[buffer][field][0] = 10**6
+        slip = replace(layout, buffers=broken)
+        solution = LayeredSolution(motion, *(np.zeros(8, dtype=kind) for kind in (int, bool)), np.zeros((8, 1), int))
+        with pytest.raises(ValueError, match="indices that are none"):
+            compiled_solver.solve(
+                slip, solution, Reference(motion.rotations, None), np.arange(8), in_order=False, threads=1
+            )

@@ -1,0 +1,139 @@
+"""The laws of the house: no circles, two papers that do not know each other, kinds that nobody asks for by name."""
+
+import ast
+import re
+from dataclasses import fields
+from pathlib import Path
+
+import pytest
+
+import motionedit
+from motionedit.core.priorities.kinds import KINDS
+from motionedit.spec.constraint_types import TYPES
+
+PACKAGE = Path(motionedit.__file__).parent
+ROOT = PACKAGE.parent
+FILES = sorted(PACKAGE.rglob("*.py"))
+PRIORITIES = PACKAGE / "core" / "priorities"
+# The two rooms that may know what a kind is called: its file, and its model in the spec.
+KNOW_KINDS = ("core/priorities/kinds/", "spec/constraint_types.py")
+
+
+def place_of(path):
+    return path.relative_to(PACKAGE).as_posix()
+
+
+def module_of(path):
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+MODULES = {module_of(path): path for path in FILES}
+
+
+def imported_modules(tree):
+    """Yield the modules of the package that a file imports, for types alone as well."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names if alias.name in MODULES)
+        elif isinstance(node, ast.ImportFrom) and node.module in MODULES:
+            for alias in node.names:
+                inner = f"{node.module}.{alias.name}"
+                yield inner if inner in MODULES else node.module
+
+
+def arrows(sources):
+    """Return which modules each module imports; sources are texts by modules."""
+    return {name: set(imported_modules(ast.parse(text))) - {name} for name, text in sources.items()}
+
+
+def circles(graph):
+    """Return the modules that are left when again and again those are taken away that import none of the others."""
+    left = {name: set(others) for name, others in graph.items()}
+    while ends := [name for name, others in left.items() if not others & left.keys()]:
+        for name in ends:
+            del left[name]
+    return sorted(left)
+
+
+def sources():
+    return {name: path.read_text(encoding="utf-8") for name, path in MODULES.items()}
+
+
+def test_no_modules_import_each_other_in_a_circle():
+    assert circles(arrows(sources())) == []
+
+
+def test_the_two_papers_do_not_know_each_other():
+    graph = arrows(sources())
+    for one, other in (("coefficients", "priorities"), ("priorities", "coefficients"), ("priorities", "pca")):
+        room, stranger = f"motionedit.core.{one}", f"motionedit.core.{other}"
+        for name in (name for name in graph if name.startswith(room)):
+            assert not [each for each in graph[name] if each.startswith(stranger)], name
+
+
+def test_the_compiled_part_is_reached_from_one_file():
+    reach = [place_of(path) for path in FILES if re.search(r"\b_compiled\b", path.read_text(encoding="utf-8"))]
+    assert reach == ["core/compiled.py"]
+
+
+def test_a_kind_of_constraint_is_one_file_one_model_and_a_line_in_the_registry():
+    assert list(KINDS) == list(TYPES)
+    files = {path.stem for path in (PRIORITIES / "kinds").glob("*.py")} - {"__init__", "constraint", "effector"}
+    assert {kind.__module__.rpartition(".")[2] for kind in KINDS.values()} == files
+
+
+@pytest.mark.parametrize("name", list(KINDS))
+def test_what_a_kinds_model_has_of_its_own_is_what_its_constraint_takes(name):
+    model, kind = TYPES[name], KINDS[name]
+    keys = {info.alias or key for key, info in model.model_fields.items()}
+    measured = {"frame", "relative_to", "axes"}
+    takes = {field.name for field in fields(kind)} - {"measure"}
+    # What is common to all, and what becomes the measure, is resolved for every kind alike.
+    assert takes - keys == set()
+    assert keys - takes <= {"type", "tolerance", *measured}
+
+
+def branches_on_kinds(tree):
+    """Yield the lines that ask whether something is of a kind: comparisons with names, matches, types."""
+    classes = {kind.__name__ for kind in KINDS.values()}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Compare | ast.Match | ast.Subscript):
+            told = {each.value for each in ast.walk(node) if isinstance(each, ast.Constant)} & KINDS.keys()
+            asks = {each.attr for each in ast.walk(node) if isinstance(each, ast.Attribute)} & {"kind", "type"}
+            if told and asks:
+                yield node.lineno
+        called = isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id
+        if called == "isinstance" and {each.id for each in ast.walk(node) if isinstance(each, ast.Name)} & classes:
+            yield node.lineno
+
+
+@pytest.mark.parametrize("path", FILES, ids=place_of)
+def test_nothing_outside_asks_for_a_kind(path):
+    if not place_of(path).startswith(KNOW_KINDS):
+        text = path.read_text(encoding="utf-8")
+        assert list(branches_on_kinds(ast.parse(text))) == []
+        kinds = re.findall(r"from motionedit\.core\.priorities\.kinds(\S*) import (.*)", text)
+        assert all(module == ".constraint" or names == "KINDS" for module, names in kinds)
+
+
+@pytest.mark.parametrize("path", sorted(PACKAGE.rglob("*.js")), ids=place_of)
+def test_no_page_asks_for_a_kind(path):
+    assert not re.findall(r"\bkind\s*(?:[=!]==|\))", path.read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("path", sorted((PRIORITIES / "csrc").glob("*.[ch]")), ids=lambda path: path.name)
+def test_the_compiled_part_knows_kinds_by_their_table_alone(path):
+    text = path.read_text(encoding="utf-8")
+    assert not re.findall(r"->kind\s*[=!<>]=|switch\s*\([^)]*kind", text)
+
+
+def test_these_laws_are_broken_by_what_breaks_them():
+    assert circles({"a": {"b"}, "b": {"c"}, "c": {"a"}, "d": {"a"}}) == ["a", "b", "c", "d"]
+    broken = [
+        'if each.constraint.kind == "com": pass',
+        'match constraint.type:\n    case "aim": pass',
+        'if c.kind in {"position", "pose"}: pass',
+        "isinstance(each, Posture)",
+    ]
+    assert [len(list(branches_on_kinds(ast.parse(text)))) for text in broken] == [1] * len(broken)
