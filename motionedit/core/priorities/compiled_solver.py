@@ -6,6 +6,7 @@ field and no order is kept here.
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -31,9 +32,11 @@ _CONSTANTS = {"METRES_PER_RADIAN": units.METRES_PER_RADIAN, **vars(constants)}
 
 @dataclass(frozen=True, eq=False)
 class Layout:
-    """What of a problem does not change from solve to solve: the settings, and buffers of module.c by their names."""
+    """What of a problem does not change from solve to solve: buffers of module.c by their names.
 
-    settings: dict[str, float]
+    The `settings` among them lack what a solve adds.
+    """
+
     buffers: dict[str, NDArray[Any]]
 
 
@@ -57,33 +60,20 @@ def layout_of(problem: Problem) -> Layout | None:
     nodes = _nodes(problem, rows, masses)
     node_of = _places(nodes, len(skeleton))
     tasks, targets = _tasks(rows, node_of, module.kinds)
-    settings = {
-        "nodes": len(nodes),
-        "columns": len(columns.joints),
-        "tasks": len(rows),
-        "hinges": len(hinges.places),
-        "layers": len(problem.layers),
-        "joints": len(skeleton),
-        "translated": len(skeleton.translated),
-        "rows": int(tasks["rows"].sum()),
-        "targets": len(targets),
-        "root": int(node_of[columns.root]) if len(skeleton.translated) else -1,
-        "moves_root": problem.moves_root,
-        "max_iterations": problem.max_iterations,
-        "attraction": problem.attraction,
-    }
-    buffers = {
-        "constants": _constants(),
-        "nodes": _node_records(problem, nodes, node_of, masses),
-        "column_nodes": _integers(node_of[columns.joints]),
-        "tasks": tasks,
-        "hinges": _records(
-            "hinges", len(hinges.places), {"column": hinges.places, "axis": hinges.axes, "limits": hinges.limits}
-        ),
-        "recruited": np.ascontiguousarray([row.task.recruited.joints for row in rows], dtype=np.uint8),
-        "targets": targets,
-    }
-    return Layout(settings, buffers)
+    return Layout(
+        {
+            "settings": _settings(problem, nodes, node_of, tasks, targets=len(targets)),
+            "constants": _constants(),
+            "nodes": _node_records(problem, nodes, node_of, masses),
+            "column_nodes": _integers(node_of[columns.joints]),
+            "tasks": tasks,
+            "hinges": _records(
+                "hinges", len(hinges.places), {"column": hinges.places, "axis": hinges.axes, "limits": hinges.limits}
+            ),
+            "recruited": np.ascontiguousarray([row.task.recruited.joints for row in rows], dtype=np.uint8),
+            "targets": targets,
+        }
+    )
 
 
 def solve(
@@ -97,16 +87,12 @@ def solve(
 ) -> None:
     """Solve those `frames` of a motion that are not converged from where they are, as `solve_layers`."""
     count, motion = len(frames), solution.motion
-    settings = {
-        **layout.settings,
-        "frames": count,
-        "motion_frames": len(motion),
-        "in_order": in_order,
-        "pulls_root": reference.root is not None,
-    }
+    settings = layout.buffers["settings"].copy()
+    settings["frames"], settings["motion_frames"] = count, len(motion)
+    settings["in_order"], settings["pulls_root"] = in_order, reference.root is not None
     buffers = {
         **layout.buffers,
-        "settings": _records("settings", 1, settings),
+        "settings": settings,
         "frames": _integers(frames),
         "reference_rotations": _numbers(reference.rotations),
         "reference_root": _numbers([] if reference.root is None else reference.root),
@@ -143,12 +129,42 @@ def _rows(problem: Problem, kinds: Sequence[str]) -> list[_Row] | None:
     return found
 
 
+@cache
+def _dtype(structure: str) -> np.dtype[Any]:
+    """Return how one of csrc's structures lies in memory."""
+    dtype: np.dtype[Any] = np.dtype(compiled().records[structure])
+    return dtype
+
+
 def _records(structure: str, count: int, values: Mapping[str, Any]) -> NDArray[Any]:
     """Return a buffer of a structure's records with some of their fields filled in, the others 0."""
-    records = np.zeros(count, dtype=np.dtype(compiled().records[structure]))
+    records = np.zeros(count, dtype=_dtype(structure))
     for name, value in values.items():
         records[name] = value
     return records
+
+
+def _settings(
+    problem: Problem, nodes: IntArray, node_of: IntArray, tasks: NDArray[Any], *, targets: int
+) -> NDArray[Any]:
+    """Return how many there are of what, and how frames are solved; `targets` is the length of all targets."""
+    columns, skeleton = problem.columns, problem.columns.skeleton
+    values = {
+        "nodes": len(nodes),
+        "columns": len(columns.joints),
+        "tasks": len(tasks),
+        "hinges": len(problem.hinges.places),
+        "layers": len(problem.layers),
+        "joints": len(skeleton),
+        "translated": len(skeleton.translated),
+        "rows": int(tasks["rows"].sum()),
+        "targets": targets,
+        "root": int(node_of[columns.root]) if len(skeleton.translated) else -1,
+        "moves_root": problem.moves_root,
+        "max_iterations": problem.max_iterations,
+        "attraction": problem.attraction,
+    }
+    return _records("settings", 1, values)
 
 
 def _constants() -> NDArray[Any]:
