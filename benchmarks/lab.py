@@ -14,7 +14,7 @@ from motionedit.core.bvh import Clip, read_clip, resampled_bytes
 from motionedit.core.kinematics import Effector
 from motionedit.core.motion import Motion
 from motionedit.jobs import fit_pca
-from motionedit.jobs.batch.run import RunOptions
+from motionedit.jobs.batch.plan import RunOptions
 from motionedit.jobs.edit_pc import job as edit_pc
 from motionedit.jobs.edit_prioritized import job as edit_prioritized
 from motionedit.jobs.normalize import job as normalize

@@ -17,7 +17,10 @@ from motionedit.core.pca.streaming import MOST_COMPONENTS
 from motionedit.core.skeleton_match import match_joints
 from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError, ModelError, MotionEditError, MotionEditErrors
-from motionedit.jobs.batch.run import ClipTask, atomic_write, clean_leftovers, read_task, values_in_order
+from motionedit.jobs.batch.files import atomic_write, clean_leftovers
+from motionedit.jobs.batch.one_clip import read_task
+from motionedit.jobs.batch.plan import ClipTask
+from motionedit.jobs.batch.run import values_in_order
 from motionedit.jobs.clip import resolve
 from motionedit.jobs.normalize.normalization_file import NAME, Normalization, NormalizedClip, read_normalization
 from motionedit.spec.fit_pca import FitPcaSpec
@@ -29,7 +32,7 @@ if TYPE_CHECKING:
     from motionedit.core.motion import Motion
     from motionedit.core.pca.database import FittedModel
     from motionedit.core.skeleton import Skeleton
-    from motionedit.jobs.batch.run import RunOptions
+    from motionedit.jobs.batch.plan import RunOptions
     from motionedit.spec.load import LoadedSpec
 
 HEADINGS = ("component", "variance", "share %", "sum %")

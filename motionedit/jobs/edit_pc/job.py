@@ -18,7 +18,9 @@ from motionedit.core.timeline import round_half_up
 from motionedit.core.timeline.warp import make_warp
 from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError
-from motionedit.jobs.batch.run import Outcome, plan, run_batch
+from motionedit.jobs.batch.one_clip import Outcome
+from motionedit.jobs.batch.plan import plan
+from motionedit.jobs.batch.run import run_batch
 from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.facts import facts_of
 from motionedit.jobs.clip.metrics import edit_metrics, feet_of
@@ -35,7 +37,8 @@ if TYPE_CHECKING:
     from motionedit.core.bvh import Clip
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.pca.model import MotionModel
-    from motionedit.jobs.batch.run import BatchResult, ClipTask, RunOptions
+    from motionedit.jobs.batch.plan import ClipTask, RunOptions
+    from motionedit.jobs.batch.run import BatchResult
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.spec.edit_pc import EditPcSpec
     from motionedit.spec.load import LoadedSpec

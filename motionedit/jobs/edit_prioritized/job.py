@@ -19,10 +19,12 @@ from motionedit.core.priorities.edit import (
 )
 from motionedit.core.trace import blocks_of, forward_blocks, frame_blocks
 from motionedit.dataclass import dataclass
+from motionedit.jobs.batch.one_clip import Outcome
+from motionedit.jobs.batch.plan import plan
 from motionedit.jobs.batch.pool import threads_within
-from motionedit.jobs.batch.run import Outcome, plan, run_batch
+from motionedit.jobs.batch.run import run_batch
 from motionedit.jobs.clip import resolve
-from motionedit.jobs.clip.events import event_frames
+from motionedit.jobs.clip.events import event_frames, explicit_events
 from motionedit.jobs.clip.facts import facts_of
 from motionedit.jobs.clip.faults import Faults
 from motionedit.jobs.clip.metrics import edit_metrics, feet_of
@@ -40,7 +42,8 @@ if TYPE_CHECKING:
     from motionedit.core.bvh import Clip
     from motionedit.core.priorities.constraints import Constraint
     from motionedit.core.trace import Trace
-    from motionedit.jobs.batch.run import BatchResult, ClipTask, RunOptions
+    from motionedit.jobs.batch.plan import ClipTask, RunOptions
+    from motionedit.jobs.batch.run import BatchResult
     from motionedit.jobs.edit_prioritized.body import SizedClip
     from motionedit.jobs.edit_prioritized.constraints import ClipConstraint
     from motionedit.spec.edit_prioritized import EditPrioritizedSpec
@@ -116,7 +119,7 @@ class EditByPriorities:
         none: dict[str, float] = {}
 
         def frames() -> dict[str, float]:
-            explicit = resolve.explicit_events(self.loaded, task.relative, others=self.others)
+            explicit = explicit_events(self.loaded, task.relative, others=self.others)
             known = {name: float(frame) for name, frame in explicit.items()}
             return event_frames(spec.events, sized.facts, place, known=known)
 
