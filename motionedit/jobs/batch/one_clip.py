@@ -117,7 +117,7 @@ def _write(path: Path, content: bytes | Iterable[bytes | memoryview]) -> None:
 
 
 def read_task(task: ClipTask, *, lenient: bool) -> Clip:
-    """Return the clip of a task, from its file or from standard input.
+    """Return the clip of a task: the one it holds, or that of its file or of standard input.
 
     Raises
     ------
@@ -128,6 +128,8 @@ def read_task(task: ClipTask, *, lenient: bool) -> Clip:
     """
     from motionedit.core.bvh import parse_clip, read_clip
 
+    if task.clip is not None:
+        return task.clip
     try:
         if task.source is None:
             return parse_clip(sys.stdin.buffer.read(), label=task.label, lenient=lenient)

@@ -64,7 +64,11 @@ def run(
     UsageError
         As `plan`.
     """
-    tasks = plan(clips, output, options=options, depends=loaded.files)
+    return edit(loaded, plan(clips, output, options=options, depends=loaded.files), options)
+
+
+def edit(loaded: LoadedSpec[EditPrioritizedSpec], tasks: Sequence[ClipTask], options: RunOptions) -> BatchResult:
+    """Edit the clips of tasks, and write those that have an output."""
     others = tuple(task.relative for task in tasks)
     work = EditByPriorities(loaded, others, threads_within(len(tasks), options), options.verify)
     return run_batch(tasks, WithPage(work, loaded.data) if options.preview and not options.dry_run else work, options)
