@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -44,12 +45,15 @@ class Clip:
         The file's own bytes and their layout.
     warnings : tuple of str
         What leniency accepted, one line each.
+    source : Path or None
+        The file that it was read from; None where it was not read from one.
     """
 
     label: str
     motion: Motion
     text: BvhText
     warnings: tuple[str, ...] = ()
+    source: Path | None = None
 
     @cached_property
     def values(self) -> FloatArray:
@@ -93,7 +97,7 @@ def read_clip(path: Path, *, label: str | None = None, lenient: bool = False) ->
         data = path.read_bytes()
     except OSError as error:
         raise BvhError(f"cannot be read: {error.strerror or error}", file=name) from error
-    return parse_clip(data, label=name, lenient=lenient)
+    return replace(parse_clip(data, label=name, lenient=lenient), source=path)
 
 
 def parse_clip(data: bytes, *, label: str, lenient: bool = False) -> Clip:
