@@ -19,7 +19,7 @@ from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError, ModelError, MotionEditError, MotionEditErrors
 from motionedit.jobs.batch.files import atomic_write, clean_leftovers
 from motionedit.jobs.batch.one_clip import read_task
-from motionedit.jobs.batch.plan import ClipTask
+from motionedit.jobs.batch.plan import ClipTask, refuse_overwriting
 from motionedit.jobs.batch.run import values_in_order
 from motionedit.jobs.clip import resolve
 from motionedit.jobs.normalize.normalization_file import NAME, Normalization, NormalizedClip, read_normalization
@@ -70,7 +70,10 @@ class Database:
 
 def run(folder: Path, output: Path, loaded: LoadedSpec[FitPcaSpec] | None, options: RunOptions) -> FitReport:
     """Fit a model to the clips that a folder's normalization.json lists, and write it; see `fit`."""
-    made = fit(database_in(folder), loaded, options)
+    database = database_in(folder)
+    sources = [task.source for task in database.tasks if task.source is not None]
+    refuse_overwriting([output], [*sources, folder / NAME, *(() if loaded is None else loaded.files)])
+    made = fit(database, loaded, options)
     clean_leftovers([output.parent])
     output.parent.mkdir(parents=True, exist_ok=True)
     atomic_write(output, model_bytes(made.model))

@@ -116,6 +116,8 @@ def load_spec(spec: Spec, command: str, **changes: Unpack[Overrides]) -> LoadedS
     path = spec if isinstance(spec, Path) else None
     label = _MAPPING if path is None else str(path)
     tree, faults = _tree_of_mapping(spec, command) if isinstance(spec, Mapping) else _tree(spec, command)
+    # What no spec can say is told once, not again as a value that is missing.
+    unsayable = {fault.keys for fault in faults} if path is None else set()
     tree, found = _with_events(tree, changes.get("events", {}))
     faults += found
     tree, found = apply_overrides(tree, changes.get("overrides", ()))
@@ -127,7 +129,7 @@ def load_spec(spec: Spec, command: str, **changes: Unpack[Overrides]) -> LoadedS
     if "schema" not in data:
         faults.append(Fault(f"is missing; the first line is schema: {schema_name(command)}", ("schema",)))
     model, found = _validated(data, command, Path() if path is None else path.parent)
-    faults += found
+    faults += [fault for fault in found if fault.keys not in unsayable]
     if faults or model is None:
         raise _together(faults, tree, label)
     return LoadedSpec(model, path, label, data, tree)

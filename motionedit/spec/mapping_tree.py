@@ -50,7 +50,7 @@ class _Builder:
             return self._parent([self.node(item, (*keys, i)) for i, item in enumerate(value)])
         if value is None or isinstance(value, (bool, int, float, str)):
             return self._leaf(value)
-        return self._faulty(f"a {type(value).__name__} is no value of a spec", keys)
+        return self._faulty(f"a value of type {type(value).__name__} cannot stand in a spec", keys)
 
     def _mapping(self, value: Mapping[object, object], keys: Keys) -> Node:
         children: dict[str, Node] = {}

@@ -46,7 +46,7 @@ class Clip:
     warnings : tuple of str
         What leniency accepted, one line each.
     source : Path or None
-        The file that it was read from; None where it was not read from one.
+        The file that it, or the clip that it was made from, was read from; None where there is none.
     """
 
     label: str
@@ -54,6 +54,11 @@ class Clip:
     text: BvhText
     warnings: tuple[str, ...] = ()
     source: Path | None = None
+
+    def __repr__(self) -> str:
+        # Not the bytes of the file and all its numbers, which would fill a screen.
+        frames, joints = len(self.motion), len(self.motion.skeleton)
+        return f"<Clip {self.label!r}: {frames} frames, {joints} joints, {self.motion.frame_rate:.4g} Hz>"
 
     @cached_property
     def values(self) -> FloatArray:

@@ -102,14 +102,21 @@ class RunOne:
         if isinstance(content, bytes) and self.options.verify:
             record = {**record, "verify": _verify(clip, content, outcome.motion or clip.motion)}
         if task.output is not None:
-            _write(task.output, content)
+            write_file(task.output, content)
             content = None
         if task.page is not None and outcome.page is not None:
-            _write(task.page, outcome.page())
+            write_file(task.page, outcome.page())
         return Done(Outcome(content, record, outcome.status, warnings), written=True)
 
 
-def _write(path: Path, content: bytes | Iterable[bytes | memoryview]) -> None:
+def write_file(path: Path, content: bytes | Iterable[bytes | memoryview]) -> None:
+    """Write a file whole or not at all.
+
+    Raises
+    ------
+    ClipError
+        It cannot be written.
+    """
     try:
         atomic_write(path, content)
     except OSError as error:
