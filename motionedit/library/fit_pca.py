@@ -88,7 +88,7 @@ def fit_pca(normalized: Normalized | AnyPath, spec: AnySpec | None = None, *, jo
     >>> swings = motionedit.normalize("data/golf", "configs/golf-normalize.yaml")
     >>> fit = motionedit.fit_pca(swings, {"explained_variance": 0.95})
     >>> fit.model.components.explained_variance_ratio.round(2)
-    array([0.47, 0.26, 0.12, 0.05, 0.04, 0.02])
+    array([0.47, 0.25, 0.12, 0.05, 0.04, 0.02])
     """
     loaded = None if spec is None else load_spec(spec_of(spec), "fit-pca")
     database, sources = _database(normalized)
