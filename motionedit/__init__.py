@@ -18,6 +18,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from motionedit.errors import MotionEditError, MotionEditErrors
+from motionedit.version import __version__
 
 if TYPE_CHECKING:
     from motionedit.library.edit_pc import edit_pc
@@ -26,8 +27,6 @@ if TYPE_CHECKING:
     from motionedit.library.fit_pca import Fitted, fit_pca
     from motionedit.library.normalize import Normalized, normalize
     from motionedit.library.read import read
-
-__version__ = "0.1.0"
 
 __all__ = [
     "Edited",
