@@ -11,6 +11,7 @@ from motionedit.jobs import fit_pca as job
 from motionedit.jobs.batch.plan import ClipTask
 from motionedit.jobs.normalize.normalization_file import NAME
 from motionedit.library.inputs import options_of, path_of, spec_of
+from motionedit.library.mean_clip import mean_clip
 from motionedit.library.normalize import Normalized
 from motionedit.library.outputs import report_of, sources_of, write_files
 from motionedit.spec.load import load_spec
@@ -18,6 +19,7 @@ from motionedit.spec.load import load_spec
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from motionedit.core.bvh import Clip
     from motionedit.core.pca.model import MotionModel
     from motionedit.library.inputs import AnyPath, AnySpec
 
@@ -27,7 +29,7 @@ _IN_MEMORY = "normalized clips"
 
 @dataclass(frozen=True, eq=False)
 class Fitted:
-    """A motion PCA model; it is of no clip, so there is no `clip`.
+    """A motion PCA model.
 
     Attributes
     ----------
@@ -46,6 +48,11 @@ class Fitted:
     report: dict[str, Any]
     warnings: tuple[str, ...]
     inputs: tuple[Path, ...]
+
+    @property
+    def clip(self) -> Clip:
+        """The database's mean motion on the model's timeline, as a clip called mean.bvh; made anew each time."""
+        return mean_clip(self.model)
 
     def write(self, path: AnyPath) -> Path:
         """Write the model's file (``.npz``), whole or not at all, and return it.

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import motionedit
+from motionedit.core.kinematics import forward
 
 ROOT = Path(__file__).resolve().parents[2]
 SWING = "data/golf/swing04.bvh"
@@ -56,6 +57,21 @@ def test_an_edit_goes_on_from_a_normalized_clip(fitted, normalized):
     )
     assert edit.report["status"] == "ok"
     assert edit.clip.label == "swing04.bvh"
+
+
+def test_the_clip_of_a_model_is_its_mean_and_can_be_edited(fitted, normalized):
+    mean, motions = fitted.clip, [clip.motion for clip in normalized.clips]
+    hips = np.mean([forward(motion).positions[:, 0] for motion in motions], axis=0)
+    assert forward(mean.motion).positions[:, 0] == pytest.approx(hips, abs=1e-6)
+    # Rotations near each other: their mean is between them.
+    club = mean.motion.skeleton.names.index("Club")
+    paths = np.array([forward(motion).positions[:, club] for motion in motions])
+    away = np.linalg.norm(forward(mean.motion).positions[:, club] - paths.mean(axis=0), axis=1)
+    assert away.max() < 0.5 * np.linalg.norm(paths - paths.mean(axis=0), axis=-1).max()
+    hit = dict(fitted.model.timeline.events)["hit"]
+    edit = motionedit.edit_pc(mean, fitted, {"goals": [{**BALL, "shift": [0, 0, 3]}]}, events={"hit": hit})
+    assert edit.report["status"] == "ok"
+    assert np.abs(edit.report["alpha"]["before"]).max() < 0.01  # aligned anew
 
 
 def test_nothing_that_is_given_is_changed(fitted, mapping):
