@@ -8,8 +8,9 @@ from motionedit.core.pca.model import MotionModel
 from motionedit.core.pca.model_file import read_model
 from motionedit.jobs.edit_pc import job
 from motionedit.library.edited import edited
+from motionedit.library.file_errors import file_errors
 from motionedit.library.fit_pca import Fitted
-from motionedit.library.inputs import options_of, path_of, spec_of, task_of
+from motionedit.library.inputs import events_of, options_of, path_of, spec_of, task_of
 from motionedit.spec.load import load_spec
 
 if TYPE_CHECKING:
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 _IN_MEMORY = "(in memory)"
 
 
+@file_errors()
 def edit_pc(
     clip: AnyClip, model: Fitted | MotionModel | AnyPath, spec: AnySpec, *, events: Mapping[str, int] | None = None
 ) -> Edited:
@@ -58,7 +60,7 @@ def edit_pc(
     >>> edit.report["status"]
     'ok'
     """
-    loaded = load_spec(spec_of(spec), "edit-pc", events=events or {})
+    loaded = load_spec(spec_of(spec), "edit-pc", events=events_of(events))
     task = task_of(clip)
     full, label, files = _model(model)
     result = job.edit(loaded, [task], full, options_of(), label=label)

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from motionedit.jobs.edit_prioritized import job
 from motionedit.library.edited import edited
-from motionedit.library.inputs import options_of, spec_of, task_of
+from motionedit.library.file_errors import file_errors
+from motionedit.library.inputs import events_of, options_of, spec_of, task_of
 from motionedit.spec.load import load_spec
 
 if TYPE_CHECKING:
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from motionedit.library.inputs import AnyClip, AnySpec
 
 
+@file_errors()
 def edit_prioritized(
     clip: AnyClip, spec: AnySpec, *, events: Mapping[str, int] | None = None, threads: int = 1
 ) -> Edited:
@@ -49,7 +51,7 @@ def edit_prioritized(
     'ok'
     >>> path = edit.write("walk-stairs.bvh")
     """
-    loaded = load_spec(spec_of(spec), "edit-prioritized", events=events or {})
+    loaded = load_spec(spec_of(spec), "edit-prioritized", events=events_of(events))
     task = task_of(clip)
     result = job.edit(loaded, [task], options_of(jobs=threads))
     return edited(task, result, loaded.files)

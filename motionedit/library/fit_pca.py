@@ -10,6 +10,7 @@ from motionedit.errors import UsageError
 from motionedit.jobs import fit_pca as job
 from motionedit.jobs.batch.plan import ClipTask
 from motionedit.jobs.normalize.normalization_file import NAME
+from motionedit.library.file_errors import file_errors
 from motionedit.library.inputs import options_of, path_of, spec_of
 from motionedit.library.mean_clip import mean_clip
 from motionedit.library.normalize import Normalized
@@ -73,6 +74,7 @@ class Fitted:
         return f"<Fitted: {count} components of {len(self.model.clips)} clips>"
 
 
+@file_errors()
 def fit_pca(normalized: Normalized | AnyPath, spec: AnySpec | None = None, *, jobs: int = 1) -> Fitted:
     """Return a motion PCA model of normalized clips ([PC] 4.1), as `motionedit fit-pca` writes it.
 

@@ -26,11 +26,27 @@ def path_of(path: AnyPath, *, wanted: str = "a path") -> Path:
     UsageError
         It is neither; `wanted` says in the message what would be right.
     """
-    if not isinstance(path, (str, os.PathLike)):
+    name = os.fspath(path) if isinstance(path, (str, os.PathLike)) else None
+    if not isinstance(name, str):
         raise UsageError(f"must be {wanted}, not a value of type {type(path).__name__}")
-    if str(path) in ("", "-"):
-        raise UsageError(f"'{path}' is no file; give a path")
-    return Path(path)
+    if name in ("", "-") or "\0" in name:
+        raise UsageError(f"{name!r} is no file; give a path")
+    return Path(name)
+
+
+def events_of(events: Mapping[str, int] | None) -> Mapping[str, int]:
+    """Return frames of events as `load_spec` takes them.
+
+    Raises
+    ------
+    UsageError
+        They are no mapping of names.
+    """
+    if events is None:
+        return {}
+    if not isinstance(events, Mapping) or not all(isinstance(name, str) for name in events):
+        raise UsageError("events must be a mapping of names to frames, such as {'hit': 94}")
+    return events
 
 
 def spec_of(spec: AnySpec) -> Path | Mapping[str, Any]:

@@ -10,6 +10,7 @@ from motionedit.dataclass import dataclass
 from motionedit.errors import UsageError
 from motionedit.jobs.normalize import job
 from motionedit.jobs.normalize.normalization_file import NAME, normalization_bytes
+from motionedit.library.file_errors import file_errors
 from motionedit.library.inputs import options_of, path_of, spec_of, tasks_of
 from motionedit.library.outputs import contents_of, report_of, sources_of, write_files
 from motionedit.spec.load import load_spec
@@ -73,6 +74,7 @@ class Normalized:
         return f"<Normalized: {len(self.clips)} clips of {self.normalization.timeline.frames} frames>"
 
 
+@file_errors()
 def normalize(clips: AnyClip | Iterable[AnyClip], spec: AnySpec, *, lenient: bool = False, jobs: int = 1) -> Normalized:
     """Return clips of one behaviour on one timeline ([PC] section 5), as `motionedit normalize` writes them.
 

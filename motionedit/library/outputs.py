@@ -9,6 +9,7 @@ from motionedit.errors import MotionEditErrors
 from motionedit.jobs.batch.files import clean_leftovers
 from motionedit.jobs.batch.one_clip import write_file
 from motionedit.jobs.batch.plan import refuse_overwriting
+from motionedit.library.file_errors import file_errors
 from motionedit.report.record import report_bytes
 
 if TYPE_CHECKING:
@@ -49,6 +50,7 @@ def report_of(
     return report
 
 
+@file_errors()
 def write_files(files: Mapping[Path, bytes], *, inputs: Iterable[Path]) -> None:
     """Write files, each whole or not at all, after it was seen that none is an input.
 
@@ -56,7 +58,7 @@ def write_files(files: Mapping[Path, bytes], *, inputs: Iterable[Path]) -> None:
     ------
     UsageError
         One is.
-    ClipError
+    MotionEditError
         One cannot be written.
     """
     refuse_overwriting(list(files), list(inputs))

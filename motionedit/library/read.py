@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from motionedit.core.bvh import read_clip
+from motionedit.library.file_errors import file_errors
 from motionedit.library.inputs import path_of
 
 if TYPE_CHECKING:
@@ -12,6 +13,7 @@ if TYPE_CHECKING:
     from motionedit.library.inputs import AnyPath
 
 
+@file_errors()
 def read(path: AnyPath, *, lenient: bool = False) -> Clip:
     """Return the clip in a BVH file.
 

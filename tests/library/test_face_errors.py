@@ -75,6 +75,10 @@ def test_a_faulty_event_is_named(fitted, frame, message):
 def test_what_is_no_clip_no_spec_and_no_model_is_refused(fitted):
     assert refused(motionedit.read, 3) == ["must be a path, not a value of type int"]
     assert refused(motionedit.read, "-") == ["'-' is no file; give a path"]
+    assert refused(motionedit.read, "a\0b") == ["'a\\x00b' is no file; give a path"]
+    assert refused(motionedit.edit_prioritized, "data/walk.bvh", NOTHING, events=[94]) == [
+        "events must be a mapping of names to frames, such as {'hit': 94}"
+    ]
     assert refused(motionedit.read, "nix.bvh") == ["nix.bvh: cannot be read: No such file or directory"]
     assert refused(motionedit.edit_prioritized, None, NOTHING) == [
         "must be a clip, as a path or a Clip, not a value of type NoneType"
@@ -116,6 +120,14 @@ def test_every_clip_that_cannot_be_normalized_is_named(tmp_path):
         (tmp_path / name).write_text("HIERARCHY\n")
     lines = refused(motionedit.normalize, [tmp_path, SWING], {})
     assert [line.partition(":")[0] for line in lines] == [str(tmp_path / "a.bvh"), str(tmp_path / "b.bvh")]
+
+
+def test_what_the_system_says_of_a_folder_is_an_error_of_the_face(monkeypatch):
+    def denied(top, **_):
+        raise PermissionError(13, "Permission denied", str(top))
+
+    monkeypatch.setattr("os.walk", denied)
+    assert refused(motionedit.normalize, "data/golf", {}) == ["data/golf: Permission denied"]
 
 
 def test_an_error_that_is_no_user_s_is_raised_as_it_is(monkeypatch):
