@@ -73,7 +73,7 @@ def run(folder: Path, output: Path, loaded: LoadedSpec[FitPcaSpec] | None, optio
     database = database_in(folder)
     sources = [task.source for task in database.tasks if task.source is not None]
     refuse_overwriting([output], [*sources, folder / NAME, *(() if loaded is None else loaded.files)])
-    made = fit(database, loaded, options)
+    made = fit(database, loaded, options=options)
     clean_leftovers([output.parent])
     output.parent.mkdir(parents=True, exist_ok=True)
     atomic_write(output, model_bytes(made.model))
@@ -94,7 +94,7 @@ def database_in(folder: Path) -> Database:
     return Database(normalization, tasks, str(folder), str(folder / NAME))
 
 
-def fit(database: Database, loaded: LoadedSpec[FitPcaSpec] | None, options: RunOptions) -> Fit:
+def fit(database: Database, loaded: LoadedSpec[FitPcaSpec] | None, *, options: RunOptions) -> Fit:
     """Return a model of normalized clips.
 
     Raises

@@ -63,8 +63,8 @@ def edit_pc(
     loaded = load_spec(spec_of(spec), "edit-pc", events=events_of(events))
     task = task_of(clip)
     full, label, files = _model(model)
-    result = job.edit(loaded, [task], full, options_of(), label=label)
-    return edited(task, result, (*loaded.files, *files))
+    result = job.edit(loaded, [task], model=full, label=label, options=options_of())
+    return edited(task, result, files=(*loaded.files, *files))
 
 
 def _model(model: Fitted | MotionModel | AnyPath) -> tuple[MotionModel, str, tuple[Path, ...]]:

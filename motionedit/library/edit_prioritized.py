@@ -53,5 +53,5 @@ def edit_prioritized(
     """
     loaded = load_spec(spec_of(spec), "edit-prioritized", events=events_of(events))
     task = task_of(clip)
-    result = job.edit(loaded, [task], options_of(jobs=threads))
-    return edited(task, result, loaded.files)
+    result = job.edit(loaded, [task], options=options_of(jobs=threads))
+    return edited(task, result, files=loaded.files)

@@ -70,7 +70,7 @@ class Edited:
         return f"<Edited {self.clip.label!r}: {self.report['status']}, {len(self.clip.motion)} frames>"
 
 
-def edited(task: ClipTask, result: BatchResult, files: Sequence[Path]) -> Edited:
+def edited(task: ClipTask, result: BatchResult, *, files: Sequence[Path]) -> Edited:
     """Return what the run over one task came to; `files` are what it read beside the clip."""
     (content,) = contents_of(result)
     if task.clip is not None and content is task.clip.text.data:

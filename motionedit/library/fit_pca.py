@@ -101,7 +101,7 @@ def fit_pca(normalized: Normalized | AnyPath, spec: AnySpec | None = None, *, jo
     """
     loaded = None if spec is None else load_spec(spec_of(spec), "fit-pca")
     database, sources = _database(normalized)
-    made = job.fit(database, loaded, options_of(jobs=jobs))
+    made = job.fit(database, loaded, options=options_of(jobs=jobs))
     report = report_of("fit-pca", [], spec=None if loaded is None else loaded.data, more=made.report.record)
     files = () if loaded is None else loaded.files
     return Fitted(made.model, report, tuple(made.report.warnings), (*sources, *files))

@@ -103,7 +103,7 @@ def normalize(clips: AnyClip | Iterable[AnyClip], spec: AnySpec, *, lenient: boo
     """
     loaded = load_spec(spec_of(spec), "normalize")
     tasks = tasks_of(clips)
-    done = job.normalize(loaded, tasks, options_of(jobs=jobs, lenient=lenient))
+    done = job.normalize(loaded, tasks, options=options_of(jobs=jobs, lenient=lenient))
     contents = contents_of(done.result)
     if done.normalization is None:
         raise AssertionError("a run without failures has a normalization")

@@ -60,11 +60,11 @@ def run(
         As `plan`.
     """
     tasks = plan(clips, output, options=options, depends=(*loaded.files, model))
-    return edit(loaded, tasks, read_model(model), options, label=str(model))
+    return edit(loaded, tasks, model=read_model(model), label=str(model), options=options)
 
 
 def edit(
-    loaded: LoadedSpec[EditPcSpec], tasks: Sequence[ClipTask], model: MotionModel, options: RunOptions, *, label: str
+    loaded: LoadedSpec[EditPcSpec], tasks: Sequence[ClipTask], *, model: MotionModel, label: str, options: RunOptions
 ) -> BatchResult:
     """Edit the clips of tasks, and write those that have an output; `label` is what messages call the model.
 

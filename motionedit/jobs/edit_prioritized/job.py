@@ -64,10 +64,10 @@ def run(
     UsageError
         As `plan`.
     """
-    return edit(loaded, plan(clips, output, options=options, depends=loaded.files), options)
+    return edit(loaded, plan(clips, output, options=options, depends=loaded.files), options=options)
 
 
-def edit(loaded: LoadedSpec[EditPrioritizedSpec], tasks: Sequence[ClipTask], options: RunOptions) -> BatchResult:
+def edit(loaded: LoadedSpec[EditPrioritizedSpec], tasks: Sequence[ClipTask], *, options: RunOptions) -> BatchResult:
     """Edit the clips of tasks, and write those that have an output."""
     others = tuple(task.relative for task in tasks)
     work = EditByPriorities(loaded, others, threads_within(len(tasks), options), options.verify)

@@ -55,13 +55,13 @@ def run(loaded: LoadedSpec[NormalizeSpec], clips: Sequence[Path], output: Path, 
     if all(task.current for task in tasks) and (output / NAME).exists():
         return replace(_nothing(EXIT_DONE), current=len(tasks))
     # One clip that changed moves the means: all are made anew.
-    normalized = normalize(loaded, [replace(task, current=False) for task in tasks], options)
+    normalized = normalize(loaded, [replace(task, current=False) for task in tasks], options=options)
     if normalized.normalization is not None and not options.dry_run:
         atomic_write(output / NAME, normalization_bytes(normalized.normalization))
     return normalized.result
 
 
-def normalize(loaded: LoadedSpec[NormalizeSpec], tasks: Sequence[ClipTask], options: RunOptions) -> Normalized:
+def normalize(loaded: LoadedSpec[NormalizeSpec], tasks: Sequence[ClipTask], *, options: RunOptions) -> Normalized:
     """Normalize the clips of tasks, and write those that have an output.
 
     Raises
