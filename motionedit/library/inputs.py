@@ -74,7 +74,12 @@ def tasks_of(clips: AnyClip | Iterable[AnyClip]) -> list[ClipTask]:
     UsageError
         There is no clip; something given does not exist; two clips in memory have one label.
     """
-    several = [clips] if isinstance(clips, (str, os.PathLike, Clip)) else list(clips)
+    if isinstance(clips, (str, os.PathLike, Clip)):
+        several = [clips]
+    elif isinstance(clips, Iterable):
+        several = list(clips)
+    else:
+        raise UsageError(f"must be clips or folders, not a value of type {type(clips).__name__}")
     tasks: list[ClipTask] = []
     for clip in several:
         tasks += [task_of(clip)] if isinstance(clip, Clip) else find_clips([path_of(clip, wanted=_CLIP)])

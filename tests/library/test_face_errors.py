@@ -104,6 +104,8 @@ def test_what_is_no_clip_no_spec_and_no_model_is_refused(fitted):
 
 def test_what_cannot_be_normalized_or_fitted_is_refused():
     assert refused(motionedit.normalize, [], {}) == ["no clip is given"]
+    assert refused(motionedit.normalize, 3, {}) == ["must be clips or folders, not a value of type int"]
+    assert refused(motionedit.normalize, [3], {}) == ["must be a clip, as a path or a Clip, not a value of type int"]
     assert refused(motionedit.normalize, "data/golf", {}, jobs=-1) == ["-1 workers; give 1 or more, or 0 for all cores"]
     swing = motionedit.read(SWING)
     assert "would both be called swing04.bvh" in refused(motionedit.normalize, [swing, swing], {})[0]
