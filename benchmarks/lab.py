@@ -3,22 +3,16 @@
 from __future__ import annotations
 
 import itertools
-import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+import motionedit
 from motionedit.core import kinematics
 from motionedit.core.bvh import Clip, read_clip, resampled_bytes
 from motionedit.core.kinematics import Effector
 from motionedit.core.motion import Motion
-from motionedit.jobs import fit_pca
-from motionedit.jobs.batch.run import RunOptions
-from motionedit.jobs.edit_pc import job as edit_pc
-from motionedit.jobs.edit_prioritized import job as edit_prioritized
-from motionedit.jobs.normalize import job as normalize
-from motionedit.spec.load import load_spec
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -50,44 +44,24 @@ class Lab:
         path.mkdir(parents=True)
         return path
 
-    def _spec(self, content: dict[str, Any], command: str) -> Path:
-        path = self.place() / "spec.yaml"
-        path.write_text(json.dumps({"schema": f"motionedit/{command}/v1", **content}))
-        return path
-
     def normalized(self, clips: Sequence[Path], spec: dict[str, Any]) -> Path:
         """Return the folder of clips normalized by a spec."""
-        folder = self.place()
-        loaded = load_spec(self._spec(spec, "normalize"), "normalize")
-        result = normalize.run(loaded, clips, folder, RunOptions(keep_going=False))
-        if result.failures:
-            raise result.failures[0]
-        return folder
+        return motionedit.normalize(clips, spec).write(self.place())
 
     def model(self, clips: Sequence[Path], spec: dict[str, Any], *, fit: dict[str, Any] | None = None) -> Path:
         """Return the model of clips, normalized by a spec."""
-        folder = self.normalized(clips, spec)
-        model = self.place() / "model.npz"
-        fit_pca.run(folder, model, load_spec(self._spec(fit or {}, "fit-pca"), "fit-pca"), RunOptions())
-        return model
+        return motionedit.fit_pca(motionedit.normalize(clips, spec), fit).write(self.place() / "model.npz")
 
     def edit(self, clip: Path, model: Path, spec: dict[str, Any]) -> Edited:
         """Return a clip edited by a spec."""
-        loaded = load_spec(self._spec(spec, "edit-pc"), "edit-pc")
-        folder = self.place()
-        result = edit_pc.run(loaded, [clip], str(folder), model, RunOptions())
-        if result.failures:
-            raise result.failures[0]
-        return Edited(folder / clip.name, result.records[0])
+        return self._written(motionedit.edit_pc(clip, model, spec))
 
     def edit_prioritized(self, clip: Path, spec: dict[str, Any]) -> Edited:
         """Return a clip edited by constraints."""
-        loaded = load_spec(self._spec(spec, "edit-prioritized"), "edit-prioritized")
-        folder = self.place()
-        result = edit_prioritized.run(loaded, [clip], str(folder), RunOptions())
-        if result.failures:
-            raise result.failures[0]
-        return Edited(folder / clip.name, result.records[0])
+        return self._written(motionedit.edit_prioritized(clip, spec))
+
+    def _written(self, edit: motionedit.Edited) -> Edited:
+        return Edited(edit.write(self.place()), edit.report)
 
     def cut(self, clip: Clip, start: int, stop: int, name: str) -> Path:
         """Return a file with frames start to stop (both in) of a clip."""

@@ -13,7 +13,7 @@ from lab import Lab
 from motionedit.core.coefficients import edit as coefficient_edit
 from motionedit.core.coefficients.goals import stacked_errors
 from motionedit.core.coefficients.solver import solve_goals
-from motionedit.jobs.batch.run import RunOptions
+from motionedit.jobs.batch.plan import RunOptions
 from motionedit.jobs.edit_pc import job as edit_pc
 from motionedit.spec.load import load_spec
 

@@ -21,7 +21,9 @@ else:
             if not frozen:
                 return dataclasses.dataclass(cls, eq=eq, kw_only=kw_only)
             cls = dataclasses.dataclass(cls, eq=False, repr=False, kw_only=kw_only)
-            cls.__setattr__, cls.__delattr__, cls.__repr__ = _set_once, _refuse, _shown
+            cls.__setattr__, cls.__delattr__ = _set_once, _refuse
+            if "__repr__" not in vars(cls):
+                cls.__repr__ = _shown
             if eq:
                 cls.__eq__, cls.__hash__ = _equals, _hashed
             return cls

@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
 EXIT_DONE = 0
 EXIT_CLIP_FAILED = 1
 EXIT_USAGE = 2
@@ -30,6 +35,11 @@ class MotionEditError(Exception):
         self.file = file
         self.line = line
         self.key = key
+
+    @property
+    def errors(self) -> tuple[MotionEditError, ...]:
+        """The faults one by one: itself, or those of a group and of the groups in it, in order."""
+        return (self,)
 
     def __reduce__(self) -> tuple[object, ...]:
         # Keyword-only arguments do not survive the default pickling between worker processes.
@@ -74,10 +84,25 @@ class BvhError(ClipError):
     """A BVH file that cannot be read, or would not be read back."""
 
 
-class MotionEditErrors(ExceptionGroup[MotionEditError]):
-    """Several faults found together, such as all those of one spec file."""
+class MotionEditErrors(ExceptionGroup[MotionEditError], MotionEditError):  # type: ignore[override]  # noqa: N818  of both
+    """Several faults found together, such as all those of one spec file; `str()` has a line for each.
+
+    Whoever catches MotionEditError catches these too; `except*` takes them apart by their kinds.
+    """
+
+    def __init__(self, message: str, faults: Sequence[MotionEditError]) -> None:
+        del message  # kept by the group, which was made of both
+        self.file = self.line = self.key = None
+        self.exit_code = max(fault.exit_code for fault in faults)
 
     @property
-    def exit_code(self) -> int:
-        """The highest exit code among the faults."""
-        return max(error.exit_code for error in self.exceptions if isinstance(error, MotionEditError))
+    def errors(self) -> tuple[MotionEditError, ...]:
+        """The faults one by one, those of groups in it too, in order."""
+        known = [fault for fault in self.exceptions if isinstance(fault, MotionEditError)]
+        return tuple(error for fault in known for error in fault.errors)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return type(self), self.args
+
+    def __str__(self) -> str:
+        return "\n".join(map(str, self.errors))

@@ -8,14 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from motionedit.errors import (
-    EXIT_CLIP_FAILED,
-    EXIT_DONE,
-    EXIT_INTERRUPTED,
-    EXIT_USAGE,
-    MotionEditError,
-    MotionEditErrors,
-)
+from motionedit.errors import EXIT_CLIP_FAILED, EXIT_DONE, EXIT_INTERRUPTED, EXIT_USAGE, MotionEditError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -58,7 +51,7 @@ def warn(message: str) -> None:
 
 def show_unexpected(error: Exception, *, verbosity: int) -> None:
     """Print the traceback of an error that is no user's, where -vv asks for it."""
-    known = (MotionEditError, MotionEditErrors, OSError, MemoryError, click.ClickException, click.exceptions.Exit)
+    known = (MotionEditError, OSError, MemoryError, click.ClickException, click.exceptions.Exit)
     if verbosity > 1 and not isinstance(error, (*known, click.Abort)):
         import traceback
 
@@ -74,13 +67,8 @@ def _is_reader_gone(error: Exception) -> bool:
 
 def _explained(error: Exception) -> tuple[list[str], int]:
     """Return the lines that say what went wrong, and the exit code."""
-    if isinstance(error, MotionEditErrors):
-        from motionedit.jobs.batch.run import flatten
-
-        errors = flatten(error)
-        return [str(one) for one in errors], max(one.exit_code for one in errors)
     if isinstance(error, MotionEditError):
-        return [str(error)], error.exit_code
+        return [str(one) for one in error.errors], error.exit_code
     if isinstance(error, click.ClickException):
         return [_usage(error)], EXIT_USAGE
     if isinstance(error, OSError) and error.strerror:

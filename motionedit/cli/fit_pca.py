@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -17,6 +18,9 @@ from motionedit.cli.options import (
 from motionedit.cli.progress import progress_on_terminal
 from motionedit.cli.verbosity import verbosity_of, verbosity_options
 from motionedit.errors import UsageError
+
+if TYPE_CHECKING:
+    from motionedit.jobs.fit_pca import FitReport
 
 
 @click.command(
@@ -55,12 +59,10 @@ def command(
         raise click.UsageError("--set overrides a key of a spec: give -s too")
     if not folder.is_dir():
         raise UsageError("no such folder", file=str(folder))
-    from motionedit.cli.boundary import warn
     from motionedit.cli.finish import write_report
     from motionedit.jobs import fit_pca
     from motionedit.jobs.batch.plan import RunOptions, refuse_existing
     from motionedit.report.record import report_bytes
-    from motionedit.report.table import text_table
     from motionedit.spec.load import load_spec
 
     if not overwrite:
@@ -75,14 +77,21 @@ def command(
     )
     fit = fit_pca.run(folder, Path(output), loaded, options)
     if options.verbosity >= 0:
-        for warning in fit.warnings:
-            warn(warning)
-        click.echo(text_table(*fit.table), err=True)
-        for note in fit.notes:
-            click.echo(f"motionedit: {note}", err=True)
+        _show(fit)
     if str(report) != "-":
         click.echo(output)
     if report is not None:
         spec = None if loaded is None else loaded.data
         write_report(report_bytes("fit-pca", [], spec=spec, more=fit.record), report)
     return 0
+
+
+def _show(fit: FitReport) -> None:
+    from motionedit.cli.boundary import warn
+    from motionedit.report.table import text_table
+
+    for warning in fit.warnings:
+        warn(warning)
+    click.echo(text_table(*fit.table), err=True)
+    for note in fit.notes:
+        click.echo(f"motionedit: {note}", err=True)

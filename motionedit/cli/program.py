@@ -11,10 +11,10 @@ from typing import Any, NoReturn
 
 import click
 
-from motionedit import __version__
 from motionedit.cli.boundary import Interrupted, run_guarded, show_unexpected
 from motionedit.cli.streams import take_every_letter
 from motionedit.cli.verbosity import verbosity_of, verbosity_options
+from motionedit.version import __version__
 
 # In the order of work. Help must not load the commands, so their first lines stand here; a test compares them.
 COMMANDS = {

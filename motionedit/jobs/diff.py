@@ -19,8 +19,8 @@ from motionedit.errors import (
     MotionEditError,
     UsageError,
 )
+from motionedit.jobs.batch.one_clip import read_task
 from motionedit.jobs.batch.plan import find_clips, folder_clips, refuse_missing, refuse_overwriting
-from motionedit.jobs.batch.run import read_task
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -52,6 +52,10 @@ class Worst:
         """Whether it is a difference at all."""
         return self.value > self.tolerance
 
+    def record(self) -> dict[str, Any]:
+        """Return the entry of the report."""
+        return {"value": self.value, "frame": self.frame, "joint": self.joint, "tolerance": self.tolerance}
+
 
 @dataclass(frozen=True)
 class Comparison:
@@ -81,8 +85,8 @@ class Comparison:
             "clip": self.name,
             "status": self.status,
             "message": self.message or None,
-            "position": self.position and vars(self.position),
-            "angle": self.angle and vars(self.angle),
+            "position": self.position and self.position.record(),
+            "angle": self.angle and self.angle.record(),
         }
 
 

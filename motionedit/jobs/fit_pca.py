@@ -17,7 +17,10 @@ from motionedit.core.pca.streaming import MOST_COMPONENTS
 from motionedit.core.skeleton_match import match_joints
 from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError, ModelError, MotionEditError, MotionEditErrors
-from motionedit.jobs.batch.run import ClipTask, atomic_write, clean_leftovers, read_task, values_in_order
+from motionedit.jobs.batch.files import atomic_write, clean_leftovers
+from motionedit.jobs.batch.one_clip import read_task
+from motionedit.jobs.batch.plan import ClipTask, refuse_overwriting
+from motionedit.jobs.batch.run import values_in_order
 from motionedit.jobs.clip import resolve
 from motionedit.jobs.normalize.normalization_file import NAME, Normalization, NormalizedClip, read_normalization
 from motionedit.spec.fit_pca import FitPcaSpec
@@ -28,8 +31,10 @@ if TYPE_CHECKING:
 
     from motionedit.core.motion import Motion
     from motionedit.core.pca.database import FittedModel
+    from motionedit.core.pca.fit import PrincipalComponents
+    from motionedit.core.pca.model import MotionModel
     from motionedit.core.skeleton import Skeleton
-    from motionedit.jobs.batch.run import RunOptions
+    from motionedit.jobs.batch.plan import RunOptions
     from motionedit.spec.load import LoadedSpec
 
 HEADINGS = ("component", "variance", "share %", "sum %")
@@ -45,29 +50,72 @@ class FitReport:
     notes: list[str]
 
 
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A model, and what is to be said of it."""
+
+    model: MotionModel
+    report: FitReport
+
+
+@dataclass(frozen=True)
+class Database:
+    """Normalized clips: what normalize says of them, a task for each, and what messages call the whole and its list."""
+
+    normalization: Normalization
+    tasks: Sequence[ClipTask]
+    label: str
+    list_label: str
+
+
 def run(folder: Path, output: Path, loaded: LoadedSpec[FitPcaSpec] | None, options: RunOptions) -> FitReport:
-    """Fit a model to the clips that a folder's normalization.json lists, and write it.
+    """Fit a model to the clips that a folder's normalization.json lists, and write it; see `fit`."""
+    database = database_in(folder)
+    sources = [task.source for task in database.tasks if task.source is not None]
+    refuse_overwriting([output], [*sources, folder / NAME, *(() if loaded is None else loaded.files)])
+    made = fit(database, loaded, options=options)
+    clean_leftovers([output.parent])
+    output.parent.mkdir(parents=True, exist_ok=True)
+    atomic_write(output, model_bytes(made.model))
+    return made.report
+
+
+def database_in(folder: Path) -> Database:
+    """Return the clips that a folder's normalization.json lists.
 
     Raises
     ------
     ModelError
-        There is no normalization, or nothing to learn from it.
+        There is no normalization, or it cannot be read.
+    """
+    normalization = read_normalization(folder)
+    paths = [folder / each.clip for each in normalization.clips]
+    tasks = [ClipTask(path, str(path), None, each.clip) for path, each in zip(paths, normalization.clips, strict=True)]
+    return Database(normalization, tasks, str(folder), str(folder / NAME))
+
+
+def fit(database: Database, loaded: LoadedSpec[FitPcaSpec] | None, *, options: RunOptions) -> Fit:
+    """Return a model of normalized clips.
+
+    Raises
+    ------
+    ModelError
+        There is nothing to learn from them.
     MotionEditErrors
         Clips that cannot be used.
     SpecError
         The spec names joints or a number of components that are not there.
     """
     spec = FitPcaSpec() if loaded is None else loaded.model
-    normalization = read_normalization(folder)
-    if len(normalization.clips) < 2:
-        count = len(normalization.clips)
-        raise ModelError(f"lists {count} clip; a PCA needs two or more", file=str(folder / NAME))
-    database = _database(folder, normalization, options)
-    first = next(database)
+    normalization, count = database.normalization, len(database.tasks)
+    if count < 2:
+        raise ModelError(f"lists {count} clip; a PCA needs two or more", file=database.list_label)
+    motions = _motions(database, options)
+    first = next(motions)
     try:
         fitted = build_model(
-            chain((first,), database),
-            len(normalization.clips),
+            chain((first,), motions),
+            count,
             timeline=normalization.timeline,
             travel=travel_joint(first.motion),
             up=axis_vector(normalization.up),
@@ -75,24 +123,24 @@ def run(folder: Path, output: Path, loaded: LoadedSpec[FitPcaSpec] | None, optio
             settings=FitSettings(
                 representation="centred" if spec.rotation == "centred" else "exponential",
                 root_weight=spec.root_weight,
-                excluded=_excluded(loaded, first, str(folder)),
+                excluded=_excluded(loaded, first, database.label),
                 components=ComponentCount(spec.components, spec.explained_variance),
             ),
             rules=normalization.rules,
         )
     except TooFewComponentsError as error:
-        raise _too_few(loaded, spec, len(normalization.clips), error.available) from None
+        raise _too_few(loaded, spec, count, error.available) from None
     except AllTheSameError as error:
-        raise ModelError(f"{error}: there is nothing to learn; give clips that differ", file=str(folder)) from error
-    clean_leftovers([output.parent])
-    output.parent.mkdir(parents=True, exist_ok=True)
-    atomic_write(output, model_bytes(fitted.model))
-    return _report(fitted, spec)
+        raise ModelError(f"{error}: there is nothing to learn; give clips that differ", file=database.label) from error
+    return Fit(fitted.model, _report(fitted, spec))
 
 
-def _database(folder: Path, normalization: Normalization, options: RunOptions) -> Iterator[DatabaseMotion]:
+def _motions(database: Database, options: RunOptions) -> Iterator[DatabaseMotion]:
     """Yield the clips one by one, none after one that cannot be used; all that cannot are named together at the end."""
-    items = [_Listed(folder / each.clip, each, normalization.timeline.frames) for each in normalization.clips]
+    frames = database.normalization.timeline.frames
+    items = [
+        _Listed(task, each, frames) for task, each in zip(database.tasks, database.normalization.clips, strict=True)
+    ]
     errors: list[MotionEditError] = []
     reference: Skeleton | None = None
     height = 0.0
@@ -104,8 +152,8 @@ def _database(folder: Path, normalization: Normalization, options: RunOptions) -
             reference = value.skeleton
             height = find_anatomy(reference).height
         try:
-            against = str(items[0].path)
-            joint_map = match_joints(reference, value.skeleton, height=height, label=str(item.path), against=against)
+            against = items[0].task.label
+            joint_map = match_joints(reference, value.skeleton, height=height, label=item.task.label, against=against)
         except ClipError as error:
             errors.append(error)
             continue
@@ -125,16 +173,16 @@ def _stem(relative: str) -> str:
 class _Listed:
     """A clip of the list, where it should be, and how many frames it should have."""
 
-    path: Path
+    task: ClipTask
     listed: NormalizedClip
     frames: int
 
 
 def _read(item: _Listed) -> Motion:
-    clip = read_task(ClipTask(item.path, str(item.path), None, item.listed.clip), lenient=False)
+    clip = read_task(item.task, lenient=False)
     if len(clip.motion) != item.frames:
         message = f"has {len(clip.motion)} frames, {NAME} says {item.frames}; run 'motionedit normalize' again"
-        raise ClipError(message, file=str(item.path))
+        raise ClipError(message, file=item.task.label)
     return clip.motion
 
 
@@ -153,45 +201,55 @@ def _too_few(loaded: LoadedSpec[FitPcaSpec] | None, spec: FitPcaSpec, clips: int
 
 
 def _report(fitted: FittedModel, spec: FitPcaSpec) -> FitReport:
-    model = fitted.model
-    pca = model.components
-    shares = pca.explained_variance_ratio
-    sums = np.cumsum(shares)
-    rows = [
-        (i + 1, float(variance), f"{100 * share:.2f}", f"{100 * total:.2f}")
-        for i, (variance, share, total) in enumerate(zip(pca.explained_variance, shares, sums, strict=True))
-    ]
-    warnings = [
-        f"{each.clip}: '{each.joint}' turns the other way round than in most clips ({each.degrees:.0f} degrees off); "
-        "if that is a capture defect, leave it out with exclude_joints"
-        for each in fitted.windings
-    ]
-    if spec.explained_variance is not None and sums[-1] < spec.explained_variance - 1e-9:
-        warnings.append(
-            f"the first {len(shares)} components explain {100 * sums[-1]:.2f} % of the variance, not "
-            f"{100 * spec.explained_variance:g} %; no more are kept of so many clips"
-        )
+    model, pca = fitted.model, fitted.model.components
     record = {
         "frames": model.timeline.frames,
         "frame_rate": model.timeline.frame_rate,
         "degrees_of_freedom": model.space.size,
         "explained_variance": pca.explained_variance,
-        "explained_variance_ratio": shares,
+        "explained_variance_ratio": pca.explained_variance_ratio,
         "database": [
             {"clip": clip.name, "coefficients": a} for clip, a in zip(model.clips, pca.coefficients, strict=True)
         ],
     }
-    notes = []
     if fitted.streamed is not None:
-        streamed = fitted.streamed
-        record["streamed"] = {"passes": streamed.passes, "residual": streamed.residual}
-        kept = f"the first {len(shares)} components"
-        if spec.components is None and spec.explained_variance is None:
-            kept += " (set components or explained_variance for another number)"
-        notes = [
-            (
-                f"{len(model.clips)} clips, streamed from a scratch file: {kept}, in {streamed.passes} passes, each to "
-                f"{streamed.residual:.0e} of the first's variance"
-            )
-        ]
-    return FitReport((HEADINGS, rows), record, warnings, notes)
+        record["streamed"] = {"passes": fitted.streamed.passes, "residual": fitted.streamed.residual}
+    return FitReport((HEADINGS, _rows(pca)), record, _warnings(fitted, spec), _notes(fitted, spec))
+
+
+def _rows(pca: PrincipalComponents) -> list[tuple[object, ...]]:
+    shares = pca.explained_variance_ratio
+    return [
+        (i + 1, float(variance), f"{100 * share:.2f}", f"{100 * total:.2f}")
+        for i, (variance, share, total) in enumerate(
+            zip(pca.explained_variance, shares, np.cumsum(shares), strict=True)
+        )
+    ]
+
+
+def _warnings(fitted: FittedModel, spec: FitPcaSpec) -> list[str]:
+    warnings = [
+        f"{each.clip}: '{each.joint}' turns the other way round than in most clips ({each.degrees:.0f} degrees off); "
+        "if that is a capture defect, leave it out with exclude_joints"
+        for each in fitted.windings
+    ]
+    shares = fitted.model.components.explained_variance_ratio
+    explained = float(np.cumsum(shares)[-1])
+    if spec.explained_variance is not None and explained < spec.explained_variance - 1e-9:
+        warnings.append(
+            f"the first {len(shares)} components explain {100 * explained:.2f} % of the variance, not "
+            f"{100 * spec.explained_variance:g} %; no more are kept of so many clips"
+        )
+    return warnings
+
+
+def _notes(fitted: FittedModel, spec: FitPcaSpec) -> list[str]:
+    """Return what is to be said of a database that was streamed: its components are found in passes."""
+    streamed, model = fitted.streamed, fitted.model
+    if streamed is None:
+        return []
+    kept = f"the first {len(model.components.explained_variance)} components"
+    if spec.components is None and spec.explained_variance is None:
+        kept += " (set components or explained_variance for another number)"
+    passes = f"in {streamed.passes} passes, each to {streamed.residual:.0e} of the first's variance"
+    return [f"{len(model.clips)} clips, streamed from a scratch file: {kept}, {passes}"]

@@ -7,7 +7,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from motionedit import __version__
+from motionedit.version import __version__
 
 SCHEMA = "motionedit/report/v1"
 # Enough for any comparison, and few enough that the last bits of two machines do not show.

@@ -1,15 +1,18 @@
-"""Load a spec: its file, the command line's overrides, and one report of everything that is wrong in it."""
+"""Load a spec: a file or a mapping, what changes it, and one report of everything that is wrong in it."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar, overload
+from typing import TYPE_CHECKING, Any, Generic, Literal, TypedDict, TypeVar, Unpack, overload
 
 from motionedit.dataclass import dataclass
 from motionedit.errors import MotionEditError, MotionEditErrors, SpecError
 from motionedit.spec import SPEC_COMMANDS, model_of, schema_name
 from motionedit.spec.faults import Fault, Keys, dotted
+from motionedit.spec.mapping_tree import NO_LINE, tree_of
 from motionedit.spec.overrides import apply_overrides
 from motionedit.spec.text_files import read_text
 from motionedit.spec.yaml_tree import Node, read_tree
@@ -28,6 +31,10 @@ Model_co = TypeVar("Model_co", bound="Document", covariant=True)
 _SCHEMA = re.compile(r"motionedit/([a-z-]+)/(v[0-9]+)")
 
 
+# What messages call a spec that is no file.
+_MAPPING = "spec"
+
+
 @dataclass(frozen=True)
 class LoadedSpec(Generic[Model_co]):
     """A spec and where it came from.
@@ -35,8 +42,10 @@ class LoadedSpec(Generic[Model_co]):
     Attributes
     ----------
     model : the command's spec
-    path, folder : Path
-        The file, and what paths inside it are relative to.
+    path : Path or None
+        The file; None where the spec is a mapping.
+    label : str
+        What messages call it.
     data : dict
         The plain spec with the overrides applied, keys in the file's order: for reports.
     tree : Node
@@ -44,67 +53,110 @@ class LoadedSpec(Generic[Model_co]):
     """
 
     model: Model_co
-    path: Path
-    folder: Path
+    path: Path | None
+    label: str
     data: dict[str, Any]
     tree: Node
 
     @property
     def files(self) -> tuple[Path, ...]:
         """The spec and all files it names: what an output depends on."""
-        return (self.path, *self.model.event_files)
+        own = () if self.path is None else (self.path,)
+        return (*own, *self.model.event_files)
 
     def error(self, keys: Sequence[str | int], message: str) -> SpecError:
         """Return an error at a key, with the line of the nearest key above it that the file has."""
-        return _located(Fault(message, tuple(keys)), self.tree, str(self.path))
+        return _located(Fault(message, tuple(keys)), self.tree, self.label)
 
     def has(self, keys: Sequence[str | int]) -> bool:
         """Return whether the spec gives the key."""
         return len(_way(self.tree, tuple(keys))) == len(keys) + 1
 
 
+class Overrides(TypedDict, total=False):
+    """What changes a spec after it was read.
+
+    `overrides` are ``KEY=VALUE`` of each `--set`, applied in their order; `events` are frames of events by name, which
+    take the place of the spec's own.
+    """
+
+    overrides: Sequence[str]
+    events: Mapping[str, int]
+
+
+Spec = Path | Mapping[str, Any]
+
+
+@overload
+def load_spec(spec: Spec, command: Literal["normalize"], **changes: Unpack[Overrides]) -> LoadedSpec[NormalizeSpec]: ...
+@overload
+def load_spec(spec: Spec, command: Literal["fit-pca"], **changes: Unpack[Overrides]) -> LoadedSpec[FitPcaSpec]: ...
+@overload
+def load_spec(spec: Spec, command: Literal["edit-pc"], **changes: Unpack[Overrides]) -> LoadedSpec[EditPcSpec]: ...
 @overload
 def load_spec(
-    path: Path, command: Literal["normalize"], *, overrides: Sequence[str] = ()
-) -> LoadedSpec[NormalizeSpec]: ...
-@overload
-def load_spec(path: Path, command: Literal["fit-pca"], *, overrides: Sequence[str] = ()) -> LoadedSpec[FitPcaSpec]: ...
-@overload
-def load_spec(path: Path, command: Literal["edit-pc"], *, overrides: Sequence[str] = ()) -> LoadedSpec[EditPcSpec]: ...
-@overload
-def load_spec(
-    path: Path, command: Literal["edit-prioritized"], *, overrides: Sequence[str] = ()
+    spec: Spec, command: Literal["edit-prioritized"], **changes: Unpack[Overrides]
 ) -> LoadedSpec[EditPrioritizedSpec]: ...
-def load_spec(path: Path, command: str, *, overrides: Sequence[str] = ()) -> LoadedSpec[Any]:
-    """Return a command's spec out of a file.
+def load_spec(spec: Spec, command: str, **changes: Unpack[Overrides]) -> LoadedSpec[Any]:
+    """Return a command's spec out of a file, or of a mapping.
 
     Parameters
     ----------
+    spec : Path or mapping
+        Paths in a file are relative to it, those in a mapping to the working folder. A mapping may leave out `schema`;
+        it is not changed.
     command : str
         The command that wants it: a spec of another one is refused.
-    overrides : sequence of str
-        ``KEY=VALUE`` of each `--set`, applied in their order.
 
     Raises
     ------
     MotionEditErrors
         All faults of the spec, sorted by line.
     """
-    file = str(path)
-    tree, faults = _tree(path, command)
-    tree, found = apply_overrides(tree, overrides)
+    path = spec if isinstance(spec, Path) else None
+    label = _MAPPING if path is None else str(path)
+    tree, faults = _tree_of_mapping(spec, command) if isinstance(spec, Mapping) else _tree(spec, command)
+    # What no spec can say is told once, not again as a value that is missing.
+    unsayable = {fault.keys for fault in faults} if path is None else set()
+    tree, found = _with_events(tree, changes.get("events", {}))
+    faults += found
+    tree, found = apply_overrides(tree, changes.get("overrides", ()))
     faults += found
     data = tree.plain()
     if other := _other_command(data, command):
         # A spec of another command: its other keys would all be faults, and none of them would help.
-        raise _together([Fault(other, ("schema",))], tree, file)
+        raise _together([Fault(other, ("schema",))], tree, label)
     if "schema" not in data:
         faults.append(Fault(f"is missing; the first line is schema: {schema_name(command)}", ("schema",)))
-    model, found = _validated(data, command, path)
-    faults += found
+    model, found = _validated(data, command, Path() if path is None else path.parent)
+    faults += [fault for fault in found if fault.keys not in unsayable]
     if faults or model is None:
-        raise _together(faults, tree, file)
-    return LoadedSpec(model, path, path.parent, data, tree)
+        raise _together(faults, tree, label)
+    return LoadedSpec(model, path, label, data, tree)
+
+
+def _tree_of_mapping(spec: Mapping[str, Any], command: str) -> tuple[Node, list[Fault]]:
+    tree, faults = tree_of(spec)
+    if "schema" not in tree.value:
+        tree.value = {"schema": Node(schema_name(command), NO_LINE), **tree.value}
+        tree.key_lines["schema"] = NO_LINE
+    return tree, faults
+
+
+def _with_events(tree: Node, events: Mapping[str, int]) -> tuple[Node, list[Fault]]:
+    """Return the tree with frames of events in place of its own, and the faults of those that are none."""
+    own = tree.child("events")
+    children = dict(own.value) if own is not None and isinstance(own.value, dict) else {}
+    faults: list[Fault] = []
+    for name, frame in events.items():
+        children[name], found = tree_of(frame, source=f"events.{name}")
+        faults += [Fault(fault.message, file=f"events.{name}") for fault in found]
+    if not events:
+        return tree, faults
+    line = NO_LINE if own is None else own.line
+    lines = dict.fromkeys(children, line) | ({} if own is None else own.key_lines)
+    changed = Node(children, line, key_lines=lines)
+    return replace(tree, value={**tree.value, "events": changed}, key_lines={"events": line, **tree.key_lines}), faults
 
 
 def _tree(path: Path, command: str) -> tuple[Node, list[Fault]]:
@@ -121,7 +173,7 @@ def _tree(path: Path, command: str) -> tuple[Node, list[Fault]]:
             faults.append(Fault(f"is not a mapping of keys; {begin}", line=tree.line))
             tree = None
     if tree is None or tree.value is None:
-        raise _together(faults, Node({}, 0), str(path))
+        raise _together(faults, Node({}, NO_LINE), str(path))
     return tree, faults
 
 
@@ -134,7 +186,7 @@ def _other_command(data: dict[str, Any], command: str) -> str | None:
     return f"this is a spec of {match[1]}; {command} wants {schema_name(command)}"
 
 
-def _validated(data: dict[str, Any], command: str, path: Path) -> tuple[Document | None, list[Fault]]:
+def _validated(data: dict[str, Any], command: str, folder: Path) -> tuple[Document | None, list[Fault]]:
     # Imported here: the time it takes is not spent on a file that cannot be read.
     from pydantic import ValidationError
 
@@ -144,7 +196,7 @@ def _validated(data: dict[str, Any], command: str, path: Path) -> tuple[Document
     events = data.get("events", {})
     # With a model at hand, edit-pc may mean an event that only the model knows.
     known = frozenset(events) if isinstance(events, dict) and not model.knows_other_events else None
-    context = Context(path.parent, "" if path.parent == Path() else str(path.parent), known)
+    context = Context(folder, "" if folder == Path() else str(folder), known)
     try:
         return model.model_validate(data, context=context), []
     except ValidationError as error:

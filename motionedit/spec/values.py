@@ -20,23 +20,9 @@ from motionedit.spec.scalars import (
     vector,
     whole,
 )
-from motionedit.spec.times import Duration, Interval, Time
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
-
-__all__ = [
-    "UNITS",
-    "Duration",
-    "EffectorSpec",
-    "Interval",
-    "OrientationSpec",
-    "Recruit",
-    "Time",
-    "Tolerance",
-    "Unit",
-    "read_keys",
-]
 
 # Metres a unit. `cmu` is the unit of the CMU motion capture files: 1/0.45 inch.
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "cmu": 0.0254 / 0.45}

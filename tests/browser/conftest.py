@@ -8,7 +8,7 @@ import pytest
 
 HERE = Path(__file__).parent
 # The made-up player of the unit tests; and this folder, for whoever collects it alone.
-sys.path[:0] = [str(HERE), str(HERE.parent / "unit" / "report")]
+sys.path[:0] = [str(HERE), str(HERE.parent / "unit")]
 
 from devtools import Page, find_chromium  # noqa: E402  found by the line above
 from mannequin import bvh_text  # noqa: E402  the same

@@ -209,6 +209,16 @@ def test_one_clip_is_normalized_with_a_warning_but_is_no_database(run, configs, 
     assert "lists 1 clip; a PCA needs two or more" in fit.stderr
 
 
+def test_a_fit_overwrites_none_of_its_inputs(run, configs, data, tmp_path):
+    assert run("normalize", data, "-s", configs / "golf-normalize.yaml", "-o", "n").exit_code == 0
+    for name in ("n/normalization.json", "n/swing01.bvh"):
+        before = (tmp_path / name).read_bytes()
+        fit = run("fit-pca", "n", "-o", name)
+        assert fit.exit_code == 2
+        assert "an input is never overwritten" in fit.stderr
+        assert (tmp_path / name).read_bytes() == before
+
+
 def test_many_clips_are_streamed_and_the_fit_says_so(run, configs, data, tmp_path, monkeypatch):
     run("normalize", data, "-s", configs / "golf-normalize.yaml", "-o", "n")
     held = run("fit-pca", "n", "-o", "held.npz", "--report", "held.json")

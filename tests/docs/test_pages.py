@@ -117,10 +117,10 @@ def test_examples_in_python_run(page, root, tmp_path, monkeypatch):
         exec(compile(example, str(page), "exec"), {})  # noqa: S102
 
 
-def test_the_example_of_the_readme_turns_the_head_and_nothing_else(root, tmp_path, monkeypatch):
+def test_the_example_below_the_face_turns_the_head_and_nothing_else(root, tmp_path, monkeypatch):
     monkeypatch.chdir(sessions.working_copy(root, tmp_path))
-    (example,) = blocks(root / "README.md", "python")
-    exec(compile(example, "README.md", "exec"), {})  # noqa: S102
+    example = blocks(root / "docs" / "library.md", "python")[-1]
+    exec(compile(example, "library.md", "exec"), {})  # noqa: S102
     code, lines = sessions.run("motionedit diff data/walk.bvh walk-looking-left.bvh", tmp_path)
     assert code == 3
     assert "turned by 10 degrees" in lines[0]

@@ -10,7 +10,7 @@ from lab import DIRECTIONS, Lab, effector_path, jerk
 
 from motionedit.core.bvh import parse_clip, read_clip, unedited_bytes
 from motionedit.errors import BvhError
-from motionedit.jobs.batch.run import RunOptions
+from motionedit.jobs.batch.plan import RunOptions
 from motionedit.jobs.normalize import job as normalize
 from motionedit.spec.load import load_spec
 

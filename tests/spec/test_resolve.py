@@ -7,6 +7,7 @@ from scipy.spatial.transform import Rotation
 from motionedit.core.skeleton import EndSite, Skeleton
 from motionedit.errors import SpecError
 from motionedit.jobs.clip import resolve
+from motionedit.jobs.clip.events import explicit_events
 from motionedit.jobs.clip.resolve import Place
 from motionedit.spec.values import EffectorSpec, parse_orientation
 
@@ -200,31 +201,31 @@ events:
     ],
 )
 def test_a_clip_of_a_table_is_named_by_path_or_stem(clip, hit, load):
-    found = resolve.explicit_events(load(EVENTS, "normalize"), clip)
+    found = explicit_events(load(EVENTS, "normalize"), clip)
     assert found == ({"every": 7} if hit is None else {"every": 7, "hit": hit})
 
 
 def test_a_stem_that_two_clips_share_is_refused(load):
     loaded = load(EVENTS, "normalize")
     clips = ("a/swing01.bvh", "b/swing01.bvh", "c/swing02.bvh")
-    found = refusal(resolve.explicit_events, loaded, clips[0], others=clips)
+    found = refusal(explicit_events, loaded, clips[0], others=clips)
     assert found == (
         "spec.yaml:6: events.hit.frames.swing01: 'swing01' may be a/swing01.bvh or b/swing01.bvh; give the clip's path"
     )
-    assert resolve.explicit_events(loaded, clips[2], others=clips) == {"every": 7}
+    assert explicit_events(loaded, clips[2], others=clips) == {"every": 7}
 
 
 def test_a_name_that_is_another_clip_s_whole_path_is_not_this_one_s(load):
     clips = ("swing01.bvh", "b/swing01.bvh")
     loaded = load(EVENTS, "normalize")
-    assert resolve.explicit_events(loaded, clips[0], others=clips) == {"every": 7, "hit": 1}
-    assert resolve.explicit_events(loaded, clips[1], others=clips) == {"every": 7}
+    assert explicit_events(loaded, clips[0], others=clips) == {"every": 7, "hit": 1}
+    assert explicit_events(loaded, clips[1], others=clips) == {"every": 7}
 
 
 def test_an_event_outside_its_clip_is_refused(load):
     loaded = load(EVENTS, "normalize")
-    assert resolve.explicit_events(loaded, "swing01.bvh", frames=8) == {"every": 7, "hit": 1}
-    found = refusal(resolve.explicit_events, loaded, "swing01.bvh", frames=7)
+    assert explicit_events(loaded, "swing01.bvh", frames=8) == {"every": 7, "hit": 1}
+    found = refusal(explicit_events, loaded, "swing01.bvh", frames=7)
     assert found == "spec.yaml:3: events.every: frame 7 is outside swing01.bvh, whose frames are 0 to 6"
-    found = refusal(resolve.explicit_events, load("events: {hit: {frames: {a: 7}}}", "normalize"), "a.bvh", frames=7)
+    found = refusal(explicit_events, load("events: {hit: {frames: {a: 7}}}", "normalize"), "a.bvh", frames=7)
     assert found == "spec.yaml:2: events.hit.frames.a: frame 7 is outside a.bvh, whose frames are 0 to 6"

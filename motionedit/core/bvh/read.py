@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -44,12 +45,20 @@ class Clip:
         The file's own bytes and their layout.
     warnings : tuple of str
         What leniency accepted, one line each.
+    source : Path or None
+        The file that it, or the clip that it was made from, was read from; None where there is none.
     """
 
     label: str
     motion: Motion
     text: BvhText
     warnings: tuple[str, ...] = ()
+    source: Path | None = None
+
+    def __repr__(self) -> str:
+        # Not the bytes of the file and all its numbers, which would fill a screen.
+        frames, joints = len(self.motion), len(self.motion.skeleton)
+        return f"<Clip {self.label!r}: {frames} frames, {joints} joints, {self.motion.frame_rate:.4g} Hz>"
 
     @cached_property
     def values(self) -> FloatArray:
@@ -93,7 +102,7 @@ def read_clip(path: Path, *, label: str | None = None, lenient: bool = False) ->
         data = path.read_bytes()
     except OSError as error:
         raise BvhError(f"cannot be read: {error.strerror or error}", file=name) from error
-    return parse_clip(data, label=name, lenient=lenient)
+    return replace(parse_clip(data, label=name, lenient=lenient), source=path)
 
 
 def parse_clip(data: bytes, *, label: str, lenient: bool = False) -> Clip:

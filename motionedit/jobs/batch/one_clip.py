@@ -8,7 +8,7 @@ from dataclasses import field, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
 from motionedit.dataclass import dataclass
-from motionedit.errors import ClipError, MotionEditError, MotionEditErrors
+from motionedit.errors import ClipError, MotionEditError
 from motionedit.jobs.batch.files import atomic_write
 
 if TYPE_CHECKING:
@@ -72,18 +72,16 @@ class Done:
 class RunOne:
     """All that is done to one clip, as a worker runs it."""
 
-    work: Work
     options: RunOptions
 
-    def __call__(self, task: ClipTask) -> Done:
+    def __call__(self, pair: tuple[ClipTask, Work]) -> Done:
         """Return what became of a clip; with -vv an error that is no user's is raised, to show its place."""
+        task, work = pair
         start = time.perf_counter()
         try:
-            done = self._run(task)
-        except MotionEditErrors as group:
-            done = Done(errors=flatten(group))
+            done = self._run(task, work)
         except MotionEditError as error:
-            done = Done(errors=(error,))
+            done = Done(errors=error.errors)
         except Exception as error:
             if self.options.verbosity > 1:
                 raise
@@ -91,9 +89,9 @@ class RunOne:
             done = Done(errors=(ClipError(" ".join(message.split()), file=task.label),))
         return replace(done, seconds=time.perf_counter() - start)
 
-    def _run(self, task: ClipTask) -> Done:
+    def _run(self, task: ClipTask, work: Work) -> Done:
         clip = read_task(task, lenient=self.options.lenient)
-        outcome = self.work(clip, task)
+        outcome = work(clip, task)
         warnings = (*clip.warnings, *outcome.warnings)
         content = outcome.content
         if content is None or self.options.dry_run:
@@ -104,14 +102,21 @@ class RunOne:
         if isinstance(content, bytes) and self.options.verify:
             record = {**record, "verify": _verify(clip, content, outcome.motion or clip.motion)}
         if task.output is not None:
-            _write(task.output, content)
+            write_file(task.output, content)
             content = None
         if task.page is not None and outcome.page is not None:
-            _write(task.page, outcome.page())
+            write_file(task.page, outcome.page())
         return Done(Outcome(content, record, outcome.status, warnings), written=True)
 
 
-def _write(path: Path, content: bytes | Iterable[bytes | memoryview]) -> None:
+def write_file(path: Path, content: bytes | Iterable[bytes | memoryview]) -> None:
+    """Write a file whole or not at all.
+
+    Raises
+    ------
+    ClipError
+        It cannot be written.
+    """
     try:
         atomic_write(path, content)
     except OSError as error:
@@ -119,7 +124,7 @@ def _write(path: Path, content: bytes | Iterable[bytes | memoryview]) -> None:
 
 
 def read_task(task: ClipTask, *, lenient: bool) -> Clip:
-    """Return the clip of a task, from its file or from standard input.
+    """Return the clip of a task: the one it holds, or that of its file or of standard input.
 
     Raises
     ------
@@ -130,20 +135,14 @@ def read_task(task: ClipTask, *, lenient: bool) -> Clip:
     """
     from motionedit.core.bvh import parse_clip, read_clip
 
+    if task.clip is not None:
+        return task.clip
     try:
         if task.source is None:
             return parse_clip(sys.stdin.buffer.read(), label=task.label, lenient=lenient)
         return read_clip(task.source, label=task.label, lenient=lenient)
     except OSError as error:
         raise ClipError(f"cannot be read: {error.strerror or error}", file=task.label) from error
-
-
-def flatten(group: ExceptionGroup[MotionEditError]) -> tuple[MotionEditError, ...]:
-    """Return the errors of a group and of the groups in it, in order."""
-    errors: list[MotionEditError] = []
-    for error in group.exceptions:
-        errors.extend(flatten(error) if isinstance(error, ExceptionGroup) else (error,))
-    return tuple(errors)
 
 
 def _verify(clip: Clip, content: bytes, motion: Motion) -> dict[str, Any]:

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from contextlib import AbstractContextManager
 
+    from motionedit.core.bvh import Clip
+
 STDIN_LABEL = "<stdin>"
 
 
@@ -90,6 +92,8 @@ class ClipTask:
         With `update`: the output is newer than all it depends on, and stays as it is; and so is its page.
     page : Path or None
         With `preview`: the page next to the output.
+    clip : Clip or None
+        The clip itself, where it is in memory already: then nothing is read.
     """
 
     source: Path | None
@@ -98,6 +102,7 @@ class ClipTask:
     relative: str
     current: bool = False
     page: Path | None = None
+    clip: Clip | None = None
 
     @property
     def outputs(self) -> list[Path]:

@@ -14,33 +14,17 @@ from motionedit.errors import (
     EXIT_USAGE,
     ClipError,
     MotionEditError,
-    MotionEditErrors,
 )
-from motionedit.jobs.batch.files import atomic_write, clean_leftovers
-from motionedit.jobs.batch.one_clip import Done, Outcome, RunOne, Work, flatten, read_task
-from motionedit.jobs.batch.plan import ClipTask, RunOptions, find_clips, no_progress, plan
+from motionedit.jobs.batch.files import clean_leftovers
+from motionedit.jobs.batch.one_clip import Done, RunOne
+from motionedit.jobs.batch.plan import no_progress
 from motionedit.jobs.batch.pool import results_in_order
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Sequence
 
-
-__all__ = [
-    "BatchResult",
-    "ClipTask",
-    "Outcome",
-    "RunOptions",
-    "Work",
-    "atomic_write",
-    "clean_leftovers",
-    "find_clips",
-    "flatten",
-    "map_tasks",
-    "plan",
-    "read_task",
-    "run_batch",
-    "values_in_order",
-]
+    from motionedit.jobs.batch.one_clip import Work
+    from motionedit.jobs.batch.plan import ClipTask, RunOptions
 
 Item = TypeVar("Item")
 Value = TypeVar("Value")
@@ -69,8 +53,8 @@ class BatchResult:
         Wall time of each record's clip.
     details : list of (str, tuple of str)
         For --dry-run: a line for each clip, and the lines that belong to it.
-    content : bytes or None
-        The clip that goes to standard output.
+    contents : list of (bytes or None)
+        The clips of the records that have no output: one for standard output, or those that a caller takes.
     current : int
         How many outputs --update left alone.
     """
@@ -82,26 +66,36 @@ class BatchResult:
     exit_code: int
     seconds: list[float] = field(default_factory=list)
     details: list[tuple[str, tuple[str, ...]]] = field(default_factory=list)
-    content: bytes | None = None
+    contents: list[bytes | None] = field(default_factory=list)
     current: int = 0
+
+    @property
+    def content(self) -> bytes | None:
+        """The clip that goes to standard output."""
+        return next((content for content in self.contents if content is not None), None)
 
 
 def run_batch(tasks: Sequence[ClipTask], work: Work, options: RunOptions) -> BatchResult:
-    """Read, work on, verify and write every clip that is not current.
+    """Do the same work on every clip; see `run_each`."""
+    return run_each([(task, work) for task in tasks], options)
+
+
+def run_each(pairs: Sequence[tuple[ClipTask, Work]], options: RunOptions) -> BatchResult:
+    """Read, work on, verify and write every clip that is not current, each with its own work.
 
     A clip fails alone; without `keep_going` the clips after a failed one are not begun. Where every clip fails
     by a fault of the spec, the exit code is that of a spec error.
     """
     from motionedit.core import bvh as _bvh  # noqa: F401  loaded once here, not in every forked worker
 
-    waiting = [task for task in tasks if not task.current]
+    waiting = [task for task, _ in pairs if not task.current]
     folders = [task.output.parent for task in waiting if task.output is not None]
-    run_one = RunOne(work, replace(options, progress=no_progress))
+    run_one = RunOne(replace(options, progress=no_progress))
     done: list[Done] = []
     try:
         if not options.dry_run:
             clean_leftovers(folders)
-        items = [_absolute(task) for task in waiting] if options.scheduler else waiting
+        items = [(_absolute(task) if options.scheduler else task, work) for task, work in pairs if not task.current]
         results = results_in_order(
             run_one, items, options=options, is_last=lambda one: not options.keep_going and _has_failed(one)
         )
@@ -113,7 +107,7 @@ def run_batch(tasks: Sequence[ClipTask], work: Work, options: RunOptions) -> Bat
         # Workers that were ended in the middle of a file could not clean up themselves.
         if not options.dry_run:
             clean_leftovers(folders)
-    return _collect(waiting, done, len(tasks), options)
+    return _collect(waiting, done, len(pairs), options)
 
 
 def map_tasks(
@@ -149,11 +143,8 @@ class _Guarded:
     def __call__(self, item: Any) -> Any:  # noqa: ANN401  any function of map_tasks
         try:
             return self.function(item)
-        except MotionEditErrors as group:
-            errors = flatten(group)
-            return errors[0] if len(errors) == 1 else ClipError("; ".join(map(str, errors)))
         except MotionEditError as error:
-            return error
+            return error.errors[0] if len(error.errors) == 1 else ClipError("; ".join(map(str, error.errors)))
         except OSError as error:
             return ClipError(error.strerror or str(error), file=error.filename and str(error.filename))
 
@@ -183,7 +174,7 @@ def _collect(waiting: Sequence[ClipTask], done: Sequence[Done], total: int, opti
         exit_code=_exit_code(waiting, done, strict=options.strict),
         seconds=[one.seconds for _, one in pairs],
         details=[(_heading(task), one.outcome.details) for task, one in pairs if not one.errors],
-        content=next((one.outcome.content for _, one in pairs if isinstance(one.outcome.content, bytes)), None),
+        contents=[one.outcome.content if isinstance(one.outcome.content, bytes) else None for _, one in pairs],
         current=total - len(waiting),
     )
 

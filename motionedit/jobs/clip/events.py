@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,11 +12,51 @@ from motionedit.core.timeline.events import Quantity, Search, find_event
 from motionedit.jobs.clip import resolve
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Collection, Mapping
 
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.jobs.clip.resolve import Place
+    from motionedit.spec.document import Document
     from motionedit.spec.events import DetectRule, EventSpec
+    from motionedit.spec.load import LoadedSpec
+
+
+def explicit_events(
+    loaded: LoadedSpec[Document], relative: str, *, others: Collection[str] = (), frames: int | None = None
+) -> dict[str, int]:
+    """Return the frames that the spec itself gives for a clip's events.
+
+    Parameters
+    ----------
+    relative : str
+        The clip's path below the given folder, or its name.
+    others : collection of str
+        The same of all clips of the run, so that a stem that two of them share is refused.
+    frames : int, optional
+        Number of frames of the clip, to refuse an event outside it.
+
+    Raises
+    ------
+    SpecError
+        Where a stem is not unique, or a frame is outside the clip.
+    """
+    found: dict[str, int] = {}
+    for name, event in loaded.model.events.items():
+        if event.frames is None:
+            continue
+        keys: tuple[str, ...] = ("events", name, "frames")
+        value = event.frames.every
+        if value is None:
+            place = resolve.Place(loaded, keys, relative)
+            key = _clip_key(event.frames.by_clip, relative, others, place)
+            if key is None:
+                continue
+            value, keys = event.frames.by_clip[key], (*keys, key)
+        if frames is not None and value >= frames:
+            place = resolve.Place(loaded, ("events", name), relative).at(*keys[2:])
+            raise place.error(f"frame {value} is outside {relative}, whose frames are 0 to {frames - 1}")
+        found[name] = value
+    return found
 
 
 def event_frames(
@@ -84,3 +125,38 @@ def _found(rule: DetectRule, facts: ClipFacts, place: Place, *, events: Mapping[
 def _quantity(rule: DetectRule) -> Quantity:
     quantities: dict[str, Quantity] = {"height": "height", "speed": "speed", "distance": "distance"}
     return quantities[rule.measure]
+
+
+def _clip_key(by_clip: Mapping[str, int], relative: str, others: Collection[str], place: Place) -> str | None:
+    """Return the key that means a clip: its path or its name, each with or without .bvh."""
+    path = _posix(relative)
+    keys = {_posix(key): key for key in by_clip}
+    for whole_path in (path, _without_suffix(path)):
+        if whole_path in keys:
+            return keys[whole_path]
+    for name in _names(path):
+        if name not in keys:
+            continue
+        paths = [_posix(other) for other in others if _posix(other) != path]
+        if any(name in (other, _without_suffix(other)) for other in paths):
+            # It is the whole path of another clip.
+            return None
+        twins = [other for other in paths if name in _names(other)]
+        if twins:
+            message = f"'{keys[name]}' may be {path} or {twins[0]}; give the clip's path"
+            raise place.at(keys[name]).error(message)
+        return keys[name]
+    return None
+
+
+def _names(path: str) -> tuple[str, str]:
+    name = PurePosixPath(path).name
+    return name, _without_suffix(name)
+
+
+def _posix(path: str) -> str:
+    return str(PurePosixPath(path.replace("\\", "/")))
+
+
+def _without_suffix(path: str) -> str:
+    return path[:-4] if path.casefold().endswith(".bvh") else path

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -17,6 +16,7 @@ if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
     from motionedit.core.bvh import Clip
     from motionedit.core.kinematics import WorldPoses
+    from motionedit.core.motion import Motion
     from motionedit.core.timeline.alignment import Alignment
 
 
@@ -26,12 +26,30 @@ Line = Literal["hips", "feet"]
 SIDE_BY_SIDE = 0.82
 
 
+class Poses:
+    """World transforms of a motion: made when they are first asked for, and anew after they were forgotten."""
+
+    def __init__(self, motion: Motion) -> None:
+        self._motion = motion
+        self._made: WorldPoses | None = None
+
+    def get(self) -> WorldPoses:
+        """Return the world transforms of all frames."""
+        if self._made is None:
+            self._made = kinematics.forward(self._motion)
+        return self._made
+
+    def forget(self) -> None:
+        """Give back their memory: for a long clip twice that of its file."""
+        self._made = None
+
+
 @dataclass(frozen=True, eq=False)
 class ClipFacts:
     """A clip and what was found in it.
 
     `up` is the signed unit axis (3,), `travel` the joint that carries the travel, `first` the first frame after a rest
-    pose.
+    pose, `world` what holds the world transforms.
     """
 
     clip: Clip
@@ -39,15 +57,16 @@ class ClipFacts:
     up: FloatArray
     travel: int
     first: int
+    world: Poses
 
-    @cached_property
+    @property
     def poses(self) -> WorldPoses:
-        """World transforms of all frames; made anew where they were forgotten."""
-        return kinematics.forward(self.clip.motion)
+        """World transforms of all frames."""
+        return self.world.get()
 
     def forget_poses(self) -> None:
-        """Give back the memory of `poses`: for a long clip twice that of its file."""
-        vars(self).pop("poses", None)
+        """Give back the memory of `poses` until they are asked for again."""
+        self.world.forget()
 
     @property
     def last(self) -> int:
@@ -91,10 +110,9 @@ class ClipFacts:
 def facts_of(clip: Clip, *, up: str = "auto", keep_rest_pose: bool = False) -> ClipFacts:
     """Return a clip's facts; `up` is ``auto`` or an axis' name such as ``y`` or ``-z``, which is taken as given."""
     motion = clip.motion
-    poses = kinematics.forward(motion)
+    world = Poses(motion)
+    poses = world.get()
     anatomy = find_anatomy(motion.skeleton, poses=poses)
     axis = ground.find_up(motion, poses, anatomy) if up == "auto" else ground.axis_vector(up)
     first = 0 if keep_rest_pose else ground.rest_pose_frames(motion, anatomy)
-    facts = ClipFacts(clip, anatomy, axis, ground.travel_joint(motion), min(first, len(motion) - 1))
-    vars(facts)["poses"] = poses
-    return facts
+    return ClipFacts(clip, anatomy, axis, ground.travel_joint(motion), min(first, len(motion) - 1), world)

@@ -21,9 +21,10 @@ class Faults:
     errors: list[MotionEditError] = field(default_factory=list)
 
     def add(self, error: MotionEditError) -> None:
-        """Keep an error, unless its place has one."""
-        if (error.file, error.line, error.key) not in [(one.file, one.line, one.key) for one in self.errors]:
-            self.errors.append(error)
+        """Keep an error, or each of a group, unless its place has one."""
+        for found in error.errors:
+            if (found.file, found.line, found.key) not in [(one.file, one.line, one.key) for one in self.errors]:
+                self.errors.append(found)
 
     def get(self, look: Callable[[], Found], *, otherwise: Found) -> Found:
         """Return what `look` finds; where it raises, keep the error and return the stand-in."""

@@ -1,8 +1,7 @@
-"""What a spec names, found in a clip: joints, effectors, frames, events; each error with the spec's line."""
+"""What a spec names, found in a clip: joints, effectors, frames; each error with the spec's line."""
 
 from __future__ import annotations
 
-from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -14,13 +13,11 @@ from motionedit.dataclass import dataclass
 from motionedit.spec.faults import did_you_mean, listed
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from motionedit.core.arrays import FloatArray
     from motionedit.core.skeleton import Skeleton
     from motionedit.errors import MotionEditError
-    from motionedit.spec.document import Document
-    from motionedit.spec.load import LoadedSpec
     from motionedit.spec.times import Interval, Time
     from motionedit.spec.values import EffectorSpec, OrientationSpec
 
@@ -33,6 +30,20 @@ class Source(Protocol):
 
     def error(self, keys: Sequence[str | int], message: str) -> MotionEditError:
         """Return an error at a key."""
+
+
+class Where(Protocol):
+    """Where a name stands that is looked for in a clip: a key of a spec, or an option of the command line."""
+
+    @property
+    def clip(self) -> str:
+        """The clip's name in messages."""
+
+    def at(self, *keys: str | int) -> Where:
+        """Return the place of a key below this one."""
+
+    def error(self, message: str) -> MotionEditError:
+        """Return an error at this place."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +68,7 @@ class Place:
         return self.loaded.error(self.keys, message)
 
 
-def joint(name: str, skeleton: Skeleton, place: Place) -> int:
+def joint(name: str, skeleton: Skeleton, place: Where) -> int:
     """Return the index of the joint of that name.
 
     Raises
@@ -77,12 +88,12 @@ def joint(name: str, skeleton: Skeleton, place: Place) -> int:
     raise place.error(f"no joint '{name}' in {place.clip}; {hint or f'its joints are {listed(names)}'}")
 
 
-def joints(names: Sequence[str], skeleton: Skeleton, place: Place) -> tuple[int, ...]:
+def joints(names: Sequence[str], skeleton: Skeleton, place: Where) -> tuple[int, ...]:
     """Return the indices of the joints of those names; `place` is the list's."""
     return tuple(joint(name, skeleton, place.at(i)) for i, name in enumerate(names))
 
 
-def effector(spec: EffectorSpec, skeleton: Skeleton, place: Place) -> Effector:
+def effector(spec: EffectorSpec, skeleton: Skeleton, place: Where) -> Effector:
     """Return the point of the skeleton that an effector names.
 
     Raises
@@ -112,7 +123,7 @@ def orientation(spec: OrientationSpec) -> FloatArray:
     return rot.exp(np.radians(values)) if spec.kind == "rotation_vector" else rot.normalize(values)
 
 
-def frame(time: Time, place: Place, *, frames: int, frame_time: float, events: Mapping[str, float]) -> int:
+def frame(time: Time, place: Where, *, frames: int, frame_time: float, events: Mapping[str, float]) -> int:
     """Return the frame of a time in a clip.
 
     Raises
@@ -127,7 +138,7 @@ def frame(time: Time, place: Place, *, frames: int, frame_time: float, events: M
 
 
 def frame_range(
-    interval: Interval, place: Place, *, frames: int, frame_time: float, events: Mapping[str, float]
+    interval: Interval, place: Where, *, frames: int, frame_time: float, events: Mapping[str, float]
 ) -> tuple[int, int]:
     """Return the first and last frame of an interval in a clip, with the errors of `frame`."""
     try:
@@ -176,76 +187,3 @@ def recruited_joints(
             root = skeleton.names[0]
             raise place.at(i).error(f"only the root has a position to recruit: {root}.position, not {name}")
     return tuple(found), translation
-
-
-def explicit_events(
-    loaded: LoadedSpec[Document], relative: str, *, others: Collection[str] = (), frames: int | None = None
-) -> dict[str, int]:
-    """Return the frames that the spec itself gives for a clip's events.
-
-    Parameters
-    ----------
-    relative : str
-        The clip's path below the given folder, or its name.
-    others : collection of str
-        The same of all clips of the run, so that a stem that two of them share is refused.
-    frames : int, optional
-        Number of frames of the clip, to refuse an event outside it.
-
-    Raises
-    ------
-    SpecError
-        Where a stem is not unique, or a frame is outside the clip.
-    """
-    found: dict[str, int] = {}
-    for name, event in loaded.model.events.items():
-        if event.frames is None:
-            continue
-        keys: tuple[str, ...] = ("events", name, "frames")
-        value = event.frames.every
-        if value is None:
-            place = Place(loaded, keys, relative)
-            key = _clip_key(event.frames.by_clip, relative, others, place)
-            if key is None:
-                continue
-            value, keys = event.frames.by_clip[key], (*keys, key)
-        if frames is not None and value >= frames:
-            place = Place(loaded, ("events", name), relative).at(*keys[2:])
-            raise place.error(f"frame {value} is outside {relative}, whose frames are 0 to {frames - 1}")
-        found[name] = value
-    return found
-
-
-def _clip_key(by_clip: Mapping[str, int], relative: str, others: Collection[str], place: Place) -> str | None:
-    """Return the key that means a clip: its path or its name, each with or without .bvh."""
-    path = _posix(relative)
-    keys = {_posix(key): key for key in by_clip}
-    for whole_path in (path, _without_suffix(path)):
-        if whole_path in keys:
-            return keys[whole_path]
-    for name in _names(path):
-        if name not in keys:
-            continue
-        paths = [_posix(other) for other in others if _posix(other) != path]
-        if any(name in (other, _without_suffix(other)) for other in paths):
-            # It is the whole path of another clip.
-            return None
-        twins = [other for other in paths if name in _names(other)]
-        if twins:
-            message = f"'{keys[name]}' may be {path} or {twins[0]}; give the clip's path"
-            raise place.at(keys[name]).error(message)
-        return keys[name]
-    return None
-
-
-def _names(path: str) -> tuple[str, str]:
-    name = PurePosixPath(path).name
-    return name, _without_suffix(name)
-
-
-def _posix(path: str) -> str:
-    return str(PurePosixPath(path.replace("\\", "/")))
-
-
-def _without_suffix(path: str) -> str:
-    return path[:-4] if path.casefold().endswith(".bvh") else path

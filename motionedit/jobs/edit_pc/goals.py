@@ -9,17 +9,23 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.coefficients.edit import GoalRequest
 from motionedit.core.kinematics import effector_positions
+from motionedit.core.timeline import round_half_up
+from motionedit.core.timeline.warp import make_warp
 from motionedit.dataclass import dataclass
 from motionedit.jobs.clip import resolve
+from motionedit.jobs.edit_pc.solver import solver_tolerance
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from motionedit.core.arrays import FloatArray
     from motionedit.core.kinematics import Effector, WorldPoses
+    from motionedit.core.pca.model import MotionModel
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.jobs.clip.resolve import Place
-    from motionedit.spec.edit_pc import PcGoal
+    from motionedit.spec.edit_pc import EditPcSpec, PcGoal
+    from motionedit.spec.load import LoadedSpec
+    from motionedit.spec.times import Time
 
 # Where a goal gives no tolerance: metres at leg length 0.85 m, and degrees.
 DEFAULT_TOLERANCE = 1e-3
@@ -37,29 +43,51 @@ class ClipGoal:
     angle_tolerance: float | None
 
 
-def clip_goal(
-    goal: PcGoal,
+def clip_goals(
+    loaded: LoadedSpec[EditPcSpec],
+    model: MotionModel,
     facts: ClipFacts,
-    place: Place,
     *,
-    frame: int,
+    events: dict[str, float],
     poses: WorldPoses,
-    scale: float,
-    least_tolerance: float,
-) -> ClipGoal:
-    """Return a goal in the frames that are edited.
+) -> list[ClipGoal]:
+    """Return the goals of a spec in the frames that are edited: the clip's own, or those of the model's timeline.
 
     Parameters
     ----------
-    frame : int
-        Frame of `poses`.
+    events : dict
+        Frames of the clip's events.
     poses : WorldPoses
         World transforms of the motion that is edited, for shifts.
-    scale : float
-        Metres at leg length 0.85 m per clip unit.
-    least_tolerance : float
-        What the solver itself calls near enough, clip units.
+
+    Raises
+    ------
+    SpecError
+        A goal names what the clip lacks.
     """
+    motion = facts.clip.motion
+    least = max(DEFAULT_TOLERANCE / model.space.scale, solver_tolerance(loaded.model))
+    goals = []
+    for i, goal in enumerate(loaded.model.goals):
+        place = resolve.Place(loaded, ("goals", i), facts.clip.label)
+        frame = resolve.frame(goal.at, place.at("at"), frames=len(motion), frame_time=motion.frame_time, events=events)
+        if loaded.model.timing == "normalized":
+            frame = _frame_on_timeline(goal.at, frame, model, facts, events=events)
+        goals.append(_clip_goal(goal, _request(goal, facts, place, frame=frame, poses=poses), least_tolerance=least))
+    return goals
+
+
+def _frame_on_timeline(at: Time, frame: int, model: MotionModel, facts: ClipFacts, *, events: dict[str, float]) -> int:
+    timeline = model.timeline
+    places = dict(timeline.events)
+    if at.event is not None and at.text == at.event and at.event in places:
+        return places[at.event]
+    warp = make_warp(timeline, first=facts.first, last=facts.last, events=events, label=facts.clip.label)
+    return round_half_up(float(warp.to_timeline(np.array([float(frame)]))[0]))
+
+
+def _request(goal: PcGoal, facts: ClipFacts, place: Place, *, frame: int, poses: WorldPoses) -> GoalRequest:
+    """Return what a goal asks for at a frame of `poses`."""
     skeleton = facts.clip.motion.skeleton
     effector = resolve.effector(goal.effector, skeleton, place.at("effector"))
     base = None
@@ -79,19 +107,16 @@ def clip_goal(
             rotation = rot.multiply(heading.rotation, rotation)
     if goal.shift is not None:
         position = seen(poses, frame, effector, measure=measure, base=base)[0] + np.array(goal.shift)
-    request = GoalRequest(frame, effector, position, rotation, measure, goal.axes, goal.weight, base)
+    return GoalRequest(frame, effector, position, rotation, measure, goal.axes, goal.weight, base)
+
+
+def _clip_goal(goal: PcGoal, request: GoalRequest, *, least_tolerance: float) -> ClipGoal:
     tolerance = goal.met_within
-    counted = not tolerance.off
-    default = max(DEFAULT_TOLERANCE / scale, least_tolerance)
-    return ClipGoal(
-        spec=goal,
-        name=str(goal.name),
-        request=request,
-        tolerance=(tolerance.position if tolerance.position is not None else default) if counted else None,
-        angle_tolerance=(tolerance.angle if tolerance.angle is not None else DEFAULT_ANGLE_TOLERANCE)
-        if counted
-        else None,
-    )
+    if tolerance.off:
+        return ClipGoal(goal, str(goal.name), request, None, None)
+    position = least_tolerance if tolerance.position is None else tolerance.position
+    angle = DEFAULT_ANGLE_TOLERANCE if tolerance.angle is None else tolerance.angle
+    return ClipGoal(goal, str(goal.name), request, position, angle)
 
 
 def seen(

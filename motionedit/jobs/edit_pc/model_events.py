@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError, MotionEditError
 from motionedit.jobs.clip import resolve
-from motionedit.jobs.clip.events import event_frames
+from motionedit.jobs.clip.events import event_frames, explicit_events
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from motionedit.core.pca.model import MotionModel
-    from motionedit.jobs.batch.run import ClipTask
+    from motionedit.jobs.batch.plan import ClipTask
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.spec.edit_pc import EditPcSpec
     from motionedit.spec.load import LoadedSpec
@@ -51,7 +51,7 @@ def events_for_model(
     SpecError
         As `event_frames`.
     """
-    explicit = resolve.explicit_events(loaded, task.relative, others=others)
+    explicit = explicit_events(loaded, task.relative, others=others)
     place = resolve.Place(loaded, ("events",), task.label)
     known = {name: float(frame) for name, frame in explicit.items()}
     rules = dict(loaded.model.events)

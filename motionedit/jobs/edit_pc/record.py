@@ -9,6 +9,7 @@ import numpy as np
 from motionedit.dataclass import dataclass
 from motionedit.jobs.clip.effector_record import effector_record
 from motionedit.jobs.edit_pc.goals import ClipGoal, goal_place, goal_record, is_met
+from motionedit.jobs.edit_pc.solver import largest_norm
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -69,11 +70,6 @@ def edit_record(
     far = [] if status != "far" else ["met, but far from what the database does: look at it before you use it"]
     message = "; ".join((*missed, *far)) or None
     return EditRecord(status, message, (*missed, *far, *_crowding(model, goals)), record)
-
-
-def largest_norm(model: MotionModel) -> float:
-    """Return the largest Mahalanobis norm among the database's motions."""
-    return float(model.mahalanobis(model.components.coefficients).max())
 
 
 def _mark(records: Sequence[dict[str, Any]], reason: str, *, is_far: bool) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -73,7 +74,7 @@ def _masses(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults: F
     skeleton, place = facts.clip.motion.skeleton, resolve.Place(loaded, ("masses",), facts.clip.label)
     given: dict[int, float] = {}
     for name, kilograms in loaded.model.masses.items():
-        index = faults.get(lambda name=name: resolve.joint(name, skeleton, place.at(name)), otherwise=None)  # type: ignore[misc]
+        index = faults.get(partial(resolve.joint, name, skeleton, place.at(name)), otherwise=None)
         if index is not None:
             given[index] = kilograms
     try:
@@ -94,7 +95,7 @@ def _hinges(
     elif not isinstance(asked, str):
         place = resolve.Place(loaded, ("hinges",), facts.clip.label)
         joints = [
-            faults.get(lambda i=i, name=name: resolve.joint(name, motion.skeleton, place.at(i)), otherwise=None)  # type: ignore[misc]
+            faults.get(partial(resolve.joint, name, motion.skeleton, place.at(i)), otherwise=None)
             for i, name in enumerate(asked)
         ]
         for joint in joints:

@@ -14,10 +14,12 @@ from motionedit.core.priorities.edit import PrioritizedEdit, RecruitingError, ed
 from motionedit.core.priorities.settings import LayeredSettings, PaperFilter, Passes
 from motionedit.core.trace import blocks_of, forward_blocks, frame_blocks
 from motionedit.dataclass import dataclass
+from motionedit.jobs.batch.one_clip import Outcome
+from motionedit.jobs.batch.plan import plan
 from motionedit.jobs.batch.pool import threads_within
-from motionedit.jobs.batch.run import Outcome, plan, run_batch
+from motionedit.jobs.batch.run import run_batch
 from motionedit.jobs.clip import resolve
-from motionedit.jobs.clip.events import event_frames
+from motionedit.jobs.clip.events import event_frames, explicit_events
 from motionedit.jobs.clip.facts import facts_of
 from motionedit.jobs.clip.faults import Faults
 from motionedit.jobs.clip.metrics import edit_metrics, feet_of
@@ -36,7 +38,8 @@ if TYPE_CHECKING:
     from motionedit.core.bvh import Clip
     from motionedit.core.priorities.kinds.constraint import Constraint
     from motionedit.core.trace import Trace
-    from motionedit.jobs.batch.run import BatchResult, ClipTask, RunOptions
+    from motionedit.jobs.batch.plan import ClipTask, RunOptions
+    from motionedit.jobs.batch.run import BatchResult
     from motionedit.jobs.edit_prioritized.body import SizedClip
     from motionedit.jobs.edit_prioritized.constraints import ClipConstraint
     from motionedit.spec.edit_prioritized import EditPrioritizedSpec
@@ -56,7 +59,11 @@ def run(
     UsageError
         As `plan`.
     """
-    tasks = plan(clips, output, options=options, depends=loaded.files)
+    return edit(loaded, plan(clips, output, options=options, depends=loaded.files), options=options)
+
+
+def edit(loaded: LoadedSpec[EditPrioritizedSpec], tasks: Sequence[ClipTask], *, options: RunOptions) -> BatchResult:
+    """Edit the clips of tasks, and write those that have an output."""
     others = tuple(task.relative for task in tasks)
     work = EditByPriorities(loaded, others, threads_within(len(tasks), options), options.verify)
     return run_batch(tasks, WithPage(work, loaded.data) if options.preview and not options.dry_run else work, options)
@@ -111,7 +118,7 @@ class EditByPriorities:
         none: dict[str, float] = {}
 
         def frames() -> dict[str, float]:
-            explicit = resolve.explicit_events(self.loaded, task.relative, others=self.others)
+            explicit = explicit_events(self.loaded, task.relative, others=self.others)
             known = {name: float(frame) for name, frame in explicit.items()}
             return event_frames(spec.events, sized.facts, place, known=known)
 

@@ -13,8 +13,8 @@ from motionedit.core.body.quality import find_defects, foot_slide_max, jerk_rms
 from motionedit.core.units import STANDARD_LEG
 from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError, MotionEditError, MotionEditErrors
+from motionedit.jobs.batch.one_clip import read_task
 from motionedit.jobs.batch.plan import find_clips
-from motionedit.jobs.batch.run import read_task
 from motionedit.jobs.clip.facts import ClipFacts, facts_of
 from motionedit.jobs.info.poses import Question, ask, poses_at
 from motionedit.jobs.info.text import describe
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from motionedit.core.body.anatomy import Anatomy
+    from motionedit.core.body.anatomy import Anatomy, Arm, Leg
     from motionedit.core.body.contacts import Plant
     from motionedit.core.skeleton import Skeleton
 
@@ -134,10 +134,20 @@ def _anatomy(skeleton: Skeleton, anatomy: Anatomy) -> dict[str, Any]:
         return None if joint is None else skeleton.names[joint]
 
     found: dict[str, Any] = {"head": named(anatomy.head)}
-    for kind, limbs in (("leg", anatomy.legs), ("arm", anatomy.arms)):
-        for side, limb in zip(("left", "right"), limbs or (None, None), strict=True):
-            found[f"{side}_{kind}"] = limb and {part: named(joint) for part, joint in vars(limb).items()}
+    legs = zip(("left_leg", "right_leg"), map(_leg, anatomy.legs or ()), strict=False)
+    arms = zip(("left_arm", "right_arm"), map(_arm, anatomy.arms or ()), strict=False)
+    limbs = dict.fromkeys(("left_leg", "right_leg", "left_arm", "right_arm"), None) | dict(legs) | dict(arms)
+    for limb, parts in limbs.items():
+        found[limb] = parts and {part: named(joint) for part, joint in parts.items()}
     return found
+
+
+def _leg(leg: Leg) -> dict[str, int | None]:
+    return {"thigh": leg.thigh, "knee": leg.knee, "ankle": leg.ankle, "toe": leg.toe}
+
+
+def _arm(arm: Arm) -> dict[str, int | None]:
+    return {"clavicle": arm.clavicle, "shoulder": arm.shoulder, "elbow": arm.elbow, "wrist": arm.wrist}
 
 
 def _joints(skeleton: Skeleton) -> list[dict[str, Any]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -78,14 +78,14 @@ def poses_at(facts: ClipFacts, question: Question) -> tuple[list[dict[str, Any]]
     for time in question.times:
         try:
             found = resolve.frame(
-                time, _place("--at", facts), frames=len(motion), frame_time=motion.frame_time, events={}
+                time, _Option("--at", facts.clip.label), frames=len(motion), frame_time=motion.frame_time, events={}
             )
             frames.append(found)
         except UsageError as error:
             errors.append(error)
     for spec in question.effectors:
         try:
-            effectors.append((spec, resolve.effector(spec, motion.skeleton, _place("--joint", facts))))
+            effectors.append((spec, resolve.effector(spec, motion.skeleton, _Option("--joint", facts.clip.label))))
         except UsageError as error:
             errors.append(error)
     return [_pose(facts, frame, spec, effector) for frame in frames for spec, effector in effectors], errors
@@ -103,10 +103,6 @@ class _Option:
 
     def error(self, message: str) -> UsageError:
         return UsageError(message, key=self.key)
-
-
-def _place(key: str, facts: ClipFacts) -> resolve.Place:
-    return cast("resolve.Place", _Option(key, facts.clip.label))
 
 
 def _effector_of(text: str) -> EffectorSpec:

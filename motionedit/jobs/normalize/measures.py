@@ -8,9 +8,9 @@ from motionedit.core.body.ground import axis_name
 from motionedit.core.skeleton_match import match_joints
 from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError, MotionEditError
-from motionedit.jobs.batch.run import read_task
+from motionedit.jobs.batch.one_clip import read_task
 from motionedit.jobs.clip import resolve
-from motionedit.jobs.clip.events import event_frames
+from motionedit.jobs.clip.events import event_frames, explicit_events
 from motionedit.jobs.clip.facts import facts_of
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from motionedit.core.skeleton import Skeleton
     from motionedit.core.timeline.alignment import Alignment
-    from motionedit.jobs.batch.run import ClipTask
+    from motionedit.jobs.batch.plan import ClipTask
     from motionedit.jobs.clip.facts import ClipFacts, Line
     from motionedit.spec.load import LoadedSpec
     from motionedit.spec.normalize import NormalizeSpec
@@ -96,7 +96,7 @@ def _events(
     facts: ClipFacts,
     others: Sequence[str],
 ) -> dict[str, float]:
-    known = resolve.explicit_events(loaded, task.relative, others=others)
+    known = explicit_events(loaded, task.relative, others=others)
     place = resolve.Place(loaded, ("events",), task.label)
     frames = event_frames(loaded.model.events, facts, place, known={name: float(f) for name, f in known.items()})
     for name in loaded.model.events:

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 from motionedit.errors import MotionEditError, MotionEditErrors, UsageError
 from motionedit.jobs.batch.files import atomic_write
+from motionedit.jobs.batch.one_clip import read_task
 from motionedit.jobs.batch.plan import find_clips, refuse_overwriting
-from motionedit.jobs.batch.report_file import matches, read_report
-from motionedit.jobs.batch.run import read_task
+from motionedit.jobs.preview.report_file import matches, read_report
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
     from motionedit.core.bvh import Clip
     from motionedit.jobs.batch.plan import ClipTask
-    from motionedit.jobs.batch.report_file import EditReport, Match
     from motionedit.jobs.preview.marks import Figure
+    from motionedit.jobs.preview.report_file import EditReport, Match
     from motionedit.report.preview.body import Body
     from motionedit.report.preview.marks import Edit
 

@@ -1,0 +1,74 @@
+"""The second phase of normalize, on one clip: both stages of [PC] section 5 in one resample, then alignment."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from motionedit.core.body.ground import travel_joint
+from motionedit.core.body.quality import find_defects
+from motionedit.core.bvh import resampled_bytes
+from motionedit.core.timeline.alignment import aligned
+from motionedit.core.timeline.resample import resample
+from motionedit.core.timeline.warp import make_warp
+from motionedit.dataclass import dataclass
+from motionedit.jobs.batch.one_clip import Outcome
+
+if TYPE_CHECKING:
+    from motionedit.core.bvh import Clip
+    from motionedit.core.motion import Motion
+    from motionedit.core.timeline.warp import Timeline
+    from motionedit.jobs.batch.plan import ClipTask
+    from motionedit.jobs.clip.facts import Line
+    from motionedit.jobs.normalize.measures import ClipMeasure
+    from motionedit.spec.values import Unit
+
+
+@dataclass(frozen=True)
+class ResampleClip:
+    """The work on the clip of one measure: onto the common timeline, aligned by the line of hips or feet."""
+
+    measure: ClipMeasure
+    timeline: Timeline
+    line: Line
+    unit: Unit | None
+
+    def __call__(self, clip: Clip, task: ClipTask) -> Outcome:
+        """Return the normalized clip."""
+        del task
+        measure = self.measure
+        motion = self._resampled(clip)
+        places = ", ".join(f"{name} {frame:.2f}" for name, frame in measure.events.items())
+        line = f"frames {measure.first} to {measure.last} -> {self.timeline.frames}; {places}"
+        return Outcome(
+            resampled_bytes(clip, motion),
+            self._record(),
+            warnings=_defects(clip.motion, first=measure.first),
+            motion=motion,
+            details=(line.rstrip("; "),),
+        )
+
+    def _resampled(self, clip: Clip) -> Motion:
+        measure, timeline = self.measure, self.timeline
+        warp = make_warp(timeline, first=measure.first, last=measure.last, events=measure.events, label=measure.label)
+        at = warp.to_source(np.arange(timeline.frames, dtype=np.float64))
+        resampled = resample(clip.motion, at, frame_time=1.0 / timeline.frame_rate)
+        return aligned(resampled, measure.alignments[self.line], travel=travel_joint(clip.motion))
+
+    def _record(self) -> dict[str, Any]:
+        return {
+            "unit": None if self.unit is None else self.unit.name,
+            "frames": [self.measure.frames, self.timeline.frames],
+            "first_frame": self.measure.first,
+            "events": dict(self.measure.events),
+        }
+
+
+def _defects(motion: Motion, *, first: int) -> tuple[str, ...]:
+    names = motion.skeleton.names
+    return tuple(
+        f"'{names[defect.joint]}' jumps by {np.degrees(defect.angle):.0f} degrees into frame {defect.worst}: a capture "
+        "defect? fit-pca can leave it out (exclude_joints)"
+        for defect in find_defects(motion, first=first)
+    )

@@ -1,0 +1,119 @@
+"""`motionedit.normalize`: clips of one behaviour onto one timeline."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from motionedit.core.bvh import parse_clip
+from motionedit.dataclass import dataclass
+from motionedit.errors import UsageError
+from motionedit.jobs.normalize import job
+from motionedit.jobs.normalize.normalization_file import NAME, normalization_bytes
+from motionedit.library.file_errors import file_errors
+from motionedit.library.inputs import options_of, path_of, spec_of, tasks_of
+from motionedit.library.outputs import contents_of, report_of, sources_of, write_files
+from motionedit.spec.load import load_spec
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from pathlib import Path
+
+    from motionedit.core.bvh import Clip
+    from motionedit.jobs.normalize.normalization_file import Normalization
+    from motionedit.library.inputs import AnyClip, AnyPath, AnySpec
+
+
+@dataclass(frozen=True, eq=False)
+class Normalized:
+    """Clips of one behaviour on one timeline.
+
+    Attributes
+    ----------
+    clips : tuple of Clip
+        One for each input, in order, all with the same skeleton, frames and rate. A label is the clip's path below the
+        folder that was given, or its file's name: as `write` calls the files.
+    normalization : Normalization
+        What normalization.json says: the timeline, the rules, and each clip's source, events and alignment.
+    report : dict
+        The JSON report, plain values; `report["clips"]` has an entry for each clip.
+    warnings : tuple of str
+        The lines that the command prints after ``motionedit: warning:``.
+    inputs : tuple of Path
+        The files that they were made from: `write` overwrites none of them.
+    """
+
+    clips: tuple[Clip, ...]
+    normalization: Normalization
+    report: dict[str, Any]
+    warnings: tuple[str, ...]
+    inputs: tuple[Path, ...]
+
+    @property
+    def clip(self) -> Clip:
+        """The first of `clips`; the others differ from it in their motion alone."""
+        return self.clips[0]
+
+    def write(self, folder: AnyPath) -> Path:
+        """Write the clips and normalization.json into a folder, each file whole or not at all, and return the folder.
+
+        Raises
+        ------
+        MotionEditError
+            A file is an input, or cannot be written; or `folder` is the name of a file.
+        """
+        target = path_of(folder)
+        if target.name.lower().endswith(".bvh"):
+            raise UsageError("several files are written; give a folder", file=str(target))
+        files = {target / clip.label: clip.text.data for clip in self.clips}
+        files[target / NAME] = normalization_bytes(self.normalization)
+        write_files(files, inputs=self.inputs)
+        return target
+
+    def __repr__(self) -> str:
+        return f"<Normalized: {len(self.clips)} clips of {self.normalization.timeline.frames} frames>"
+
+
+@file_errors()
+def normalize(clips: AnyClip | Iterable[AnyClip], spec: AnySpec, *, lenient: bool = False, jobs: int = 1) -> Normalized:
+    """Return clips of one behaviour on one timeline ([PC] section 5), as `motionedit normalize` writes them.
+
+    Parameters
+    ----------
+    clips : path-like, Clip, or several of them
+        Files, folders (all their ``.bvh``) and clips in memory.
+    spec : path-like or mapping
+        A YAML file, or the same as a mapping, in which `schema` may be left out.
+    lenient : bool
+        As `read`, for clips that are given as paths.
+    jobs : int
+        Clips in parallel processes; 0 means all cores. The result is the same for any number.
+
+    Raises
+    ------
+    MotionEditError
+        Faults of the spec, all together; clips that cannot be read, or do not belong together: one that fails fails
+        all, since each shifts the means.
+
+    Examples
+    --------
+    >>> swings = motionedit.normalize("data/golf", "configs/golf-normalize.yaml")
+    >>> swings.normalization.timeline.frames
+    131
+    """
+    loaded = load_spec(spec_of(spec), "normalize")
+    tasks = tasks_of(clips)
+    done = job.normalize(loaded, tasks, options=options_of(jobs=jobs, lenient=lenient))
+    contents = contents_of(done.result)
+    if done.normalization is None:
+        raise AssertionError("a run without failures has a normalization")
+    return Normalized(
+        clips=tuple(
+            replace(parse_clip(content, label=task.relative), source=task.source)
+            for task, content in zip(tasks, contents, strict=True)
+        ),
+        normalization=done.normalization,
+        report=report_of("normalize", done.result.records, spec=loaded.data),
+        warnings=tuple(done.result.warnings),
+        inputs=(*sources_of(tasks), *loaded.files),
+    )

@@ -1,0 +1,67 @@
+"""What the functions of the face make of a run: its clips or its errors, its report, files."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+from motionedit.errors import MotionEditErrors
+from motionedit.jobs.batch.files import clean_leftovers
+from motionedit.jobs.batch.one_clip import write_file
+from motionedit.jobs.batch.plan import refuse_overwriting
+from motionedit.library.file_errors import file_errors
+from motionedit.report.record import report_bytes
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+    from pathlib import Path
+
+    from motionedit.jobs.batch.plan import ClipTask
+    from motionedit.jobs.batch.run import BatchResult
+
+
+def contents_of(result: BatchResult) -> list[bytes]:
+    """Return the clips of a run.
+
+    Raises
+    ------
+    MotionEditError
+        What went wrong with any of them.
+    """
+    if result.failures:
+        raise result.failures[0] if len(result.failures) == 1 else MotionEditErrors("clips failed", result.failures)
+    return [content for content in result.contents if content is not None]
+
+
+def sources_of(tasks: Iterable[ClipTask]) -> tuple[Path, ...]:
+    """Return the files that clips were read from."""
+    return tuple(task.source for task in tasks if task.source is not None)
+
+
+def report_of(
+    command: str,
+    records: list[dict[str, Any]],
+    *,
+    spec: Mapping[str, Any] | None,
+    more: Mapping[str, Any] | None = None,
+) -> dict[str, Any]:
+    """Return a report as its file would be read back."""
+    report: dict[str, Any] = json.loads(report_bytes(command, records, spec=spec, more=more))
+    return report
+
+
+@file_errors()
+def write_files(files: Mapping[Path, bytes], *, inputs: Iterable[Path]) -> None:
+    """Write files, each whole or not at all, after it was seen that none is an input.
+
+    Raises
+    ------
+    UsageError
+        One is.
+    MotionEditError
+        One cannot be written.
+    """
+    refuse_overwriting(list(files), list(inputs))
+    clean_leftovers({path.parent for path in files})
+    for path, content in files.items():
+        write_file(path, content)

@@ -1,0 +1,204 @@
+"""Whatever a user can cause is a MotionEditError that says all that is wrong; what is written is whole and no input."""
+
+import pickle
+import shutil
+from pathlib import Path
+
+import pytest
+
+import motionedit
+from motionedit.errors import ClipError, SpecError, UsageError
+
+ROOT = Path(__file__).resolve().parents[2]
+SWING = "data/golf/swing04.bvh"
+
+NOTHING = {"constraints": []}
+
+
+def refused(call, *arguments, **options):
+    with pytest.raises(motionedit.MotionEditError) as caught:
+        call(*arguments, **options)
+    return str(caught.value).splitlines()
+
+
+def test_all_faults_of_a_mapping_are_raised_together_by_their_keys():
+    spec = {"constraints": [{"type": "position", "efector": "LeftHand", "priority": object()}, {"type": "pos"}]}
+    lines = refused(motionedit.edit_prioritized, "data/walk.bvh", spec)
+    assert lines[0] == "spec: constraints.0.priority: a value of type object cannot stand in a spec"
+    assert lines[1] == "spec: constraints.0.efector: unknown key; did you mean 'effector'?"
+    assert lines[2].startswith("spec: constraints.1.type: must be position, orientation")
+    assert len(lines) == 3
+
+
+def test_a_fault_that_needs_the_clip_names_key_and_clip():
+    goal = {"type": "position", "effector": "LeftHnd", "priority": 1}
+    lines = refused(motionedit.edit_prioritized, "data/walk.bvh", {"constraints": [goal]})
+    assert lines == ["spec: constraints.0.effector: no joint 'LeftHnd' in data/walk.bvh; did you mean 'LeftHand'?"]
+
+
+def test_a_fault_of_a_file_names_its_line(tmp_path):
+    spec = tmp_path / "reach.yaml"
+    spec.write_text("schema: motionedit/edit-prioritized/v1\nconstraint: []\n")
+    assert f"{spec}:2: constraint: unknown key; did you mean 'constraints'?" in refused(
+        motionedit.edit_prioritized, "data/walk.bvh", spec
+    )
+
+
+def test_a_spec_of_another_command_is_refused():
+    lines = refused(motionedit.edit_prioritized, "data/walk.bvh", {"schema": "motionedit/edit-pc/v1", "goals": []})
+    assert lines == ["spec: schema: this is a spec of edit-pc; edit-prioritized wants motionedit/edit-prioritized/v1"]
+
+
+def test_keys_are_words_and_nothing_is_endless():
+    deep = {}
+    deep["constraints"] = [deep]
+    assert any(
+        "nested more than 50 deep" in line for line in refused(motionedit.edit_prioritized, "data/walk.bvh", deep)
+    )
+    assert "spec: a key must be a word, not 3" in refused(motionedit.edit_prioritized, "data/walk.bvh", {3: 4})
+
+
+@pytest.mark.parametrize(
+    ("frame", "message"),
+    [
+        ("x", "events.hit: must be a frame such as 94, or {frames: ...} or {detect: ...}; not 'x'"),
+        (None, "events.hit: needs a value: a frame such as 94, or {frames: ...} or {detect: ...}"),
+        (object(), "events.hit: a value of type object cannot stand in a spec"),
+        (9000, f"events.hit: in {SWING}: frame 9000 is outside the take, whose frames are 0 to 120"),
+    ],
+)
+def test_a_faulty_event_is_named(fitted, frame, message):
+    goal = {"at": "hit", "effector": "RightHand", "shift": [0, 0, 1]}
+    assert message in refused(motionedit.edit_pc, SWING, fitted, {"goals": [goal]}, events={"hit": frame})
+
+
+def test_what_is_no_clip_no_spec_and_no_model_is_refused(fitted):
+    assert refused(motionedit.read, 3) == ["must be a path, not a value of type int"]
+    assert refused(motionedit.read, "-") == ["'-' is no file; give a path"]
+    assert refused(motionedit.read, "a\0b") == ["'a\\x00b' is no file; give a path"]
+    assert refused(motionedit.edit_prioritized, "data/walk.bvh", NOTHING, events=[94]) == [
+        "events must be a mapping of names to frames, such as {'hit': 94}"
+    ]
+    assert refused(motionedit.read, "nix.bvh") == ["nix.bvh: cannot be read: No such file or directory"]
+    assert refused(motionedit.edit_prioritized, None, NOTHING) == [
+        "must be a clip, as a path or a Clip, not a value of type NoneType"
+    ]
+    assert refused(motionedit.edit_prioritized, "nix.bvh", NOTHING) == ["nix.bvh: no such file or folder"]
+    assert refused(motionedit.edit_prioritized, "data/golf", NOTHING) == [
+        "data/golf: is a folder; an edit takes one clip"
+    ]
+    assert refused(motionedit.edit_prioritized, "data/walk.bvh", []) == [
+        "must be a spec, as a path or a mapping, not a value of type list"
+    ]
+    assert "no such file" in refused(motionedit.edit_prioritized, "data/walk.bvh", "nix.yaml")[0]
+    assert refused(motionedit.edit_pc, SWING, 3, {"goals": []})
+    assert refused(motionedit.edit_pc, SWING, {"components": 3}, "configs/golf-edit.yaml") == [
+        "must be a model, as a path or what fit_pca returned, not a value of type dict"
+    ]
+    assert "cannot be read" in refused(motionedit.edit_pc, SWING, "nix.npz", "configs/golf-edit.yaml")[0]
+    assert (
+        "another skeleton than the model (in memory)"
+        in refused(motionedit.edit_pc, "data/walk.bvh", fitted, "configs/golf-edit.yaml")[0]
+    )
+
+
+def test_what_cannot_be_normalized_or_fitted_is_refused():
+    assert refused(motionedit.normalize, [], {}) == ["no clip is given"]
+    assert refused(motionedit.normalize, 3, {}) == ["must be clips or folders, not a value of type int"]
+    assert refused(motionedit.normalize, [3], {}) == ["must be a clip, as a path or a Clip, not a value of type int"]
+    assert refused(motionedit.normalize, "data/golf", {}, jobs=-1) == ["-1 workers; give 1 or more, or 0 for all cores"]
+    swing = motionedit.read(SWING)
+    assert "would both be called swing04.bvh" in refused(motionedit.normalize, [swing, swing], {})[0]
+    one = motionedit.normalize(swing, {})
+    assert refused(motionedit.fit_pca, one) == ["normalized clips: lists 1 clip; a PCA needs two or more"]
+    assert refused(motionedit.fit_pca, "data/golf") == [
+        "data/golf/normalization.json: not there; 'motionedit normalize' writes it beside the clips"
+    ]
+    assert "what normalize returned, or its folder" in refused(motionedit.fit_pca, swing)[0]
+
+
+def test_every_clip_that_cannot_be_normalized_is_named(tmp_path):
+    for name in ("a.bvh", "b.bvh"):
+        (tmp_path / name).write_text("HIERARCHY\n")
+    lines = refused(motionedit.normalize, [tmp_path, SWING], {})
+    assert [line.partition(":")[0] for line in lines] == [str(tmp_path / "a.bvh"), str(tmp_path / "b.bvh")]
+
+
+def test_what_the_system_says_of_a_folder_is_an_error_of_the_face(monkeypatch):
+    def denied(top, **_):
+        raise PermissionError(13, "Permission denied", str(top))
+
+    monkeypatch.setattr("os.walk", denied)
+    assert refused(motionedit.normalize, "data/golf", {}) == ["data/golf: Permission denied"]
+
+
+def test_an_error_that_is_no_user_s_is_raised_as_it_is(monkeypatch):
+    def broken(*_, **__):
+        raise ZeroDivisionError("ours")
+
+    monkeypatch.setattr("motionedit.jobs.edit_prioritized.job.facts_of", broken)
+    with pytest.raises(ZeroDivisionError, match="ours"):
+        motionedit.edit_prioritized("data/walk.bvh", "configs/reach.yaml")
+
+
+def test_an_input_is_never_overwritten_under_any_name_or_after_any_number_of_steps(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    shutil.copy(ROOT / "data" / "walk.bvh", "walk.bvh")
+    shutil.copy(ROOT / "configs" / "reach.yaml", "reach.yaml")
+    Path("link.bvh").symlink_to("walk.bvh")
+    before = Path("walk.bvh").read_bytes()
+    first = motionedit.edit_prioritized("walk.bvh", "reach.yaml")
+    second = motionedit.edit_prioritized(first.clip, NOTHING)
+    normalized = motionedit.normalize("walk.bvh", {})
+    for edit in (first, second):
+        for name in ("walk.bvh", tmp_path / "walk.bvh", "link.bvh", "."):
+            assert "an input is never overwritten" in refused(edit.write, name)[0]
+    assert "an input is never overwritten" in refused(normalized.write, ".")[0]
+    assert sorted(path.name for path in Path().iterdir()) == ["link.bvh", "reach.yaml", "walk.bvh"]
+    assert Path("walk.bvh").read_bytes() == before
+
+
+def test_a_clip_from_memory_may_take_any_free_name(tmp_path, monkeypatch):
+    edit = motionedit.edit_prioritized("data/walk.bvh", NOTHING)
+    monkeypatch.chdir(tmp_path)
+    assert edit.write("walk.bvh") == Path("walk.bvh")
+    assert edit.write("new/folder") == Path("new/folder/walk.bvh")
+    assert edit.write("walk.bvh").read_bytes() == edit.clip.text.data
+
+
+def test_what_cannot_be_written_leaves_what_was_there(tmp_path, fitted, normalized, monkeypatch):
+    edit = motionedit.edit_prioritized("data/walk.bvh", "configs/reach.yaml")
+    target = tmp_path / "walk.bvh"
+    target.write_text("old")
+    (tmp_path / "file").write_text("no folder")
+    assert "cannot be written" in refused(edit.write, tmp_path / "file" / "walk.bvh")[0]
+    assert refused(edit.write, "-") == ["'-' is no file; give a path"]
+    assert "several files are written" in refused(normalized.write, tmp_path / "a.bvh")[0]
+    assert "give a name such as model.npz" in refused(fitted.write, tmp_path)[0]
+
+    def full(_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.urandom", full)
+    assert refused(edit.write, target) == [f"{target}: cannot be written: No space left on device"]
+    assert target.read_text() == "old"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "walk.bvh"]
+
+
+def test_a_group_of_faults_is_one_error_and_can_be_taken_apart():
+    inner = motionedit.MotionEditErrors("inner", [ClipError("third", file="b.bvh")])
+    group = motionedit.MotionEditErrors("all", [SpecError("first", file="s.yaml", line=2), UsageError("second"), inner])
+    copied = pickle.loads(pickle.dumps(group))  # noqa: S301  our own
+    for one in (group, copied):
+        assert isinstance(one, motionedit.MotionEditError)
+        assert str(one) == "s.yaml:2: first\nsecond\nb.bvh: third"
+        assert [type(error) for error in one.errors] == [SpecError, UsageError, ClipError]
+        assert (one.message, one.exit_code, one.file, one.line, one.key) == ("all", 2, None, None, None)
+    kinds = []
+    try:
+        raise group
+    except* SpecError as specs:
+        kinds += specs.exceptions
+    except* motionedit.MotionEditError as others:
+        kinds += others.exceptions
+    assert len(kinds) == 3
