@@ -53,7 +53,7 @@ def main(arguments: list[str]) -> int:
 
 def versions(root: Path) -> dict[str, str]:
     """Return the version by the file that names it."""
-    init, citation = "motionedit/__init__.py", "CITATION.cff"
+    init, citation = "motionedit/version.py", "CITATION.cff"
     return {
         "pyproject.toml": tomllib.loads(_text(root, "pyproject.toml"))["project"]["version"],
         init: _only(r'^__version__ = "(.*)"$', _text(root, init)),

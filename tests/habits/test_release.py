@@ -9,7 +9,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 PLACES = {
     "pyproject.toml": '[project]\nversion = "0.2.0"\n',
-    "motionedit/__init__.py": '__version__ = "0.2.0"\n',
+    "motionedit/version.py": '__version__ = "0.2.0"\n',
     "CITATION.cff": "cff-version: 1.2.0\nversion: 0.2.0\n",
     "CHANGELOG.md": "# Log\n\n## [Unreleased]\n\n## [0.2.0] - 2026-02-01\n\n- `cut`.\n\n## [0.1.0] - 2026-01-31\n",
 }
@@ -65,7 +65,7 @@ def test_a_tree_that_is_ready_may_be_released(tree, artifacts):
     assert check(tree(), "--tag", "v0.2.0", "--artifacts", artifacts(FILES)) == (0, "release: 0.2.0 everywhere\n")
 
 
-@pytest.mark.parametrize("place", ["motionedit/__init__.py", "CITATION.cff"])
+@pytest.mark.parametrize("place", ["motionedit/version.py", "CITATION.cff"])
 @pytest.mark.parametrize("other", ["0.1.0", ""])
 def test_a_place_with_another_version_or_none_is_named(tree, place, other):
     code, said = check(tree(place, "0.2.0", other))
