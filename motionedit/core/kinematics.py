@@ -30,6 +30,10 @@ class WorldPoses:
     positions: FloatArray
     rotations: FloatArray
 
+    def at(self, frames: slice) -> WorldPoses:
+        """Return the transforms at some frames."""
+        return WorldPoses(self.positions[frames], self.rotations[frames])
+
 
 def local_translations(motion: Motion) -> FloatArray:
     """Return the translation of every joint in its parent's frame, shape (F, J, 3)."""

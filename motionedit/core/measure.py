@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import field
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -34,7 +35,7 @@ class Measure:
     counted: tuple[int, ...] = (0, 1, 2)
     base: int | None = None
 
-    @property
+    @cached_property
     def rows(self) -> FloatArray:
         """The axes that count, shape (k, 3)."""
         return self.axes[list(self.counted)]

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import make_motion
+from small_motions import make_motion
 
 from motionedit.core import rotations as rot
 from motionedit.core.bvh import new_bytes

@@ -6,6 +6,7 @@ import pytest
 from motionedit.core import rotations as rot
 from motionedit.core.coefficients.chain import CoefficientChain, _exp_and_left_jacobian, evaluate
 from motionedit.core.coefficients.goals import Goal, goal_error, stacked_errors
+from motionedit.core.measure import Measure
 
 STEP = 1e-6
 
@@ -54,10 +55,9 @@ def test_goal_rows_are_minus_the_derivative_of_the_error(relative):
         chain=chain(6),
         position=rng.normal(size=3),
         rotation=None,
-        measure=rot.to_matrix(rot.normalize(rng.normal(size=4))),
-        axes=(0, 2),
         weight=2.0,
-        relative_to=chain(7) if relative else None,
+        measure=Measure(rot.to_matrix(rot.normalize(rng.normal(size=4))), (0, 2)),
+        base=chain(7) if relative else None,
     )
     at = rng.normal(size=4)
     expected = differences(lambda x: stacked_errors([goal], x)[0], at)
@@ -70,7 +70,7 @@ def test_orientation_rows_are_minus_the_derivative_of_the_error_where_it_is_met(
     at = np.random.default_rng(10).normal(size=4)
     state = evaluate(each, at).rotation
     wanted = evaluate(other, at).rotation.T @ state if relative else state
-    goal = Goal(each, None, wanted, np.eye(3), (0, 1, 2), 1.0, other)
+    goal = Goal(each, None, wanted, 1.0, base=other)
     expected = differences(lambda x: goal_error(goal, x).rotation, at)
     np.testing.assert_allclose(goal_error(goal, at).rotation_jacobian, -expected, atol=1e-6)
 

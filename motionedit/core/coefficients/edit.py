@@ -21,6 +21,7 @@ from motionedit.core.coefficients.chain import CoefficientChain
 from motionedit.core.coefficients.goals import Goal, goal_error
 from motionedit.core.coefficients.projection import Projection, with_rows
 from motionedit.core.coefficients.solver import CoefficientSolution, solve_damped, solve_goals
+from motionedit.core.measure import WORLD, Measure
 from motionedit.core.timeline.interpolation import low_pass, natural_spline
 from motionedit.dataclass import dataclass
 
@@ -52,25 +53,19 @@ class GoalRequest:
         Frame of the projected motion.
     effector : Effector
     position : shape (3,) or None
-        Along the measuring axes: `measure` times the world position; in the reference joint's frame if there is one.
+        As it is measured.
     rotation : shape (4,) or None
-    measure : shape (3, 3)
-        Rows are the axes that positions are measured along.
-    axes : tuple of int
-        Which of these count.
     weight : float
-    relative_to : int or None
-        The joint in whose frame the goal stands.
+    measure : Measure
+        What position and rotation are measured in.
     """
 
     frame: int
     effector: Effector
     position: FloatArray | None
     rotation: FloatArray | None
-    measure: FloatArray
-    axes: tuple[int, ...]
-    weight: float
-    relative_to: int | None
+    weight: float = 1.0
+    measure: Measure = WORLD
 
 
 @dataclass(frozen=True)
@@ -196,8 +191,8 @@ def _goal(
     """Return the goal with its chains cut out of the components at its frame: J(E)_tk of [PC], Figure 1."""
     scale = model.space.scale
     ends = [(request.effector.joint, request.effector.offset)]
-    if request.relative_to is not None:
-        ends.append((request.relative_to, np.zeros(3)))
+    if request.measure.base is not None:
+        ends.append((request.measure.base, np.zeros(3)))
     chains = [_chain(projection, model, rows[request.frame], request.frame, joint) for joint, _ in ends]
     place = projection.places[request.frame : request.frame + 1]
     components = np.moveaxis(model.component_rows, 0, -1)
@@ -216,10 +211,9 @@ def _goal(
         chain=full[0],
         position=None if request.position is None else request.position * scale,
         rotation=None if request.rotation is None else rot.to_matrix(request.rotation),
-        measure=request.measure,
-        axes=request.axes,
         weight=request.weight,
-        relative_to=full[1] if len(full) > 1 else None,
+        measure=request.measure,
+        base=full[1] if len(full) > 1 else None,
     )
 
 

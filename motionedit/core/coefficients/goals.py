@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.coefficients.chain import EffectorState, evaluate
+from motionedit.core.measure import WORLD, Measure, relative_rows
 from motionedit.core.units import METRES_PER_RADIAN
 from motionedit.dataclass import dataclass
 
@@ -30,28 +30,20 @@ class Goal:
     position : shape (3,) or None
         In the measuring frame.
     rotation : shape (3, 3) or None
-        World orientation; relative to the reference joint where there is one.
-    measure : shape (3, 3)
-        Rows are the axes positions are measured along; the identity for the world.
-    axes : tuple of int
-        Which of these axes count for the position.
+        As it is measured.
     weight : float
-    relative_to : CoefficientChain or None
-        To the joint in whose frame position and orientation are measured.
+    measure : Measure
+        What position and rotation are measured in.
+    base : CoefficientChain or None
+        To the measure's base, where it has one.
     """
 
     chain: CoefficientChain
     position: FloatArray | None
     rotation: FloatArray | None
-    measure: FloatArray
-    axes: tuple[int, ...]
     weight: float
-    relative_to: CoefficientChain | None
-
-    @cached_property
-    def measure_rows(self) -> FloatArray:
-        """The axes that count, shape (k, 3)."""
-        return self.measure[list(self.axes)]
+    measure: Measure = WORLD
+    base: CoefficientChain | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,30 +67,30 @@ def goal_error(goal: Goal, unknowns: FloatArray) -> GoalError:
 
 def _state(goal: Goal, unknowns: FloatArray) -> EffectorState:
     state = evaluate(goal.chain, unknowns)
-    return state if goal.relative_to is None else _seen_from(evaluate(goal.relative_to, unknowns), state)
+    return state if goal.base is None else _seen_from(evaluate(goal.base, unknowns), state)
 
 
 def _position_error(position: FloatArray, goal: Goal, state: EffectorState) -> tuple[FloatArray, FloatArray]:
-    rows = goal.measure_rows
-    return position[list(goal.axes)] - rows @ state.position, rows @ state.position_rows
+    rows = goal.measure.rows
+    return position[list(goal.measure.counted)] - rows @ state.position, rows @ state.position_rows
 
 
 def _rotation_error(rotation: FloatArray, state: EffectorState) -> tuple[FloatArray, FloatArray]:
     return rot.log(rot.from_matrix(rotation @ state.rotation.T)), state.rotation_rows
 
 
-def _seen_from(reference: EffectorState, state: EffectorState) -> EffectorState:
-    """Return a state as measured in the reference's frame: x = R_b^T (p - p_b), with its rows.
+def _seen_from(base: EffectorState, state: EffectorState) -> EffectorState:
+    """Return a state as measured in the base's frame: x = R_b^T (p - p_b), with its rows.
 
-    dx = R_b^T (dp - dp_b - w_b x (p - p_b)); the increment of the relative rotation is R_b^T (w - w_b).
+    The increment of the relative rotation is R_b^T (w - w_b).
     """
-    inverse = reference.rotation.T
-    between = state.position - reference.position
+    inverse = base.rotation.T
+    between = state.position - base.position
     return EffectorState(
         inverse @ between,
         inverse @ state.rotation,
-        inverse @ (state.position_rows - reference.position_rows + rot.skew(between) @ reference.rotation_rows),
-        inverse @ (state.rotation_rows - reference.rotation_rows),
+        relative_rows(inverse, between, state.position_rows, base.position_rows, base.rotation_rows),
+        inverse @ (state.rotation_rows - base.rotation_rows),
     )
 
 

@@ -9,10 +9,12 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.coefficients.edit import GoalRequest
 from motionedit.core.kinematics import effector_positions
+from motionedit.core.measure import Measure
 from motionedit.core.timeline import round_half_up
 from motionedit.core.timeline.warp import make_warp
 from motionedit.dataclass import dataclass
 from motionedit.jobs.clip import resolve
+from motionedit.jobs.clip.axes import GivenAxes
 from motionedit.jobs.edit_pc.solver import solver_tolerance
 
 if TYPE_CHECKING:
@@ -93,21 +95,13 @@ def _request(goal: PcGoal, facts: ClipFacts, place: Place, *, frame: int, poses:
     base = None
     if goal.relative_to is not None:
         base = resolve.joint(goal.relative_to, skeleton, place.at("relative_to"))
-    measure, position, rotation = np.eye(3), None, None
-    if goal.position is not None:
-        position = np.array(goal.position)
-    if goal.orientation is not None:
-        rotation = resolve.orientation(goal.orientation)
-    if goal.frame == "heading":
-        heading = facts.heading_frame()
-        measure = heading.axes
-        if position is not None:
-            position = measure @ heading.world_points(position)
-        if rotation is not None:
-            rotation = rot.multiply(heading.rotation, rotation)
+    axes = GivenAxes.of(facts, goal.frame)
+    measure = Measure(axes.rows, goal.axes, base)
+    position = None if goal.position is None else axes.position(goal.position)
     if goal.shift is not None:
-        position = seen(poses, frame, effector, measure=measure, base=base)[0] + np.array(goal.shift)
-    return GoalRequest(frame, effector, position, rotation, measure, goal.axes, goal.weight, base)
+        position = seen(poses, frame, effector, measure)[0] + np.array(goal.shift)
+    rotation = None if goal.orientation is None else axes.rotation(resolve.orientation(goal.orientation))
+    return GoalRequest(frame, effector, position, rotation, goal.weight, measure)
 
 
 def _clip_goal(goal: PcGoal, request: GoalRequest, *, least_tolerance: float) -> ClipGoal:
@@ -119,26 +113,21 @@ def _clip_goal(goal: PcGoal, request: GoalRequest, *, least_tolerance: float) ->
     return ClipGoal(goal, str(goal.name), request, position, angle)
 
 
-def seen(
-    poses: WorldPoses, frame: int, effector: Effector, *, measure: FloatArray, base: int | None
-) -> tuple[FloatArray, FloatArray]:
-    """Return an effector's position (3,) along the measuring axes, and its rotation (4,), as a goal states them."""
-    one = type(poses)(poses.positions[frame : frame + 1], poses.rotations[frame : frame + 1])
-    position, rotation = effector_positions(one, effector)[0], one.rotations[0, effector.joint]
-    if base is not None:
-        inverse = rot.conjugate(one.rotations[0, base])
-        return rot.rotate(inverse, position - one.positions[0, base]), rot.multiply(inverse, rotation)
-    return measure @ position, rotation
+def seen(poses: WorldPoses, frame: int, effector: Effector, measure: Measure) -> tuple[FloatArray, FloatArray]:
+    """Return an effector's position (3,) and its rotation (4,) as a goal states them."""
+    one = poses.at(slice(frame, frame + 1))
+    position = measure.positions(effector_positions(one, effector), one)
+    return position[0], measure.rotations(one.rotations[:, effector.joint], one)[0]
 
 
 def goal_record(goal: ClipGoal, poses: WorldPoses) -> dict[str, Any]:
     """Return a goal's entry in the report, measured by forward kinematics on the edited motion."""
     request = goal.request
-    position, rotation = seen(poses, request.frame, request.effector, measure=request.measure, base=request.relative_to)
+    position, rotation = seen(poses, request.frame, request.effector, request.measure)
     error = angle = None
     if request.position is not None:
-        axes = list(request.axes)
-        error = float(np.linalg.norm((request.position - position)[axes]))
+        counted = list(request.measure.counted)
+        error = float(np.linalg.norm((request.position - position)[counted]))
     if request.rotation is not None:
         angle = float(np.degrees(rot.angle_between(rotation, request.rotation)))
     return {
@@ -163,13 +152,10 @@ def goal_place(goal: ClipGoal, poses: WorldPoses) -> FloatArray | None:
     request = goal.request
     if request.position is None:
         return None
-    frame, base = request.frame, request.relative_to
-    wanted, _ = seen(poses, frame, request.effector, measure=request.measure, base=base)
-    axes = list(request.axes)
-    wanted[axes] = request.position[axes]
-    if base is None:
-        return wanted @ request.measure
-    place: FloatArray = poses.positions[frame, base] + rot.rotate(poses.rotations[frame, base], wanted)
+    frame, measure = request.frame, request.measure
+    one = poses.at(slice(frame, frame + 1))
+    now = measure.positions(effector_positions(one, request.effector), one)
+    place: FloatArray = measure.in_world(measure.aimed(now, request.position[None]), one)[0]
     return place
 
 

@@ -92,7 +92,7 @@ def _nearest(model: MotionModel, coefficients: FloatArray) -> str:
 def _crowding(model: MotionModel, goals: Sequence[ClipGoal]) -> list[str]:
     """Return a warning where goals ask for more numbers than half the components can give freely."""
     rows = sum(
-        (len(goal.request.axes) if goal.request.position is not None else 0)
+        (len(goal.request.measure.counted) if goal.request.position is not None else 0)
         + (3 if goal.request.rotation is not None else 0)
         for goal in goals
     )

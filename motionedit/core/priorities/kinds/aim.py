@@ -11,7 +11,7 @@ from motionedit.core import rotations as rot
 from motionedit.core.kinematics import effector_positions
 from motionedit.core.measure import Measure
 from motionedit.core.priorities.kinds.constraint import ConstraintErrors, Targets
-from motionedit.core.priorities.kinds.effector import EffectorConstraint, poses_at
+from motionedit.core.priorities.kinds.effector import EffectorConstraint
 from motionedit.core.priorities.problem import CompiledTask
 from motionedit.core.priorities.trajectories import position_targets
 from motionedit.core.units import METRES_PER_RADIAN
@@ -114,7 +114,7 @@ class Aim(EffectorConstraint):
     def errors(self, targets: Targets, after: Sight, *, reference: Motion) -> ConstraintErrors:
         """Return the angle between the axis and the way to what is looked at, which are the `places`."""
         del reference
-        poses = poses_at(after.poses, targets.span)
+        poses = after.poses.at(targets.span)
         at = Measure(base=self.base).in_world(targets.all_positions, poses)
         way = at - effector_positions(poses, self.effector)
         look = rot.rotate(poses.rotations[:, self.effector.joint], self.axis)

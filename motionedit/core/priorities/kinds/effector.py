@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.kinematics import Effector, WorldPoses, effector_positions
+from motionedit.core.kinematics import Effector, effector_positions
 from motionedit.core.measure import WORLD, Measure
 from motionedit.core.priorities.kinds.constraint import Constraint, ConstraintErrors, Movable, Targets
 from motionedit.core.priorities.points import moved_by
@@ -97,7 +97,7 @@ class EffectorConstraint(Constraint):
 
     def left(self, targets: Targets, after: Sight) -> ConstraintErrors:
         """Return how far the effector is from its targets' positions, and its joint from their rotations."""
-        poses = poses_at(after.poses, targets.span)
+        poses = after.poses.at(targets.span)
         lengths = angles = places = None
         if targets.rotations is not None:
             turn = self.measure.rotations(poses.rotations[:, self.effector.joint], poses)
@@ -108,8 +108,3 @@ class EffectorConstraint(Constraint):
             lengths = np.linalg.norm(place - wanted, axis=1)
             places = self.measure.in_world(wanted, poses)
         return ConstraintErrors(targets.first, lengths, angles, places)
-
-
-def poses_at(poses: WorldPoses, span: slice) -> WorldPoses:
-    """Return the poses of some frames."""
-    return WorldPoses(poses.positions[span], poses.rotations[span])

@@ -9,6 +9,7 @@ from motionedit.core import rotations as rot
 from motionedit.core.coefficients.edit import GaussNewton, GoalRequest, edit_by_coefficients
 from motionedit.core.coefficients.projection import project, project_resampled, with_rows
 from motionedit.core.kinematics import Effector
+from motionedit.core.measure import Measure
 
 HAND = 22
 MAP = np.arange(23)
@@ -29,15 +30,7 @@ def projected(model, motion, hit, *, resampled=False):
 def request_of(motion, frame, shift, *, joint=HAND, offset=(0.0, -0.15, 0.0), **changes):
     effector = Effector(joint, np.array(offset))
     at = kinematics.effector_positions(kinematics.forward(motion), effector)[frame]
-    given = {
-        "position": at + shift,
-        "rotation": None,
-        "measure": np.eye(3),
-        "axes": (0, 1, 2),
-        "weight": 1.0,
-        "relative_to": None,
-    }
-    return GoalRequest(frame, effector, **{**given, **changes})
+    return GoalRequest(frame, effector, **{"position": at + shift, "rotation": None, **changes})
 
 
 def edited(model, projection, requests, *, bound=50.0, residual="keep", first=0):
@@ -101,17 +94,15 @@ def test_a_goal_along_other_axes_and_in_another_joints_frame_is_met(model):
         36,
         0.0,
         offset=(0, 0, 0),
-        measure=turned,
+        measure=Measure(turned, (0,)),
         position=turned @ hand + np.array([0.03, 0.0, 0.0]),
-        axes=(0,),
     )
     result = place_of(edited(model, projection, [along]).motion, along)
     assert (turned @ result)[0] == pytest.approx(along.position[0], abs=1e-5)
     spine = 12
     inside = rot.rotate(rot.conjugate(poses.rotations[36, spine]), hand - poses.positions[36, spine])
-    relative = request_of(
-        motion, 36, 0.0, offset=(0, 0, 0), position=inside + np.array([0.02, 0.01, 0.0]), relative_to=spine
-    )
+    further, seen_from = inside + np.array([0.02, 0.01, 0.0]), Measure(base=spine)
+    relative = request_of(motion, 36, 0.0, offset=(0, 0, 0), position=further, measure=seen_from)
     after = kinematics.forward(edited(model, projection, [relative]).motion)
     seen = rot.rotate(rot.conjugate(after.rotations[36, spine]), after.positions[36, HAND] - after.positions[36, spine])
     np.testing.assert_allclose(seen, relative.position, atol=1e-5)
