@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from motionedit.core import rotations as rot
+from motionedit.core.compiled import compiled
 from motionedit.core.priorities.continuity import NO_DISPLACEMENT
 from motionedit.core.priorities.frames import run_of
 from motionedit.core.priorities.kinds.constraint import Movable
@@ -44,6 +45,8 @@ class PrioritizedEdit:
         Whether the last solve of each frame stopped by itself.
     ranks : shape (F, L)
         Independent rows of each layer of priority, the most important first; 0 where it is not active.
+    solver : {"compiled", "numpy"}
+        What solved the frames; numpy's where any of them asked for what the compiled solver does not know.
     recruits : tuple of Recruits
         What each constraint may move, after the recruiting rule.
     breaches : tuple of Breach
@@ -57,6 +60,7 @@ class PrioritizedEdit:
     iterations: IntArray
     converged: BoolArray
     ranks: IntArray
+    solver: Literal["compiled", "numpy"]
     recruits: tuple[Recruits, ...]
     breaches: tuple[Breach, ...]
 
@@ -146,6 +150,7 @@ def edit_by_priorities(
         iterations=iterations,
         converged=state.converged,
         ranks=state.ranks,
+        solver="compiled" if compiled() and all(group.prepared.layout for group in run.groups) else "numpy",
         recruits=run.asked.recruits,
         breaches=tuple(found),
     )

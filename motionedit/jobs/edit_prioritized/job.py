@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from motionedit.core.bvh import edited_pieces, unedited_bytes
-from motionedit.core.compiled import solver_name
 from motionedit.core.motion import Motion
 from motionedit.core.priorities.edit import PrioritizedEdit, RecruitingError, edit_by_priorities
 from motionedit.core.priorities.settings import LayeredSettings, PaperFilter, Passes
@@ -159,7 +158,7 @@ class EditByPriorities:
         result = edit_record(edit, constraints, facts, scale=sized.scale, settings=settings)
         about = {
             **self._about(sized, before, after),
-            "solver": solver_name(),
+            "solver": edit.solver,
             **result.record,
             "passes": spec.smoothing.pass_count,
         }
