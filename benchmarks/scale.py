@@ -7,28 +7,26 @@ writes results-scale.md.
 from __future__ import annotations
 
 import json
-import os
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-HERE = Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE.parent), str(HERE)]
-os.environ["OPENBLAS_NUM_THREADS"] = os.environ["OMP_NUM_THREADS"] = "1"
+import numpy as np
 
-import numpy as np  # noqa: E402
-from clock import Row, best_of, duration, longer, peak_of, process  # noqa: E402
-
-from data.generator.golf import make_swing  # noqa: E402
-from data.generator.players import random_swings  # noqa: E402
-from motionedit.core.bvh import new_bytes, read_clip  # noqa: E402
-from motionedit.core.motion import Motion  # noqa: E402
+from benchmarks.clock import Row, best_of, cells, duration, longer, peak_of, process
+from benchmarks.results import machine, table
+from data.generator.golf import make_swing
+from data.generator.players import random_swings
+from motionedit.core.bvh import new_bytes, read_clip
+from motionedit.core.motion import Motion
+from studies.lab import print_table
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 CONFIGS = ROOT / "configs"
 PROGRAM = Path(sys.executable).parent / "motionedit"
@@ -160,9 +158,6 @@ def _tiled(path: Path, frames: int) -> Path:
 
 def main() -> None:
     """Measure what takes longer than `make bench` may, print the table and write it."""
-    from lab import print_table
-    from run import HEADINGS, machine, table
-
     page = [
         "# Scale\n\nWritten by `make bench-scale`: processes on one core, their time and their peak memory.\n",
         machine(),
@@ -176,8 +171,8 @@ def main() -> None:
             ("A long clip", lambda: longest(Path(scratch))),
         ]
         for title, measure in parts:
-            rows = measure()
-            print_table(title, [HEADINGS, *(row.cells for row in rows)])
+            rows = cells(measure())
+            print_table(title, rows)
             # What was measured stands, should the rest be stopped.
             page.append(table(title, rows))
             (HERE / "results-scale.md").write_text("\n".join(page) + "\n")

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from clock import best_of, duration, process
-from jobs import COM, places
-from others import PeerError, ask, command, versions
 
+from benchmarks.clock import best_of, duration, process
+from benchmarks.peers.jobs import COM, places
+from benchmarks.peers.others import PeerError, ask, command, versions
 from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.center_of_mass import find_masses
 from motionedit.core.bvh import new_bytes, read_clip
@@ -23,8 +23,7 @@ from motionedit.core.priorities.trajectories import ControlPoint, position_targe
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from tables import Table
-
+    from benchmarks.peers.tables import Table
     from motionedit.core.arrays import FloatArray
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from robot import mjcf
 
+from benchmarks.peers.robot import mjcf
 from motionedit.core import rotations as rot
 from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.center_of_mass import center_of_mass, find_masses

@@ -1,4 +1,4 @@
-"""Make the papers' tables and figures anew: `python benchmarks/paper/run.py [STUDY ...]`, or `make paper` for all.
+"""Make the papers' tables and figures anew: `python -m studies.paper.run [STUDY ...]`, or `make paper` for all.
 
 Pictures and tables.md go into --out. With --docs they also replace docs/images/paper-*.png and the blocks of
 docs/papers.md; that needs the real clips, which are read from the folder that MOTIONEDIT_CLIPS names.
@@ -13,14 +13,8 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT), str(ROOT / "benchmarks")]
-# As the program itself does, and before numpy is loaded.
-os.environ["OPENBLAS_NUM_THREADS"] = os.environ["OMP_NUM_THREADS"] = "1"
-
-from lab import Lab  # noqa: E402
-
-from paper import (  # noqa: E402
+from studies.lab import Lab
+from studies.paper import (
     pc_comparison,
     pc_convergence,
     pc_damping,
@@ -34,15 +28,16 @@ from paper import (  # noqa: E402
     prio_reach_step,
     prio_stairs,
 )
-from paper.drawing import png_bytes  # noqa: E402
-from paper.page import with_tables  # noqa: E402
-from paper.study import Study  # noqa: E402
+from studies.paper.drawing import png_bytes
+from studies.paper.page import with_tables
+from studies.paper.study import Study
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from paper.study import Findings
+    from studies.paper.study import Findings
 
+ROOT = Path(__file__).resolve().parents[2]
 STUDIES: dict[str, Callable[[Study], Findings]] = {
     "convergence": pc_convergence.study,
     "pose-space": pc_pose_space.study,

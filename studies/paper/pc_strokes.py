@@ -6,20 +6,20 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from lab import effector_path, jerk
 
-from paper.comparison import Outcome, Task, balance, feet, outcome, timed
-from paper.drawing import BLUE, GREY, GROUND, ORANGE, QUIET, Camera, Stage, body, new_figure
-from paper.study import ALGORITHM_1, Findings, Table, spread
+from studies.lab import effector_path, jerk
+from studies.paper.comparison import Outcome, Task, balance, feet, outcome, timed
+from studies.paper.drawing import BLUE, GREY, GROUND, ORANGE, QUIET, Camera, Stage, body, new_figure
+from studies.paper.study import ALGORITHM_1, Findings, Table, spread
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from lab import Edited
     from matplotlib.figure import Figure
 
     from motionedit.core.arrays import FloatArray
-    from paper.study import Study
+    from studies.lab import Edited
+    from studies.paper.study import Study
 
 WRIST = "RightWrist"
 CAP = 5000

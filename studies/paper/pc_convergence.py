@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from paper.drawing import BLUE, GREY, INK, ORANGE, QUIET, new_figure
-from paper.stopwatch import solver_seconds
-from paper.study import ALGORITHM_1, PAPERS_OUTPUT, Findings, Table, spread
+from studies.paper.drawing import BLUE, GREY, INK, ORANGE, QUIET, new_figure
+from studies.paper.stopwatch import solver_seconds
+from studies.paper.study import ALGORITHM_1, PAPERS_OUTPUT, Findings, Table, spread
 
 if TYPE_CHECKING:
-    from lab import Edited
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from paper.study import Study
+    from studies.lab import Edited
+    from studies.paper.study import Study
 
 # Table 1 of the paper.
 PAPER_ITERATIONS = {2: 19106, 3: 50214, 4: 19929, 5: 4194, 6: 757, 7: 235, 8: 221, 9: 247}

@@ -7,21 +7,20 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from figures_prioritized import plants_of
-from lab import joint_positions
 
 from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.quality import jerk_rms
 from motionedit.core.bvh import read_clip
 from motionedit.core.capsules import clearances, limb_pairs
+from studies.demonstrations import plants_of
+from studies.lab import joint_positions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
-    from lab import Edited, Lab
-
     from motionedit.core.arrays import FloatArray
+    from studies.lab import Edited, Lab
 
 SECONDS = "Seconds of an edit, reading and writing in, least of three"  # a title
 NEAR = 0.2  # s before and after the hit that count as near it

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from figures_prioritized import config, foot_plants, reach, step
 
-from paper.comparison import SECONDS, timed
-from paper.drawing import BLUE, GREY, ORANGE, Camera, Stage, new_figure
-from paper.prio_clips import Shown, stand
-from paper.study import ROOT, Findings, Table
+from studies.demonstrations import config, foot_plants, reach, step
+from studies.paper.comparison import SECONDS, timed
+from studies.paper.drawing import BLUE, GREY, ORANGE, Camera, Stage, new_figure
+from studies.paper.prio_clips import Shown, stand
+from studies.paper.study import ROOT, Findings, Table
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from motionedit.core.arrays import FloatArray
-    from paper.study import Study
+    from studies.paper.study import Study
 
 Spec = dict[str, Any]
 FINAL, LOOSE, INPUT = "final", "without CoM", "input"

@@ -6,18 +6,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from paper.comparison import Outcome, Task, balance, feet, grip, outcome, put_back, timed
-from paper.drawing import BLUE, GREEN, GREY, GROUND, ORANGE, QUIET, Camera, Stage, body, new_figure
-from paper.study import GOLF, Findings, Table, club_head
-from paper.truth import paired
+from studies.paper.comparison import Outcome, Task, balance, feet, grip, outcome, put_back, timed
+from studies.paper.drawing import BLUE, GREEN, GREY, GROUND, ORANGE, QUIET, Camera, Stage, body, new_figure
+from studies.paper.study import GOLF, Findings, Table, club_head
+from studies.paper.truth import paired
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from lab import Edited
     from matplotlib.figure import Figure
 
-    from paper.study import Study
+    from studies.lab import Edited
+    from studies.paper.study import Study
 
 SHIFTS = {"10 cm ahead": np.array([10.0, 0.0, 0.0]), "10 cm away": np.array([0.0, 0.0, 10.0])}
 SHOWN = 0

@@ -6,30 +6,25 @@ Run it with `make figures`. The real clips are read from the folder that MOTIONE
 from __future__ import annotations
 
 import os
-import sys
 import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT), str(Path(__file__).parent)]
-
-import figures_prioritized  # noqa: E402
-from lab import DIRECTIONS, Lab, effector_path, jerk, joint_positions, largest_jerk, print_table  # noqa: E402
-
-from data.generator.files import write_shipped  # noqa: E402
-from motionedit.core.bvh import read_clip  # noqa: E402
-from motionedit.core.pca.model_file import read_model  # noqa: E402
+from data.generator.files import write_shipped
+from motionedit.core.bvh import read_clip
+from motionedit.core.pca.model_file import read_model
+from studies import figures_prioritized
+from studies.lab import DIRECTIONS, Lab, effector_path, jerk, joint_positions, largest_jerk, print_table
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from lab import Edited
-
     from motionedit.core.arrays import FloatArray
+    from studies.lab import Edited
 
+ROOT = Path(__file__).resolve().parents[1]
 SWINGS = [ROOT / "data" / "golf" / f"swing{n:02d}.bvh" for n in range(1, 11)]
 GOLF = {"events": {"hit": {"frames": str(ROOT / "data" / "golf" / "events.csv")}}}
 EVENTS = (ROOT / "data" / "golf" / "events.csv").read_text().split()[1:]

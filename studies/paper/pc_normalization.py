@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from motionedit.core.bvh import read_clip
-from paper.drawing import INK, STYLES, new_figure
-from paper.study import GOLF, Findings, Table, club_head
+from studies.paper.drawing import INK, STYLES, new_figure
+from studies.paper.study import GOLF, Findings, Table, club_head
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from motionedit.core.arrays import FloatArray
-    from paper.study import Study
+    from studies.paper.study import Study
 
 
 def study(lab: Study) -> Findings:

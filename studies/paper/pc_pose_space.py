@@ -6,13 +6,13 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from lab import joint_positions
 
 from motionedit.core import rotations as rot
 from motionedit.core.bvh import edited_bytes, read_clip
 from motionedit.core.kinematics import Effector, effector_positions, forward, position_jacobian
-from paper.drawing import BLUE, GREY, INK, ORANGE, Camera, Stage, body, new_figure
-from paper.study import ALGORITHM_1, Findings, Table, club_head, joint
+from studies.lab import joint_positions
+from studies.paper.drawing import BLUE, GREY, INK, ORANGE, Camera, Stage, body, new_figure
+from studies.paper.study import ALGORITHM_1, Findings, Table, club_head, joint
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.motion import Motion
-    from paper.study import Study
+    from studies.paper.study import Study
 
 SHOWN = 3
 SHIFT = np.array([10.0, 0.0, 10.0])

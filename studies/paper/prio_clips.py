@@ -13,7 +13,7 @@ from motionedit.core.body.contacts import find_plants
 from motionedit.core.body.quality import foot_drift
 from motionedit.core.bvh import read_clip
 from motionedit.jobs.clip.facts import facts_of
-from paper.drawing import GREY, INK, body, hull, outside
+from studies.paper.drawing import GREY, INK, body, hull, outside
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.report.preview.body import Body
-    from paper.drawing import Stage
+    from studies.paper.drawing import Stage
 
 
 _LOW = 0.07  # leg lengths over its lowest at which a point of a foot stands, as contacts are found

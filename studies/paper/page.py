@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from paper.study import Table
+    from studies.paper.study import Table
 
 _BLOCK = re.compile(
     r"(?P<head><!-- make paper: (?P<name>[\w-]+)(?P<quoted>, quoted)? -->\n```text\n)(?P<text>.*?)^```$",

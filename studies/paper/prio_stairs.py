@@ -5,19 +5,20 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from figures_prioritized import HEADINGS as MEASURES
-from figures_prioritized import config, measured, stairs
 
-from paper.comparison import SECONDS, timed
-from paper.drawing import GREY, GROUND, ORANGE, Camera, Stage, new_figure
-from paper.prio_clips import Shown
-from paper.study import ROOT, Findings, Table
+from studies.demonstrations import config, stairs
+from studies.figures_prioritized import HEADINGS as MEASURES
+from studies.figures_prioritized import measured
+from studies.paper.comparison import SECONDS, timed
+from studies.paper.drawing import GREY, GROUND, ORANGE, Camera, Stage, new_figure
+from studies.paper.prio_clips import Shown
+from studies.paper.study import ROOT, Findings, Table
 
 if TYPE_CHECKING:
-    from lab import Edited
     from matplotlib.figure import Figure
 
-    from paper.study import Study
+    from studies.lab import Edited
+    from studies.paper.study import Study
 
 # When a foot stands on which step, and on which height: of configs/stairs.yaml.
 STEPS = (("RightToeBase", 42, 12.0), ("LeftToeBase", 57, 24.0), ("RightToeBase", 71, 36.0), ("LeftToeBase", 86, 48.0))

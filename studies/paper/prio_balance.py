@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from paper.drawing import BLUE, INK, ORANGE, new_figure
-from paper.prio_clips import Shown
-from paper.study import ROOT, Findings, Table
+from studies.paper.drawing import BLUE, INK, ORANGE, new_figure
+from studies.paper.prio_clips import Shown
+from studies.paper.study import ROOT, Findings, Table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from motionedit.core.arrays import FloatArray
-    from paper.study import Study
+    from studies.paper.study import Study
 
 
 def study(lab: Study) -> Findings:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from motionedit.core.arrays import FloatArray
-    from paper.study import Study
+    from studies.paper.study import Study
 
 
 def paired(lab: Study, swing: int, ball: Sequence[float]) -> Path:

@@ -6,17 +6,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from paper.drawing import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, QUIET, STYLES, Camera, Stage, body, new_figure
-from paper.study import ALGORITHM_1, Findings, Table
-from paper.truth import coefficients, paired
+from studies.paper.drawing import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, QUIET, STYLES, Camera, Stage, body, new_figure
+from studies.paper.study import ALGORITHM_1, Findings, Table
+from studies.paper.truth import coefficients, paired
 
 if TYPE_CHECKING:
-    from lab import Edited
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from motionedit.core.arrays import FloatArray
-    from paper.study import Study
+    from studies.lab import Edited
+    from studies.paper.study import Study
 
 INPUT = 0  # swing01, of style 1
 GOALS = (7, 2, 5, 4, 1)  # the swings, all of other styles, whose balls are the five goals

@@ -8,19 +8,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from lab import effector_path, table_text
 
 from motionedit.core.bvh import read_clip
 from motionedit.core.pca.model_file import read_model
+from studies.lab import effector_path, table_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from lab import Edited, Lab
     from matplotlib.figure import Figure
 
     from motionedit.core.arrays import FloatArray
     from motionedit.core.pca.model import MotionModel
+    from studies.lab import Edited, Lab
 
 ROOT = Path(__file__).resolve().parents[2]
 GOLF = {"events": {"hit": {"frames": str(ROOT / "data" / "golf" / "events.csv")}}}

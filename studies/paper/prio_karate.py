@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from figures_prioritized import config, karate
 
-from paper.comparison import SECONDS, timed
-from paper.drawing import BLUE, GREY, ORANGE, PURPLE, Camera, Stage, new_figure
-from paper.prio_clips import Shown, stand
-from paper.study import ROOT, Findings, Table
+from studies.demonstrations import config, karate
+from studies.paper.comparison import SECONDS, timed
+from studies.paper.drawing import BLUE, GREY, ORANGE, PURPLE, Camera, Stage, new_figure
+from studies.paper.prio_clips import Shown, stand
+from studies.paper.study import ROOT, Findings, Table
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from motionedit.core.arrays import FloatArray
-    from paper.study import Study
+    from studies.paper.study import Study
 
 Spec = dict[str, Any]
 PRIORITIES, LOOSE, WEIGHTS, INPUT = "priorities", "without CoM", "weights", "input"

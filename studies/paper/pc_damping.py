@@ -5,16 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from lab import jerk, joint_positions
 
-from paper.drawing import BLUE, GREY, ORANGE, PURPLE, Camera, Stage, body, new_figure
-from paper.study import ALGORITHM_1, Findings, Table, club_head
+from studies.lab import jerk, joint_positions
+from studies.paper.drawing import BLUE, GREY, ORANGE, PURPLE, Camera, Stage, body, new_figure
+from studies.paper.study import ALGORITHM_1, Findings, Table, club_head
 
 if TYPE_CHECKING:
-    from lab import Edited
     from matplotlib.figure import Figure
 
-    from paper.study import Study
+    from studies.lab import Edited
+    from studies.paper.study import Study
 
 DISTANCES = (5, 10, 20, 30, 45, 60)
 SOLVERS: dict[str, tuple[str, dict[str, Any]]] = {
