@@ -11,7 +11,7 @@ import numpy as np
 from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.quality import jerk_rms
 from motionedit.core.bvh import read_clip
-from motionedit.core.capsules import clearances, limb_pairs
+from studies.capsules import clearances, limb_pairs
 from studies.demonstrations import plants_of
 from studies.lab import joint_positions
 

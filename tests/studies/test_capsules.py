@@ -7,10 +7,10 @@ import pytest
 
 from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.bvh import read_clip
-from motionedit.core.capsules import Capsule, clearances, limb_pairs, segment_distance
 from motionedit.core.kinematics import forward
+from studies.capsules import Capsule, clearances, limb_pairs, segment_distance
 
-WALK = Path(__file__).resolve().parents[3] / "data" / "walk.bvh"
+WALK = Path(__file__).resolve().parents[2] / "data" / "walk.bvh"
 
 
 @pytest.mark.parametrize(
