@@ -114,10 +114,6 @@ class Duration:
         """Return the number of frames at `frame_time` seconds a frame, not rounded."""
         return self.amount / frame_time if self.is_seconds else self.amount
 
-    def in_seconds(self, frame_time: float) -> float:
-        """Return the seconds at `frame_time` seconds a frame."""
-        return self.amount if self.is_seconds else self.amount * frame_time
-
 
 def unknown_event(name: str, events: tuple[str, ...]) -> str:
     """Return the message for an event that is not there."""

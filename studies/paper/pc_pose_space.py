@@ -9,7 +9,8 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.bvh import edited_bytes, read_clip
-from motionedit.core.kinematics import Effector, effector_positions, forward, position_jacobian
+from motionedit.core.kinematics import Effector, forward
+from motionedit.core.priorities.tasks import Columns, Point, Recruited
 from studies.lab import joint_positions
 from studies.paper.drawing import BLUE, GREY, INK, ORANGE, Camera, Stage, body, new_figure
 from studies.paper.study import ALGORITHM_1, Findings, Table, club_head, joint
@@ -64,11 +65,12 @@ def by_poses(lab: Study, swing: int, shift: FloatArray, *, damping: float) -> Po
     tip = Effector(club, next(site.offset for site in skeleton.end_sites if site.joint == club))
     chain = skeleton.chain(club)
     pose = replace(motion, rotations=motion.rotations[hit : hit + 1], translations=motion.translations[hit : hit + 1])
-    goal = effector_positions(forward(pose), tip)[0] + shift
+    point = Point(Columns(skeleton, chain, 0), tip, Recruited(np.ones(len(chain), dtype=np.bool_), root=True))
+    goal = point.position(forward(pose))[0] + shift
     iterations = 0
-    while np.linalg.norm(error := goal - effector_positions(forward(pose), tip)[0]) >= 1.0:
-        turns = position_jacobian(forward(pose), tip, joints=chain)[0]
-        J = np.hstack((np.eye(3) / _METRES, turns))
+    while np.linalg.norm(error := goal - point.position(forward(pose))[0]) >= 1.0:
+        rows = point.position_rows(forward(pose))[0]
+        J = np.hstack((rows[:, -3:] / _METRES, rows[:, :-3]))
         step = J.T @ np.linalg.solve(J @ J.T + damping**2 * np.eye(3), error)
         pose = _stepped(pose, chain, step[:3] / _METRES, step[3:].reshape(-1, 3))
         iterations += 1

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from channels import motion_from_channels
 from click.testing import CliRunner
 
 from motionedit.cli import main
 from motionedit.core.bvh import new_bytes
-from motionedit.core.motion import motion_from_channels
 from motionedit.core.skeleton import EndSite, Skeleton
 
 _ROOT = ("Xposition", "Yposition", "Zposition", "Zrotation", "Xrotation", "Yrotation")

@@ -6,12 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from channels import motion_from_channels
 
 from motionedit.core import kinematics
 from motionedit.core import rotations as rot
 from motionedit.core.bvh import new_bytes, read_clip
 from motionedit.core.kinematics import forward
-from motionedit.core.motion import Motion, motion_from_channels, scaled
+from motionedit.core.motion import Motion, scaled
 from motionedit.core.skeleton import EndSite, Skeleton
 from motionedit.jobs.clip import facts as clip_facts
 from motionedit.jobs.clip.facts import facts_of
