@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from motionedit.report.record import SCHEMA
-from motionedit.report.schema.edits import EDIT_PARTS
-from motionedit.report.schema.forms import Schema, list_of, obj, or_null, part, text
-from motionedit.report.schema.others import MODEL, OTHER_PARTS
+from report_schema.edits import EDIT_PARTS
+from report_schema.forms import Schema, list_of, obj, or_null, part, text
+from report_schema.others import MODEL, OTHER_PARTS
 
 # What stands in `clips` of each command's report.
 _CLIPS: dict[str, tuple[str, ...]] = {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from motionedit.report.schema.forms import (
+from report_schema.forms import (
     CLIP,
     INTEGER,
     MESSAGE,
