@@ -11,7 +11,8 @@ from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.ground import rest_pose_frames
 from motionedit.core.bvh import read_clip
 from motionedit.core.kinematics import forward
-from studies.demonstrations import config, foot_plants, karate, reach, stairs, step
+from motionedit.core.units import STANDARD_LEG
+from studies.demonstrations import config, foot_plants, karate, leg, reach, stairs, step
 from studies.lab import jerk
 
 if TYPE_CHECKING:
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
     from studies.lab import Edited, Lab
 
 ROOT = Path(__file__).resolve().parents[1]
+# Of a leg, which all bodies are scaled to.
+MILLIMETRES = 1e3 * STANDARD_LEG
 HEADINGS = (
     "edit",
     "met layers (mm)",
@@ -63,7 +66,7 @@ def measured(what: str, clip: Path, edit: Edited, spec: Sequence[dict[str, Any]]
     """Return an edit's row, lengths scaled to a leg of 0.85 m."""
     before, after = read_clip(clip).motion, read_clip(edit.path).motion
     anatomy = find_anatomy(before.skeleton)
-    millimetres = 850.0 / anatomy.leg_length
+    millimetres = MILLIMETRES / anatomy.leg_length
     first = rest_pose_frames(before, anatomy)
     constraints = edit.record["constraints"]
     missed = [c["priority"] for c in constraints if not small(c, millimetres)]
@@ -122,15 +125,16 @@ def laws(lab: Lab) -> list[tuple[str, ...]]:
     one, other = (lab.edit_prioritized(walk, s).path for s in (spec, renumbered))
     rows = [("what", "measured")]
     rows.append(("priorities {10, 4, 2} and {3, 2, 1}", "the same bytes" if same(one, other) else "other bytes"))
+    millimetres = MILLIMETRES / leg(walk)
     for weight in (1, 10):
-        record = lab.edit_prioritized(walk, {"constraints": conflict(weight)}).record["constraints"]
-        errors = " and ".join(f"{c['error_max'] * 850.0 / 86.5:.2f}" for c in record)
+        record = lab.edit_prioritized(walk, {"constraints": conflict(weight, 300.0 / millimetres)}).record
+        errors = " and ".join(f"{c['error_max'] * millimetres:.2f}" for c in record["constraints"])
         rows.append((f"a conflict of 300 mm, weights {weight} and 1: left (mm)", errors))
     met = read_clip(lab.edit_prioritized(walk, {**spec, "constraints": spec["constraints"][:2]}).path).motion
     below = read_clip(one).motion
     feet = [j for _, j in find_anatomy(below.skeleton).foot_points]
     moved = np.abs(forward(met).positions[:, feet] - forward(below).positions[:, feet]).max()
-    rows.append(("the CoM taken away moves the feet by at most (mm)", f"{moved * 850.0 / 86.5:.4f}"))
+    rows.append(("the CoM taken away moves the feet by at most (mm)", f"{moved * millimetres:.4f}"))
     rows.append(("nothing asked for", "the input's bytes" if same(walk, nothing(lab, walk)) else "other bytes"))
     return rows
 
@@ -145,9 +149,8 @@ def nothing(lab: Lab, clip: Path) -> Path:
     return lab.edit_prioritized(clip, {"constraints": []}).path
 
 
-def conflict(weight: float) -> list[dict[str, Any]]:
-    """Return two goals of one priority, 300 mm (leg 0.85 m) apart, for one hand."""
-    far = 300.0 * 86.5 / 850.0
+def conflict(weight: float, far: float) -> list[dict[str, Any]]:
+    """Return two goals of one priority for one hand, so far (clip units) from each other."""
     common = {"type": "position", "effector": "RightHand", "tolerance": "off"}
     return [
         {**common, "name": "here", "weight": weight, "points": [{"hold": [0, 144], "position": [-30, 120, 300]}]},

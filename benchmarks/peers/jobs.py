@@ -28,6 +28,7 @@ from motionedit.core.priorities.edit import (
     prepare,
 )
 from motionedit.core.priorities.trajectories import ControlPoint, position_targets
+from motionedit.core.units import STANDARD_LEG
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -38,7 +39,6 @@ if TYPE_CHECKING:
 # Stands for a joint where a task is the center of mass, as in protocol.py.
 COM = -1
 WALK = Path(__file__).resolve().parents[2] / "data" / "walk.bvh"
-LEG = 0.85
 # The reach: metres from where the wrist is, the frames in which it stands still there, and frames to either side.
 PLACE, HELD, EASE = (58.0, 150.0, 322.0), (66, 72), 17.5
 # Metres: a task is met when it is as near.
@@ -109,13 +109,13 @@ def reach() -> Job:
     """Return the reaching clip: four foot points over the left wrist over the center of mass."""
     clip = read_clip(WALK)
     anatomy = find_anatomy(clip.motion.skeleton)
-    motion = scaled(clip.motion, LEG / anatomy.leg_length)
+    motion = scaled(clip.motion, STANDARD_LEG / anatomy.leg_length)
     masses = find_masses(motion.skeleton, find_anatomy(motion.skeleton))
     body = Body(masses, tuple(find_hinges(motion, anatomy, first=0)), travel_joint(motion), 0)
     here = np.zeros(3)
     feet = [Constraint("position", name, 10, 1.0, Effector(j, here)) for name, j in anatomy.foot_points]
     wrist = Effector(motion.skeleton.names.index("LeftHand"), here)
-    point = ControlPoint("hold", *HELD, position=LEG / anatomy.leg_length * np.array(PLACE))
+    point = ControlPoint("hold", *HELD, position=STANDARD_LEG / anatomy.leg_length * np.array(PLACE))
     hand = Constraint("position", "hand", 4, 1.0, wrist, points=(point,), ease_in=EASE, ease_out=EASE)
     return _job(motion, body, [*feet, hand, Constraint("com", "balance", 2, 1.0, Effector(0, here))])
 

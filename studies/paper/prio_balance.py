@@ -35,7 +35,7 @@ def _aside(clip: Shown) -> tuple[FloatArray, FloatArray]:
     ahead = (com[-1] - com[0]) * np.array([1.0, 0.0, 1.0])
     ahead /= np.linalg.norm(ahead)
     left = np.cross([0.0, 1.0, 0.0], ahead)
-    centimetres = 85.0 / clip.size
+    centimetres = clip.centimetres
     flat = [centimetres * (path - com[0]) @ np.stack((ahead, left), axis=1) for path in (com, mean)]
     return flat[0], flat[1]
 

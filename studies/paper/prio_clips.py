@@ -12,6 +12,7 @@ from motionedit.core.body.center_of_mass import center_of_mass, find_masses
 from motionedit.core.body.contacts import find_plants
 from motionedit.core.body.quality import foot_drift
 from motionedit.core.bvh import read_clip
+from motionedit.core.units import STANDARD_LEG
 from motionedit.jobs.clip.facts import facts_of
 from studies.paper.drawing import GREY, INK, body, hull, outside
 
@@ -60,6 +61,11 @@ class Shown:
         """The mean of A, shape (F, 3)."""
         mean: FloatArray = self.feet.mean(axis=1)
         return mean
+
+    @property
+    def centimetres(self) -> float:
+        """Centimetres per clip unit, for a leg as long as all bodies are scaled to."""
+        return 1e2 * STANDARD_LEG / self.size
 
     @property
     def size(self) -> float:

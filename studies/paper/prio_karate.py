@@ -69,7 +69,7 @@ def _table(
 ) -> Table:
     """Return what each variant does with the goal, the support foot and the balance."""
     source, (support, kick) = clips[INPUT], joints
-    scale = 85.0 / source.size
+    scale = source.centimetres
     rows: list[tuple[str, ...]] = [
         ("variant", "short of the goal", "support foot moves, most", "CoM off P'", "CoM outside the foot")
     ]
@@ -98,7 +98,7 @@ def _heights(lab: Study, clip: Path) -> tuple[dict[float, Shown], dict[float, fl
 
 
 def _heights_table(heights: dict[float, Shown], source: Shown) -> Table:
-    scale = 85.0 / source.size
+    scale = source.centimetres
     rows: list[tuple[str, ...]] = [("asked", "risen", "left", "support foot moves, most", "CoM off P'")]
     for rise, clip in heights.items():
         moved = clip.point("RightFoot")[AT] - source.point("RightFoot")[AT]

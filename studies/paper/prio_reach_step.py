@@ -72,7 +72,7 @@ def _variants(lab: Study, clip: Path, specs: dict[str, Spec]) -> tuple[dict[str,
 def _reach_table(name: str, clips: dict[str, Shown], hand: str, frame: int, *, quoted: bool = False) -> Table:
     """Return where hand, feet and CoM of each variant are, beside the input's."""
     source = clips[INPUT]
-    scale = 85.0 / source.size
+    scale = source.centimetres
     rows: list[tuple[str, ...]] = [
         ("variant", "hand moves", "planted feet move", "CoM off its path, most", "CoM outside the feet")
     ]
@@ -88,7 +88,7 @@ def _reach_table(name: str, clips: dict[str, Shown], hand: str, frame: int, *, q
 
 def _step_table(name: str, clips: dict[str, Shown], ankle: str, frame: int, *, quoted: bool = False) -> Table:
     source = clips[INPUT]
-    scale = 85.0 / source.size
+    scale = source.centimetres
     other = "LeftFoot" if ankle == "RightFoot" else "RightFoot"
     rows: list[tuple[str, ...]] = [("variant", "ankle rises", "toe of that foot rises", "other foot moves, most")]
     for variant, clip in clips.items():
