@@ -81,7 +81,7 @@ golden: $(STAMP)  ## write the golden files anew; look at the difference before 
 	$(BIN)/python tests/golden/write.py
 
 bench: $(STAMP)  ## measure speed, as ratios inside one run
-	$(BIN)/python benchmarks/run.py
+	$(BIN)/python -m benchmarks.run
 
 PEERS := pink mink placo bpy pybvh
 # What cannot be installed is left out; its rows say so. Its log is .venv-peers/NAME.log.
@@ -92,16 +92,16 @@ PEERS := pink mink placo bpy pybvh
 		|| echo "$* cannot be installed, see .venv-peers/$*.log"
 
 bench-peers: $(STAMP) $(PEERS:%=.venv-peers/%/.installed)  ## measure beside pink, mink, placo, Blender and pybvh, each in a .venv-peers/NAME
-	$(BIN)/python benchmarks/peers/compare.py
+	$(BIN)/python -m benchmarks.peers.compare
 
 bench-scale: $(STAMP)  ## measure many and long clips: their time and peak memory
-	$(BIN)/python benchmarks/scale.py
+	$(BIN)/python -m benchmarks.scale
 
 figures: $(STAMP)  ## print the accuracy figures that the documentation quotes
-	$(BIN)/python benchmarks/figures.py
+	$(BIN)/python -m studies.figures
 
 paper: $(STAMP)  ## make the tables and figures of both papers anew, in out/paper and in docs/
-	$(BIN)/python benchmarks/paper/run.py --out $(OUT)/paper --docs
+	$(BIN)/python -m studies.paper.run --out $(OUT)/paper --docs
 
 data: $(STAMP)  ## write the clips in data/ anew, from the generator
 	$(BIN)/python -m data.generator

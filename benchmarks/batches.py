@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from clock import Row, best_of, duration
 
+from benchmarks.clock import Row, best_of, duration
 from data.generator.golf import make_swing
 from data.generator.players import random_swings
 from motionedit.core.bvh import new_bytes, read_clip

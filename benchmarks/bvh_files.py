@@ -6,7 +6,8 @@ import warnings
 from typing import TYPE_CHECKING
 
 import numpy as np
-from clock import Row, best_of, faster
+
+from benchmarks.clock import Row, best_of, faster
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore", PendingDeprecationWarning)

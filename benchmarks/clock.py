@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
     from pathlib import Path
 
 # A turn lasts at least this many seconds: something short runs often in it.
@@ -34,6 +34,11 @@ class Row:
     def cells(self) -> tuple[str, ...]:
         """The texts under HEADINGS."""
         return self.what, self.ours, self.reference, self.ratio, self.aim, self.verdict
+
+
+def cells(rows: Iterable[Row]) -> list[tuple[str, ...]]:
+    """Return rows as the texts of a table, under HEADINGS."""
+    return [HEADINGS, *(row.cells for row in rows)]
 
 
 def best_of(contenders: Mapping[str, Callable[[], object]], *, rounds: int) -> dict[str, float]:

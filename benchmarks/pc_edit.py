@@ -7,15 +7,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import yaml
-from clock import Row, at_most, best_of, longer, process
-from lab import Lab
 
+from benchmarks.clock import Row, at_most, best_of, longer, process
 from motionedit.core.coefficients import edit as coefficient_edit
 from motionedit.core.coefficients.goals import stacked_errors
 from motionedit.core.coefficients.solver import solve_goals
 from motionedit.jobs.batch.plan import RunOptions
 from motionedit.jobs.edit_pc import job as edit_pc
 from motionedit.spec.load import load_spec
+from studies.lab import Lab
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -9,9 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from clock import Row, best_of
-from figures_prioritized import config, foot_plants, reach
 
+from benchmarks.clock import Row, best_of
 from motionedit.core.bvh import read_clip
 from motionedit.core.compiled import CHOICE, solver_name
 from motionedit.core.motion import Motion
@@ -22,6 +21,7 @@ from motionedit.core.priorities.settings import Body, LayeredSettings, Passes
 from motionedit.jobs.batch.plan import ClipTask
 from motionedit.jobs.edit_prioritized.job import EditByPriorities
 from motionedit.spec.load import load_spec
+from studies.demonstrations import config, foot_plants, reach
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -7,28 +7,26 @@ writes results-scale.md.
 from __future__ import annotations
 
 import json
-import os
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-HERE = Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE.parent), str(HERE)]
-os.environ["OPENBLAS_NUM_THREADS"] = os.environ["OMP_NUM_THREADS"] = "1"
+import numpy as np
 
-import numpy as np  # noqa: E402
-from clock import Row, best_of, duration, longer, peak_of, process  # noqa: E402
-
-from data.generator.golf import make_swing  # noqa: E402
-from data.generator.players import random_swings  # noqa: E402
-from motionedit.core.bvh import new_bytes, read_clip  # noqa: E402
-from motionedit.core.motion import Motion  # noqa: E402
+from benchmarks.clock import Row, best_of, cells, duration, longer, peak_of, process
+from benchmarks.results import machine, table
+from data.generator.golf import make_swing
+from data.generator.players import random_swings
+from motionedit.core.bvh import new_bytes, read_clip
+from motionedit.core.motion import Motion
+from studies.lab import print_table
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 CONFIGS = ROOT / "configs"
 PROGRAM = Path(sys.executable).parent / "motionedit"
@@ -40,22 +38,39 @@ LEAST_RATE = 6_000.0
 MOST_TIMES_FILE = 6.0
 MOST_MEMORY = 1e9
 MANY = 1_000
+# What motionedit/dataclass.py saves is measured beside it.
+_WITH_PLAIN_DATACLASSES = """\
+import dataclasses, motionedit.dataclass
+motionedit.dataclass.dataclass = dataclasses.dataclass
+from motionedit.cli import main
+main()
+"""
 
 
 def edits(folder: Path) -> list[Row]:
     """Return the rows of edit-prioritized as a process, file to file, on one core."""
     long = _tiled(folder / "long.bvh", LONG)
-    libraries = process((sys.executable, "-c", "import numpy, click, yaml"), folder)
-    short = process(_edit(WALK, folder), folder)
-    for run in (libraries, short):  # compiled modules are written, files are in memory
+    edit = _edit(WALK, folder)
+    runs = {
+        "short": process(edit, folder),
+        "plain": process((sys.executable, "-c", _WITH_PLAIN_DATACLASSES, *edit[1:]), folder),
+        "libraries": process((sys.executable, "-c", "import numpy, click, yaml"), folder),
+    }
+    for run in runs.values():  # compiled modules are written, files are in memory
         run()
-    best = best_of({"short": short, "libraries": libraries}, rounds=8)
+    best = best_of(runs, rounds=8)
     best |= best_of({"long": process(_edit(long, folder), folder)}, rounds=2)
     than = "import numpy, click, yaml"
     rate = LONG / best["long"]
     return [
         longer(
             "edit-prioritized, reach.yaml, 145 frames, a process", best["short"], best["libraries"], aim=3.0, than=than
+        ),
+        Row(
+            "the same with the library's frozen dataclasses",
+            duration(best["plain"]),
+            f"{duration(best['short'])} with our own",
+            f"{best['plain'] / best['short']:.2f} x",
         ),
         Row(
             f"edit-prioritized, reach.yaml, {LONG:,} frames, a process",
@@ -160,9 +175,6 @@ def _tiled(path: Path, frames: int) -> Path:
 
 def main() -> None:
     """Measure what takes longer than `make bench` may, print the table and write it."""
-    from lab import print_table
-    from run import HEADINGS, machine, table
-
     page = [
         "# Scale\n\nWritten by `make bench-scale`: processes on one core, their time and their peak memory.\n",
         machine(),
@@ -176,8 +188,8 @@ def main() -> None:
             ("A long clip", lambda: longest(Path(scratch))),
         ]
         for title, measure in parts:
-            rows = measure()
-            print_table(title, [HEADINGS, *(row.cells for row in rows)])
+            rows = cells(measure())
+            print_table(title, rows)
             # What was measured stands, should the rest be stopped.
             page.append(table(title, rows))
             (HERE / "results-scale.md").write_text("\n".join(page) + "\n")

@@ -17,11 +17,11 @@ ROOT = DOCS.parent
 sys.path.insert(0, str(DOCS))
 
 import click  # noqa: E402
+from report_schema.report import report_schema  # noqa: E402
 from sessions import refreshed, working_copy  # noqa: E402
 from spec_page import spec_page  # noqa: E402
 
 from motionedit.cli import main as program  # noqa: E402
-from motionedit.report.schema.report import report_schema  # noqa: E402
 
 WIDTH = 80
 CLI_HEAD = """\

@@ -6,7 +6,7 @@ python=$1
 cd "$(dirname "$0")/.."
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-cp -r motionedit tests benchmarks pyproject.toml "$folder/"
+cp -r motionedit tests pyproject.toml "$folder/"
 rm -f "$folder"/motionedit/core/_compiled*
 headers=$("$python" -c 'import sysconfig; print(sysconfig.get_paths()["include"])')
 gcc -shared -fPIC -std=c11 -O1 -g -Wall -Wextra -Werror -fsanitize=address,undefined -fno-sanitize-recover=all \

@@ -9,22 +9,22 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from clock import best_of, duration, process
-from jobs import COM, places
-from others import PeerError, ask, command, versions
 
+from benchmarks.clock import best_of, duration, process
+from benchmarks.peers.jobs import COM, places
+from benchmarks.peers.others import PeerError, ask, command, versions
 from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.center_of_mass import find_masses
 from motionedit.core.bvh import new_bytes, read_clip
 from motionedit.core.kinematics import forward
 from motionedit.core.motion import Motion
 from motionedit.core.priorities.trajectories import ControlPoint, position_targets
+from motionedit.core.units import STANDARD_LEG
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from tables import Table
-
+    from benchmarks.peers.tables import Table
     from motionedit.core.arrays import FloatArray
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -34,7 +34,6 @@ LONG = 2752
 ROUNDS = 3
 # The first and last frame of the reach, and where it stands still, in each repetition; centimetres.
 REACH, HELD, SHIFT = (50, 88), (66, 72), (26.0, 52.0, 17.0)
-LEG = 0.85
 FEET = ("LeftFoot", "LeftToeBase", "RightFoot", "RightToeBase")
 # Bones whose tails are at ankles and wrist, and the lengths of their chains: to the hip joints, to the lower back.
 CHAINS = (("LeftLeg", 3), ("RightLeg", 3), ("LeftForeArm", 6))
@@ -172,7 +171,7 @@ def _off(before: Motion, after: Motion, hand: FloatArray) -> tuple[float, float,
     joints = [there("LeftHand"), *(there(name) for name in FEET), COM]
     was, now = places(forward(before), masses, joints), places(forward(after), masses, joints)
     was[:, 0] = hand
-    off = 1e3 * LEG / anatomy.leg_length * np.linalg.norm(now - was, axis=2)
+    off = 1e3 * STANDARD_LEG / anatomy.leg_length * np.linalg.norm(now - was, axis=2)
     # Smoothing lets the hand leave its path a little before the reach, and return a little after.
     return float(off[REACH[0] : REACH[1] + 1, 0].max()), float(off[:, 1:5].max()), float(off[:, 5].max())
 

@@ -6,25 +6,15 @@ its place in the tables all the same.
 
 from __future__ import annotations
 
-import os
-import sys
 import tempfile
 from pathlib import Path
 
-HERE = Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE.parents[1]), str(HERE.parent), str(HERE)]
-# As the program itself does, and before numpy is loaded.
-os.environ["OPENBLAS_NUM_THREADS"] = os.environ["OMP_NUM_THREADS"] = "1"
+from benchmarks.peers import blender, files, jobs, whole_body
+from benchmarks.peers.tables import Table, page
+from benchmarks.results import machine
+from studies.lab import print_table
 
-import blender  # noqa: E402
-import files  # noqa: E402
-import jobs  # noqa: E402
-import whole_body  # noqa: E402
-from lab import print_table  # noqa: E402
-from run import machine  # noqa: E402
-from tables import Table, page  # noqa: E402
-
-RESULTS = HERE.parent / "peers.md"
+RESULTS = Path(__file__).resolve().parents[1] / "peers.md"
 
 
 def main() -> None:

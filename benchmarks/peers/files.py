@@ -6,17 +6,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from bvh_files import FRAMES, made_motion
-from clock import best_of, duration
-from others import PeerError, ask, versions
 
+from benchmarks.bvh_files import FRAMES, made_motion
+from benchmarks.clock import best_of, duration
+from benchmarks.peers.others import PeerError, ask, versions
 from motionedit.core.bvh import new_bytes, read_clip, unedited_bytes
 from motionedit.errors import MotionEditError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from tables import Table
+    from benchmarks.peers.tables import Table
 
 ROOT = Path(__file__).resolve().parents[2]
 ROUNDS = 3

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from robot import mjcf
 
+from benchmarks.peers.robot import mjcf
 from motionedit.core import rotations as rot
 from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.center_of_mass import center_of_mass, find_masses
@@ -23,6 +23,7 @@ from motionedit.core.priorities.frames import solve_frames
 from motionedit.core.priorities.kinds import CenterOfMass, Position
 from motionedit.core.priorities.settings import Body, LayeredSettings, Passes
 from motionedit.core.priorities.trajectories import ControlPoint, position_targets
+from motionedit.core.units import STANDARD_LEG
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
 # Stands for a joint where a task is the center of mass, as in protocol.py.
 COM = -1
 WALK = Path(__file__).resolve().parents[2] / "data" / "walk.bvh"
-LEG = 0.85
 # The reach: metres from where the wrist is, the frames in which it stands still there, and frames to either side.
 PLACE, HELD, EASE = (58.0, 150.0, 322.0), (66, 72), 17.5
 # Metres: a task is met when it is as near.
@@ -104,13 +104,13 @@ def reach() -> Job:
     """Return the reaching clip: four foot points over the left wrist over the center of mass."""
     clip = read_clip(WALK)
     anatomy = find_anatomy(clip.motion.skeleton)
-    motion = scaled(clip.motion, LEG / anatomy.leg_length)
+    motion = scaled(clip.motion, STANDARD_LEG / anatomy.leg_length)
     masses = find_masses(motion.skeleton, find_anatomy(motion.skeleton))
     body = Body(masses, tuple(find_hinges(motion, anatomy, first=0)), travel_joint(motion), 0)
     here = np.zeros(3)
     feet = [Position(name=name, priority=10, effector=Effector(j, here)) for name, j in anatomy.foot_points]
     wrist = Effector(motion.skeleton.names.index("LeftHand"), here)
-    point = ControlPoint("hold", *HELD, position=LEG / anatomy.leg_length * np.array(PLACE))
+    point = ControlPoint("hold", *HELD, position=STANDARD_LEG / anatomy.leg_length * np.array(PLACE))
     hand = Position(name="hand", priority=4, effector=wrist, points=(point,), ease_in=EASE, ease_out=EASE)
     return _job(motion, body, [*feet, hand, CenterOfMass(name="balance", priority=2)])
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from benchmarks.results import table
+
 INTRODUCTION = """\
 # Beside other tools
 
@@ -15,10 +17,4 @@ Table = list[tuple[str, ...]]
 
 def page(described: str, parts: list[tuple[str, Table]]) -> str:
     """Return the page of results: the introduction, the machine, a table under each title."""
-    return "\n".join([INTRODUCTION, described, *(markdown(title, rows) for title, rows in parts)]) + "\n"
-
-
-def markdown(title: str, rows: Table) -> str:
-    """Return a table under its title, the first row being its heads."""
-    lines = [f"| {' | '.join(row)} |" for row in rows]
-    return "\n".join([f"\n## {title}\n", lines[0], "|" + "---|" * len(rows[0]), *lines[1:]])
+    return "\n".join([INTRODUCTION, described, *(table(title, rows) for title, rows in parts)]) + "\n"

@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 from unittest.mock import patch
 
-import jobs
 import numpy as np
-from clock import best_of
-from jobs import Job, Way
-from others import PeerError, ask, versions
 
+from benchmarks.clock import best_of
+from benchmarks.peers import jobs
+from benchmarks.peers.jobs import Job, Way
+from benchmarks.peers.others import PeerError, ask, versions
 from motionedit.core.compiled import CHOICE, solver_name
 
 if TYPE_CHECKING:
@@ -20,8 +20,7 @@ if TYPE_CHECKING:
     from contextlib import AbstractContextManager
     from pathlib import Path
 
-    from tables import Table
-
+    from benchmarks.peers.tables import Table
     from motionedit.core.arrays import FloatArray
 
 ROUNDS = 3

@@ -8,6 +8,7 @@ import numpy as np
 
 from data.generator.figure import unit
 from motionedit.core import kinematics
+from motionedit.core.units import STANDARD_LEG
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from motionedit.core.motion import Motion
 
 # Lengths are given for a leg of so many cm, whatever the clip's unit and the person's size.
-LEG = 85.0
+LEG = 1e2 * STANDARD_LEG
 
 
 class Track:

@@ -1,4 +1,4 @@
-"""Forward kinematics over all frames at once, and the Jacobians of an effector's position and orientation."""
+"""Forward kinematics over all frames at once."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from motionedit.core.compiled import compiled
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from motionedit.core.arrays import FloatArray, IntArray
+    from motionedit.core.arrays import FloatArray
     from motionedit.core.motion import Motion
 
 
@@ -33,14 +33,6 @@ class WorldPoses:
     def at(self, frames: slice) -> WorldPoses:
         """Return the transforms at some frames."""
         return WorldPoses(self.positions[frames], self.rotations[frames])
-
-
-def local_translations(motion: Motion) -> FloatArray:
-    """Return the translation of every joint in its parent's frame, shape (F, J, 3)."""
-    skeleton = motion.skeleton
-    local = np.repeat(skeleton.offsets[None], len(motion), axis=0)
-    local[:, skeleton.translated] = motion.translations
-    return local
 
 
 def forward(motion: Motion) -> WorldPoses:
@@ -120,20 +112,3 @@ def effector_positions(poses: WorldPoses, effector: Effector) -> FloatArray:
     if not effector.offset.any():
         return poses.positions[:, j].copy()
     return poses.positions[:, j] + rot.rotate(poses.rotations[:, j], effector.offset)
-
-
-def position_jacobian(poses: WorldPoses, effector: Effector, *, joints: IntArray) -> FloatArray:
-    """Return d(effector position)/d(w) for world-axis increments w of the given ancestors, shape (F, 3, 3 K).
-
-    The joint's rotation becomes exp(w) R in the world, so column a of joint j is e_a x (p_e - p_j), in clip units
-    per radian. A joint that is not on the way from the root to the effector has no business here: its columns
-    would not be zero.
-    """
-    levers = effector_positions(poses, effector)[:, None] - poses.positions[:, joints]
-    blocks = -rot.skew(levers)
-    return np.swapaxes(blocks, 1, 2).reshape(len(levers), 3, 3 * len(joints))
-
-
-def orientation_jacobian(frames: int, *, joints: IntArray) -> FloatArray:
-    """Return d(effector orientation)/d(w), the identity for every ancestor, shape (F, 3, 3 K)."""
-    return np.broadcast_to(np.tile(np.eye(3), len(joints)), (frames, 3, 3 * len(joints)))

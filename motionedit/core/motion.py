@@ -60,20 +60,6 @@ def scaled(motion: Motion, factor: float) -> Motion:
     return Motion(sized, motion.rotations, frozen(motion.translations * factor), motion.frame_time)
 
 
-def motion_from_channels(skeleton: Skeleton, values: FloatArray, *, frame_time: float) -> Motion:
-    """Return the motion of channel values.
-
-    Parameters
-    ----------
-    values : shape (F, C)
-        Rows of the file: degrees and clip units. A position channel replaces that axis of OFFSET.
-    """
-    rotations = np.empty((len(values), len(skeleton), 4))
-    translations = np.empty((len(values), len(skeleton.translated), 3))
-    write_poses(skeleton, values, rotations=rotations, translations=translations)
-    return Motion(skeleton, frozen(rotations), frozen(translations), frame_time)
-
-
 def write_poses(skeleton: Skeleton, values: FloatArray, *, rotations: FloatArray, translations: FloatArray) -> None:
     """Write the poses of channel values (F, C) into the arrays of a motion, (F, J, 4) and (F, P, 3)."""
     groups = skeleton.rotation_groups

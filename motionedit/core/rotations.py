@@ -153,33 +153,14 @@ def slerp(a: FloatArray, b: FloatArray, t: FloatArray) -> FloatArray:
     return multiply(a, exp(t[..., None] * step))
 
 
-def mean(q: FloatArray, *, axis: int = 0) -> FloatArray:
-    """Return the Markley mean over one axis: the eigenvector of sum q q^T with the largest eigenvalue, w >= 0."""
-    q = np.moveaxis(q, axis, -2)
-    return mean_of_products(np.swapaxes(q, -1, -2) @ q)
-
-
 def mean_of_products(products: FloatArray) -> FloatArray:
-    """Return the Markley mean of rotations of which sum q q^T is known, shape (..., 4, 4): see `mean`."""
+    """Return the Markley mean of rotations of which sum q q^T is known, shape (..., 4, 4).
+
+    It is the eigenvector with the largest eigenvalue, w >= 0.
+    """
     _, vectors = np.linalg.eigh(products)
     best: FloatArray = vectors[..., -1]
     return np.where(best[..., :1] < 0.0, -best, best)
-
-
-def left_jacobian(v: FloatArray) -> FloatArray:
-    """Return J_l of SO(3) at rotation vectors v: exp(v + dv) = exp(J_l dv) exp(v) to first order, (..., 3, 3).
-
-    J_l = I + (1 - cos t)/t^2 [v]x + (t - sin t)/t^3 [v]x^2 with t = |v|.
-    """
-    t2 = np.sum(v * v, axis=-1)
-    t = np.sqrt(t2)
-    small = t < _SMALL_ANGLE
-    safe = np.where(small, 1.0, t)
-    a = np.where(small, 0.5 - t2 / 24.0, (1.0 - np.cos(t)) / (safe * safe))
-    b = np.where(small, 1.0 / 6.0 - t2 / 120.0, (t - np.sin(t)) / (safe * safe * safe))
-    V = skew(v)
-    J: FloatArray = np.eye(3) + a[..., None, None] * V + b[..., None, None] * (V @ V)
-    return J
 
 
 def about_axis(axis: int, angle: FloatArray) -> FloatArray:

@@ -21,7 +21,11 @@ class Document(SpecModel):
     # Whether times may name events that the spec does not list.
     knows_other_events: ClassVar[bool] = False
 
-    events: Events = Field(default={}, description="Names for instants, used wherever a time stands.")
+    events: Events = Field(
+        default={},
+        description="Names for instants, used wherever a time stands.",
+        json_schema_extra={"propertyNames": dict(kinds.EVENT_NAME.json)},
+    )
     unit: Annotated[Unit | None, kinds.UNIT] = Field(
         default=None,
         description="What a length of the clips is: m, cm, mm, in, cmu (1/0.45 inch) or a number of metres. Converts "

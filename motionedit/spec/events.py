@@ -83,7 +83,7 @@ def _event_in(value: object, context: Context) -> str:
     return name
 
 
-EVENT = Kind(_event_in, "an event's name", {"type": "string", "minLength": 1})
+EVENT = Kind(_event_in, "an event's name", kinds.EVENT_NAME.json)
 Measure = Literal["height", "speed", "distance"]
 MEASURE = kinds.word(*get_args(Measure))
 

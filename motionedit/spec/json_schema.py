@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import BaseModel
 from pydantic.json_schema import GenerateJsonSchema
 
+from motionedit.spec.scalars import AXES
 from motionedit.spec.times import Duration
 from motionedit.spec.values import Recruit, Unit
 
@@ -60,7 +61,7 @@ def _tidied(schema: Any) -> None:  # noqa: ANN401 (any part of a JSON document)
                 if item.get("default", ...) in (None, ""):
                     del item["default"]
                 if key_name == "axes" and "default" in item:
-                    item["default"] = ["xyz"[axis] for axis in item["default"]]
+                    item["default"] = [AXES[axis] for axis in item["default"]]
                 if {"type": "null"} in item.get("anyOf", []):
                     item["anyOf"].remove({"type": "null"})
             first = [name for name in _FIRST if name in value]

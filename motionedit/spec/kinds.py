@@ -3,31 +3,26 @@
 from collections.abc import Callable, Sequence
 from typing import Any, Literal, get_args
 
-from motionedit.spec import scalars, times, values
+from motionedit.spec import grammar, scalars, times, values
 from motionedit.spec.faults import Fault, FaultyValueError, faulty, show
 from motionedit.spec.model import Context, Kind
 from motionedit.spec.times import Interval, Time
 
 Schema = dict[str, Any]
 
+
+def _text(pattern: str) -> Schema:
+    return {"type": "string", "pattern": grammar.whole(pattern)}
+
+
 _NAME: Schema = {"type": "string", "minLength": 1}
 _VECTOR: Schema = {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}
 _JOINTS: Schema = {"type": "array", "items": _NAME, "minItems": 1, "uniqueItems": True}
 _POSITIVE: Schema = {"type": "number", "exclusiveMinimum": 0}
-_AMOUNT = r"(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
-_TIME: Schema = {
-    "anyOf": [
-        {"type": "integer", "minimum": 0},
-        {
-            "type": "string",
-            "pattern": rf"^\s*(?:\+?{_AMOUNT}\s*[s%]?|[A-Za-z_\u0080-\uffff][\w\u0080-\uffff-]*"
-            rf"(?:\s*[-+]\s*{_AMOUNT}\s*s?)?)\s*$",
-        },
-    ]
-}
-_DURATION: Schema = {
-    "anyOf": [{"type": "integer", "minimum": 0}, {"type": "string", "pattern": rf"^\s*\+?{_AMOUNT}\s*s?\s*$"}]
-}
+_FRAME: Schema = {"type": "integer", "minimum": 0}
+_TIME: Schema = {"anyOf": [_FRAME, _text(grammar.TIME)]}
+_DURATION: Schema = {"anyOf": [_FRAME, _text(grammar.DURATION)]}
+_EVENT_NAME: Schema = {**_text(grammar.EVENT), "not": {"enum": list(times.RESERVED_NAMES)}}
 
 
 def _closed(properties: Schema, *required: str) -> Schema:
@@ -44,7 +39,7 @@ _EFFECTOR: Schema = {
 }
 _ORIENTATION: Schema = {
     "anyOf": [
-        _closed({"euler": _VECTOR, "order": {"type": "string", "pattern": "^[XYZxyz]{3}$"}}, "euler", "order"),
+        _closed({"euler": _VECTOR, "order": _text(grammar.ORDER)}, "euler", "order"),
         _closed({"quaternion": {**_VECTOR, "minItems": 4, "maxItems": 4}}, "quaternion"),
         _closed({"rotation_vector": _VECTOR}, "rotation_vector"),
     ]
@@ -145,7 +140,7 @@ DIRECTION = Kind(_plainly(scalars.direction), "a direction [x, y, z]", _VECTOR)
 AXES = Kind(
     _plainly(scalars.axes),
     "a list of some of x, y, z",
-    {"type": "array", "items": {"enum": ["x", "y", "z"]}, "minItems": 1, "uniqueItems": True},
+    {"type": "array", "items": {"enum": list(scalars.AXES)}, "minItems": 1, "uniqueItems": True},
 )
 TIME = Kind(_time, f"a time: {times.TIME_WORDS}", _TIME)
 INTERVAL = Kind(_interval, "an interval [from, to]", {"type": "array", "items": _TIME, "minItems": 2, "maxItems": 2})
@@ -176,7 +171,7 @@ UNIT = Kind(
 RECRUIT = Kind(_plainly(values.parse_recruit), values.RECRUIT_WORDS, _RECRUIT)
 Frame = Literal["world", "heading"]
 FRAME = word(*get_args(Frame))
-EVENT_NAME = Kind(_plainly(times.parse_event_name), "an event's name", _NAME)
+EVENT_NAME = Kind(_plainly(times.parse_event_name), "an event's name", _EVENT_NAME)
 
 
 def schema_id(command: str) -> Kind:

@@ -38,7 +38,7 @@ def _align_at(value: object, context: Context) -> str:
     return name
 
 
-ALIGN_AT = Kind(_align_at, "first or an event's name", {"type": "string", "minLength": 1})
+ALIGN_AT = Kind(_align_at, "first or an event's name", {**kinds.EVENT_NAME.json, "not": {"const": "mean"}})
 
 
 class Align(SpecModel):
@@ -79,7 +79,9 @@ class NormalizeSpec(Document):
         default="drop", description="What becomes of a T-pose in front of a take."
     )
     events: dict[str, Annotated[TimelineEvent, OrFrame()]] = Field(  # type: ignore[assignment]
-        default={}, description="Instants that are brought to the same frame in all clips; none: durations only."
+        default={},
+        description="Instants that are brought to the same frame in all clips; none: durations only.",
+        json_schema_extra={"propertyNames": dict(kinds.EVENT_NAME.json)},
     )
 
     @classmethod

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     T = TypeVar("T")
 
 Vector = tuple[float, float, float]
+AXES = ("x", "y", "z")
 
 
 def number(
@@ -144,11 +145,7 @@ def numbers(value: object, *, count: int, what: str) -> tuple[float, ...]:
 def axes(value: object) -> tuple[int, ...]:
     """Return the indices of some of x, y, z, in that order: ``[z, x]`` is (0, 2)."""
     found = names(value, what="a list of some of x, y, z")
-    faults = [
-        Fault(f"must be x, y or z, not {show(item)}", (i,))
-        for i, item in enumerate(found)
-        if item not in ("x", "y", "z")
-    ]
+    faults = [Fault(f"must be x, y or z, not {show(item)}", (i,)) for i, item in enumerate(found) if item not in AXES]
     if faults:
         raise FaultyValueError(faults)
-    return tuple(sorted("xyz".index(item) for item in found))
+    return tuple(sorted(AXES.index(item) for item in found))

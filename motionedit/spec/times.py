@@ -7,17 +7,16 @@ import re
 from typing import TYPE_CHECKING
 
 from motionedit.dataclass import dataclass
+from motionedit.spec import grammar
 from motionedit.spec.faults import Fault, FaultyValueError, did_you_mean, faulty, listed, show
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-_NUMBER = r"(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
-# A hyphen in an event's name is followed by a letter, so that ``hit-10`` can only be ten frames before ``hit``.
-_EVENT = r"[^\W\d]\w*(?:-[^\W\d]\w*)*"
-_INSTANT = re.compile(rf"(?P<amount>[-+]?{_NUMBER})\s*(?P<unit>s|%)?")
-_FROM_EVENT = re.compile(rf"(?P<event>{_EVENT})(?:\s*(?P<sign>[-+])\s*(?P<amount>{_NUMBER})\s*(?P<unit>s)?)?")
-_EVENT_NAME = re.compile(_EVENT)
+_TIME = re.compile(grammar.TIME)
+_DURATION = re.compile(grammar.DURATION)
+# What would be a time or a duration without its sign.
+_NEGATIVE = re.compile(rf"-{grammar.INSTANT}")
 
 # Words that stand beside event names in a spec and mean something else.
 RESERVED_NAMES = ("first", "mean", "event")
@@ -114,15 +113,11 @@ class Duration:
         """Return the number of frames at `frame_time` seconds a frame, not rounded."""
         return self.amount / frame_time if self.is_seconds else self.amount
 
-    def in_seconds(self, frame_time: float) -> float:
-        """Return the seconds at `frame_time` seconds a frame."""
-        return self.amount if self.is_seconds else self.amount * frame_time
-
 
 def unknown_event(name: str, events: tuple[str, ...]) -> str:
     """Return the message for an event that is not there."""
     known = f"the events are {listed(events)}" if events else "there are no events"
-    return f"no event '{name}'; {did_you_mean(name, events, otherwise=known)}"
+    return f"no event {show(name)}; {did_you_mean(name, events, otherwise=known)}"
 
 
 def parse_time(value: object) -> Time:
@@ -134,48 +129,48 @@ def parse_time(value: object) -> Time:
         Where it is none of these, negative, or more than 100 %.
     """
     text = _text(value)
-    if text is not None:
-        if match := _INSTANT.fullmatch(text):
-            return _instant(value, text, match)
-        if match := _FROM_EVENT.fullmatch(text):
-            return _from_event(value, text, match)
+    if match := _TIME.fullmatch(text):
+        amount, unit, event, sign, shift, shift_unit = match.groups()
+        if event is None:
+            return _instant(value, text, float(amount), unit)
+        return _from_event(value, text, event, float(f"{sign or ''}{shift or 0}"), shift_unit)
+    if _NEGATIVE.fullmatch(text):
+        raise faulty(f"must not be negative: frames count from 0; not {show(value)}")
     raise faulty(f"must be a time: {TIME_WORDS}; not {show(value)}")
 
 
-def _text(value: object) -> str | None:
-    if isinstance(value, bool):
-        return None
-    if isinstance(value, float):
-        if not math.isfinite(value):
-            return None
-        return str(int(value)) if value.is_integer() else repr(value)
-    return str(value).strip() if isinstance(value, (int, str)) else None
+def _text(value: object) -> str:
+    """Return a value as a text that the patterns know; other kinds of values are none of them."""
+    match value:
+        case bool():
+            return ""
+        case float() if value.is_integer():
+            return str(int(value))
+        case float() if math.isfinite(value):
+            return repr(value)
+        case int() | str():
+            return str(value).strip()
+    return ""
 
 
-def _instant(value: object, text: str, match: re.Match[str]) -> Time:
-    amount = float(match["amount"])
-    if amount < 0.0 or text.startswith("-"):
-        raise faulty(f"must not be negative: frames count from 0; not {show(value)}")
+def _instant(value: object, text: str, amount: float, unit: str | None) -> Time:
     if not math.isfinite(amount):
         raise faulty("must be a finite time")
-    if match["unit"] == "s":
+    if unit == "s":
         return Time(text, seconds=amount)
-    if match["unit"] == "%":
+    if unit == "%":
         if amount > 100.0:
             raise faulty(f"must be from 0% to 100% of the clip, not {show(value)}")
         return Time(text, percent=amount)
     return Time(text, frames=_whole_frames(value, amount))
 
 
-def _from_event(value: object, text: str, match: re.Match[str]) -> Time:
-    if match["sign"] is None:
-        return Time(text, event=match["event"])
-    amount = float(match["sign"] + match["amount"])
-    if not math.isfinite(amount):
+def _from_event(value: object, text: str, event: str, shift: float, unit: str | None) -> Time:
+    if not math.isfinite(shift):
         raise faulty("must be a finite time")
-    if match["unit"] == "s":
-        return Time(text, event=match["event"], seconds=amount)
-    return Time(text, event=match["event"], frames=_whole_frames(value, amount))
+    if unit == "s":
+        return Time(text, event=event, seconds=shift)
+    return Time(text, event=event, frames=_whole_frames(value, shift))
 
 
 def _whole_frames(value: object, amount: float) -> int:
@@ -229,17 +224,17 @@ def parse_duration(value: object) -> Duration:
         Where it is neither, negative, or a part of a frame.
     """
     text = _text(value)
-    match = _INSTANT.fullmatch(text) if text is not None else None
-    if text is None or match is None or match["unit"] == "%":
+    match = _DURATION.fullmatch(text)
+    if match is None:
+        if (negative := _NEGATIVE.fullmatch(text)) and negative[2] != "%":
+            raise faulty(f"must not be negative, not {show(value)}")
         raise faulty(f"must be a duration: {DURATION_WORDS}; not {show(value)}")
-    amount = float(match["amount"])
-    if amount < 0.0:
-        raise faulty(f"must not be negative, not {show(value)}")
+    amount, unit = float(match[1]), match[2]
     if not math.isfinite(amount):
         raise faulty("must be a finite duration")
-    if match["unit"] is None and not amount.is_integer():
+    if unit != "s" and not amount.is_integer():
         raise faulty(f"must be {DURATION_WORDS}; not {show(value)}")
-    return Duration(text, amount, match["unit"] == "s")
+    return Duration(text, amount, unit == "s")
 
 
 def parse_event_name(value: object) -> str:
@@ -250,7 +245,7 @@ def parse_event_name(value: object) -> str:
     FaultyValueError
         Where it is something else, or a word that means something else in a spec.
     """
-    if not isinstance(value, str) or not _EVENT_NAME.fullmatch(value):
+    if not isinstance(value, str) or not re.fullmatch(grammar.EVENT, value):
         raise faulty(f"must be an event's name: letters, digits, _ and -, a letter first; not {show(value)}")
     if value in RESERVED_NAMES:
         raise faulty(f"'{value}' means something else in a spec; give the event another name")

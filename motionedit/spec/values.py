@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import itertools
 import math
+import re
 from dataclasses import field
 from typing import TYPE_CHECKING, Literal
 
 from motionedit.dataclass import dataclass
+from motionedit.spec import grammar
 from motionedit.spec.faults import Fault, FaultyValueError, did_you_mean, faulty, listed, show
 from motionedit.spec.scalars import (
     Vector,
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
 
 # Metres a unit. `cmu` is the unit of the CMU motion capture files: 1/0.45 inch.
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "cmu": 0.0254 / 0.45}
-EULER_ORDERS = tuple("".join(order) for order in itertools.permutations("XYZ"))
 EFFECTOR_WORDS = "a joint's name, {joint: NAME, offset: [x, y, z]}, {end_site: NAME} or {end_site: NAME, index: 0}"
 ORIENTATION_WORDS = (
     "{euler: [x, y, z], order: ZXY}, {quaternion: [w, x, y, z]} or {rotation_vector: [x, y, z]}, in degrees"
@@ -199,9 +199,9 @@ def parse_orientation(value: object) -> OrientationSpec:
 
 
 def _parse_order(value: object) -> str:
-    if isinstance(value, str) and value.upper() in EULER_ORDERS:
+    if isinstance(value, str) and re.fullmatch(grammar.ORDER, value):
         return value.upper()
-    raise faulty(f"must be {one_of(EULER_ORDERS)}, not {show(value)}")
+    raise faulty(f"must be {one_of(grammar.ORDERS)}, not {show(value)}")
 
 
 def _parse_quaternion(value: object) -> tuple[float, ...]:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import yaml
 
 from motionedit.dataclass import dataclass
+from motionedit.spec import grammar
 from motionedit.spec.faults import Fault, FaultyValueError, Keys, show
 from motionedit.spec.syntax import DEEPEST, syntax_fault
 
@@ -22,8 +23,8 @@ if TYPE_CHECKING:
 # A spec is a page of text; this bound, and DEEPEST, are far above any real one and keep a hostile one from taking long.
 MOST_NODES = 200_000
 
-_INTEGER = re.compile(r"[-+]?[0-9]+")
-_FLOAT = re.compile(r"[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?")
+_INTEGER = re.compile(rf"[-+]?{grammar.INTEGER}")
+_FLOAT = re.compile(rf"[-+]?(?:{grammar.AMOUNT})")
 # Python refuses to convert integers of thousands of digits; a float of any length is cheap.
 _LONGEST_INTEGER = 40
 

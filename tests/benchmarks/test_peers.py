@@ -3,14 +3,11 @@
 from types import SimpleNamespace
 from xml.etree import ElementTree as ET
 
-import jobs
 import numpy as np
-import others
-import protocol
 import pytest
-import tables
-import whole_body
 from scipy.spatial.transform import Rotation
+
+from benchmarks.peers import jobs, others, protocol, tables, whole_body
 
 WAY = jobs.Way("points", 1.0, 0.1)
 

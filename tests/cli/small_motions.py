@@ -1,8 +1,8 @@
 """Motions for the tests of the command line."""
 
 import numpy as np
+from channels import motion_from_channels
 
-from motionedit.core.motion import motion_from_channels
 from motionedit.core.skeleton import EndSite, Skeleton
 
 _ROOT = ("Xposition", "Yposition", "Zposition", "Zrotation", "Xrotation", "Yrotation")

@@ -5,7 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from lab import effector_path
+
+from studies.lab import effector_path
 
 EDIT = "edit-prioritized"
 

@@ -5,13 +5,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from lab import effector_path
 
 from motionedit.core.bvh import parse_clip, read_clip, resampled_bytes
 from motionedit.core.motion import Motion
 from motionedit.core.pca import streaming, vectors
 from motionedit.core.pca.model_file import read_model
 from motionedit.jobs import fit_pca
+from studies.lab import effector_path
 
 
 @pytest.fixture(scope="module")

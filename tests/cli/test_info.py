@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from channels import motion_from_channels
 
 from motionedit.core import rotations as rot
 from motionedit.core.bvh import new_bytes, read_clip
 from motionedit.core.kinematics import forward
-from motionedit.core.motion import motion_from_channels
 from motionedit.core.skeleton import EndSite, Skeleton
 from motionedit.jobs.info.job import likely_unit
 from motionedit.jobs.info.text import flow, shown_name

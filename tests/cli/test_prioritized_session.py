@@ -6,17 +6,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from lab import effector_path, joint_positions
+from channels import motion_from_channels
 
 from motionedit.core import kinematics
 from motionedit.core import rotations as rot
 from motionedit.core.bvh import new_bytes, read_clip
 from motionedit.core.kinematics import forward
-from motionedit.core.motion import Motion, motion_from_channels, scaled
+from motionedit.core.motion import Motion, scaled
 from motionedit.core.skeleton import EndSite, Skeleton
 from motionedit.jobs.clip import facts as clip_facts
 from motionedit.jobs.clip.facts import facts_of
 from motionedit.jobs.edit_prioritized import job as edit_prioritized
+from studies.lab import effector_path, joint_positions
 
 DATA = Path(__file__).resolve().parents[2] / "data"
 WALK = DATA / "walk.bvh"

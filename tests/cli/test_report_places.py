@@ -4,13 +4,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from lab import Lab
 
 from motionedit.core.body.center_of_mass import center_of_mass, find_masses
 from motionedit.core.bvh import read_clip
 from motionedit.core.kinematics import Effector, effector_positions, forward
 from motionedit.jobs.clip.facts import facts_of
 from motionedit.report.record import plain
+from studies.lab import Lab
 
 DATA = Path(__file__).resolve().parents[2] / "data"
 WALK = DATA / "walk.bvh"

@@ -8,11 +8,9 @@ from pathlib import Path
 import jsonschema
 import pytest
 
-from motionedit.report.schema.report import report_schema
-
 ROOT = Path(__file__).resolve().parents[2]
 WALK = ROOT / "data" / "walk.bvh"
-SCHEMA = report_schema()
+SCHEMA = json.loads((ROOT / "docs" / "report.schema.json").read_text(encoding="utf-8"))
 VALIDATOR = jsonschema.Draft202012Validator(SCHEMA)
 
 

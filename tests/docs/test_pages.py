@@ -12,8 +12,8 @@ from motionedit.cli import main as program
 
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"\]\(([^)\s]+)\)")
-PLACE = re.compile(r"`((?:motionedit|tests|benchmarks)/\S+\.py)::(\w+)`")
-FILE = re.compile(r"`((?:motionedit|tests|configs|docs|data|benchmarks)/(?!.*/v\d`)[\w./-]+)`")
+PLACE = re.compile(r"`((?:motionedit|tests|studies)/\S+\.py)::(\w+)`")
+FILE = re.compile(r"`((?:motionedit|tests|configs|docs|data|benchmarks|studies)/(?!.*/v\d`)[\w./-]+)`")
 
 
 def text_of(page):

@@ -218,7 +218,8 @@ def components(motions, hits):
         root = motion.translations[:, 0]
         roots.append(root[i] * (1.0 - u[:, :1]) + root[i + 1] * u[:, :1])
     q = np.array(rotations)
-    reference = rot.mean(q.reshape(-1, *q.shape[2:]))
+    every = q.reshape(-1, *q.shape[2:])
+    reference = rot.mean_of_products(np.einsum("fja,fjb->jab", every, every))
     v = rot.log(rot.multiply(rot.conjugate(reference), q)).reshape(len(motions), frames, -1)
     assert np.abs(np.diff(v, axis=1)).max() < 2.0, "a track that winds round needs unwrapping"
     rows = np.concatenate((np.array(roots) / 100.0, v), axis=2)

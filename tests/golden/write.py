@@ -12,16 +12,15 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT), str(ROOT / "benchmarks")]
+sys.path.insert(0, str(ROOT))
 PATH = Path(__file__).with_name("golf.json")
 
 
 def golf_session(folder: Path) -> dict[str, Any]:
     """Return the figures of the golf session: variances, coefficients, and one edit, rounded."""
-    from lab import Lab, effector_path
-
     from data.generator.players import SEED
     from motionedit.core.pca.model_file import read_model
+    from studies.lab import Lab, effector_path
 
     lab = Lab(folder)
     swings = [ROOT / "data" / "golf" / f"swing{n:02d}.bvh" for n in range(1, 11)]

@@ -9,6 +9,7 @@ from motionedit.core.coefficients.goals import Goal, goal_error, stacked_errors
 from motionedit.core.measure import Measure
 
 STEP = 1e-6
+AXIS = np.array([2.0, -1.0, 2.0]) / 3.0
 
 
 def chain(seed, *, joints=5, unknowns=4, spread=0.8):
@@ -75,8 +76,31 @@ def test_orientation_rows_are_minus_the_derivative_of_the_error_where_it_is_met(
     np.testing.assert_allclose(goal_error(goal, at).rotation_jacobian, -expected, atol=1e-6)
 
 
-def test_the_chains_own_exp_and_jacobian_are_those_of_the_rotations_module():
+def left_jacobian(v):
+    """Return J_l at one rotation vector, as the chain has it."""
+    return _exp_and_left_jacobian(v[None])[1][0]
+
+
+def test_the_chains_own_exp_is_that_of_the_rotations_module():
     v = np.concatenate((np.random.default_rng(11).normal(size=(20, 3)), [[0, 0, 0], [1e-6, 0, 0], [3.1, 0.2, 0.1]]))
-    turns, jacobians = _exp_and_left_jacobian(v)
+    turns, _ = _exp_and_left_jacobian(v)
     np.testing.assert_allclose(turns, rot.to_matrix(rot.exp(v)), atol=1e-14)
-    np.testing.assert_allclose(jacobians, rot.left_jacobian(v), atol=1e-14)
+
+
+@pytest.mark.parametrize("angle", [0.0, 1e-9, 9.9e-5, 1.01e-4, 1.0, 3.1])
+def test_the_left_jacobian_is_its_own_series(angle):
+    V = rot.skew(angle * AXIS)
+    term, series = np.eye(3), np.eye(3)
+    for k in range(2, 40):
+        term = term @ V / k
+        series = series + term
+    np.testing.assert_allclose(left_jacobian(angle * AXIS), series, atol=2e-12)
+
+
+@pytest.mark.parametrize("angle", [1e-6, 0.5, 3.0])
+def test_the_left_jacobian_agrees_with_central_differences(angle):
+    v, h = angle * AXIS, 1e-6
+    for a in range(3):
+        dv = h * np.eye(3)[a]
+        turn = rot.multiply(rot.exp(v + dv), rot.conjugate(rot.exp(v - dv)))
+        np.testing.assert_allclose(rot.log(turn) / (2 * h), left_jacobian(v)[:, a], atol=1e-8)

@@ -1,4 +1,4 @@
-"""The Jacobian of the center of mass agrees with central differences."""
+"""The Jacobian of the center of mass, as its task has it, agrees with central differences."""
 
 from dataclasses import replace
 
@@ -8,9 +8,11 @@ from human import BONES, skeleton_of, split
 
 from motionedit.core import rotations as rot
 from motionedit.core.body.anatomy import find_anatomy
-from motionedit.core.body.center_of_mass import center_of_mass, com_jacobian, find_masses
+from motionedit.core.body.center_of_mass import center_of_mass, find_masses
 from motionedit.core.kinematics import forward
 from motionedit.core.motion import Motion
+from motionedit.core.priorities.kinds.com import CenterOfMassTask
+from motionedit.core.priorities.points import Columns, Recruited
 
 STEP = 1e-6
 HUMAN = skeleton_of()
@@ -35,14 +37,21 @@ def turned(motion, joint, w):
     return replace(motion, rotations=rotations)
 
 
+def jacobian(motion, masses, joints):
+    """Return d(CoM)/d(unknowns), shape (F, 3, 3 K + 3): increments of joints, then the root's translation."""
+    columns, everything = Columns(motion.skeleton, joints, 0), Recruited(np.ones(len(joints), dtype=bool), root=True)
+    task = CenterOfMassTask(columns, everything, masses, np.zeros((len(motion), 3)))
+    return task.evaluate(forward(motion), motion.rotations, np.arange(len(motion)))[1]
+
+
 @pytest.mark.parametrize("given", [None, {4: 3.0, 1: 1.0}], ids=["table", "given"])
 @pytest.mark.parametrize("skeleton", [HUMAN, SPLIT, CHAIN], ids=["human", "split", "chain"])
 def test_every_joint_moves_the_center_of_mass_as_its_columns_say(skeleton, given):
     motion = moving(skeleton)
     masses = find_masses(skeleton, find_anatomy(skeleton), given=given)
     joints = np.arange(len(skeleton))[::-1]
-    J = com_jacobian(forward(motion), masses, joints=joints)
-    assert J.shape == (3, 3, 3 * len(joints))
+    J = jacobian(motion, masses, joints)
+    assert J.shape == (3, 3, 3 * len(joints) + 3)
     for k, joint in enumerate(joints):
         for a in range(3):
             w = STEP * np.eye(3)[a]
@@ -56,3 +65,5 @@ def test_the_roots_translation_moves_the_center_of_mass_as_a_whole():
     shifted = replace(motion, translations=motion.translations + np.array([1.0, 2.0, 3.0]))
     difference = center_of_mass(forward(shifted), masses) - center_of_mass(forward(motion), masses)
     np.testing.assert_allclose(difference, np.broadcast_to([1.0, 2.0, 3.0], (3, 3)), atol=1e-12)
+    J = jacobian(motion, masses, np.arange(len(HUMAN)))
+    np.testing.assert_array_equal(J[:, :, -3:], np.broadcast_to(np.eye(3), (3, 3, 3)))

@@ -4,13 +4,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from lab import effector_path, joint_positions
-from paper.pc_pose_space import by_poses
-from paper.study import Study
 
 from motionedit.core.bvh import read_clip
 from motionedit.core.coefficients.chain import evaluate
 from motionedit.core.pca.model_file import read_model
+from studies.lab import effector_path, joint_positions
+from studies.paper.pc_pose_space import by_poses
+from studies.paper.study import Study
 
 BALLS = Path(__file__).resolve().parents[2] / "data" / "golf" / "balls.tsv"
 STYLES = tuple(int(line.split("\t")[1]) for line in BALLS.read_text().splitlines()[1:])

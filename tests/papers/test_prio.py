@@ -4,11 +4,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from figures_prioritized import config
-from lab import Lab
-from paper.prio_clips import Shown
 
 from motionedit.core.bvh import read_clip
+from studies.demonstrations import config
+from studies.lab import Lab
+from studies.paper.prio_clips import Shown
 
 ROOT = Path(__file__).resolve().parents[2]
 WALK = ROOT / "data" / "walk.bvh"

@@ -1,27 +1,18 @@
 """The studies behind docs/papers.md run, on a few clips and goals, and show the papers' trends."""
 
-import importlib.util
 import re
 from pathlib import Path
 
 import pytest
-from lab import Lab
-from paper.page import shown_tables, with_tables
-from paper.study import Study, Table
+
+from studies.lab import Lab
+from studies.paper import run
+from studies.paper.page import shown_tables, with_tables
+from studies.paper.study import Study, Table
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "papers.md").read_text(encoding="utf-8")
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
-
-
-def load_run():
-    spec = importlib.util.spec_from_file_location("paper_run", ROOT / "benchmarks" / "paper" / "run.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-run = load_run()
 # In a second each; the others, and most trends with them, take longer.
 QUICK = ("pose-space", "strokes", "balance", "stairs")
 ALL = [pytest.param(name, marks=[] if name in QUICK else pytest.mark.slow) for name in run.STUDIES]

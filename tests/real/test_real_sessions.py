@@ -6,13 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from lab import DIRECTIONS, Lab, effector_path, jerk
 
 from motionedit.core.bvh import parse_clip, read_clip, unedited_bytes
 from motionedit.errors import BvhError
 from motionedit.jobs.batch.plan import RunOptions
 from motionedit.jobs.normalize import job as normalize
 from motionedit.spec.load import load_spec
+from studies.lab import DIRECTIONS, Lab, effector_path, jerk
 
 FOLDER = Path(os.environ.get("MOTIONEDIT_CLIPS", "."))
 pytestmark = pytest.mark.skipif(

@@ -1,5 +1,7 @@
 """What a spec names, found in a clip, or the line where it is named."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -7,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from motionedit.core.skeleton import EndSite, Skeleton
 from motionedit.errors import SpecError
 from motionedit.jobs.clip import resolve
-from motionedit.jobs.clip.events import explicit_events
+from motionedit.jobs.clip.events import event_frames, explicit_events
 from motionedit.jobs.clip.resolve import Place
 from motionedit.spec.values import EffectorSpec, parse_orientation
 
@@ -223,9 +225,15 @@ def test_a_name_that_is_another_clip_s_whole_path_is_not_this_one_s(load):
 
 
 def test_an_event_outside_its_clip_is_refused(load):
+    def events(loaded, clip, *, frames):
+        facts = SimpleNamespace(first=0, last=frames - 1)
+        known = explicit_events(loaded, clip)
+        given = {name: event for name, event in loaded.model.events.items() if event.detect is None}
+        return event_frames(given, facts, Place(loaded, ("events",), clip), known=known)
+
     loaded = load(EVENTS, "normalize")
-    assert explicit_events(loaded, "swing01.bvh", frames=8) == {"every": 7, "hit": 1}
-    found = refusal(explicit_events, loaded, "swing01.bvh", frames=7)
-    assert found == "spec.yaml:3: events.every: frame 7 is outside swing01.bvh, whose frames are 0 to 6"
-    found = refusal(explicit_events, load("events: {hit: {frames: {a: 7}}}", "normalize"), "a.bvh", frames=7)
-    assert found == "spec.yaml:2: events.hit.frames.a: frame 7 is outside a.bvh, whose frames are 0 to 6"
+    assert events(loaded, "swing01.bvh", frames=8) == {"every": 7, "hit": 1}
+    found = refusal(events, loaded, "swing01.bvh", frames=7)
+    assert found == "spec.yaml:3: events.every: in swing01.bvh: frame 7 is outside the take, whose frames are 0 to 6"
+    found = refusal(events, load("events: {hit: {frames: {a: 7}}}", "normalize"), "a.bvh", frames=7)
+    assert found == "spec.yaml:2: events.hit: in a.bvh: frame 7 is outside the take, whose frames are 0 to 6"

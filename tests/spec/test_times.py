@@ -139,14 +139,9 @@ def test_seconds_without_end_are_outside_the_clip():
         Time("x", seconds=1e308).frame(frames=10, frame_time=1e-3, events={})
 
 
-@pytest.mark.parametrize(
-    ("value", "seconds", "frames"),
-    [(40, 1.6, 40.0), ("0.8s", 0.8, 20.0), (0, 0.0, 0.0), ("40", 1.6, 40.0), ("0.062s", 0.062, 1.55)],
-)
-def test_a_duration_is_in_frames_or_seconds(value, seconds, frames):
-    duration = parse_duration(value)
-    assert duration.in_seconds(0.04) == pytest.approx(seconds)
-    assert duration.in_frames(0.04) == pytest.approx(frames)
+@pytest.mark.parametrize(("value", "frames"), [(40, 40.0), ("0.8s", 20.0), (0, 0.0), ("40", 40.0), ("0.062s", 1.55)])
+def test_a_duration_is_in_frames_or_seconds(value, frames):
+    assert parse_duration(value).in_frames(0.04) == pytest.approx(frames)
 
 
 @pytest.mark.parametrize("value", [-1, "-1s", "2%", 2.5, "soon", True, None, [1], "1e999s", "1 min"])

@@ -1,4 +1,4 @@
-"""The center of mass of a body over all frames, the centres of its subtrees, and its Jacobian ([PRIO] section 4.3)."""
+"""The center of mass of a body over all frames, and the centres of its subtrees ([PRIO] section 4.3)."""
 
 from __future__ import annotations
 
@@ -122,17 +122,6 @@ def subtree_centers(poses: WorldPoses, masses: Masses) -> tuple[FloatArray, Floa
     below = np.empty_like(shares)
     below[walk.joints] = shares
     return centers, below
-
-
-def com_jacobian(poses: WorldPoses, masses: Masses, *, joints: IntArray) -> FloatArray:
-    """Return d(center of mass)/d(w) for world-axis increments w of the given joints, shape (F, 3, 3 K).
-
-    Column a of joint j is (m_sub / M) e_a x (c_sub - p_j), in clip units per radian, with the mass m_sub and the
-    centre c_sub of all that is at and below j. Increments of the root's translation have the identity.
-    """
-    centers, shares = subtree_centers(poses, masses)
-    levers = shares[joints, None] * (centers[:, joints] - poses.positions[:, joints])
-    return np.swapaxes(-rot.skew(levers), 1, 2).reshape(len(levers), 3, 3 * len(joints))
 
 
 def _carried(poses: WorldPoses, masses: Masses, joints: IntArray) -> FloatArray:

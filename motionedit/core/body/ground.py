@@ -45,10 +45,6 @@ class Frame:
         """Return positions given in this frame in the world, shape (..., 3), clip units."""
         return local @ self.axes + self.origin
 
-    def world_vectors(self, local: FloatArray) -> FloatArray:
-        """Return vectors given in this frame in the world, shape (..., 3)."""
-        return local @ self.axes
-
     @property
     def rotation(self) -> FloatArray:
         """Quaternion that turns this frame's coordinates into the world's, shape (4,)."""

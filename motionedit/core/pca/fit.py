@@ -76,8 +76,8 @@ class ComponentCount:
 ALL = ComponentCount()
 
 
-def fit_components(motions: FloatArray, *, count: ComponentCount = ALL) -> PrincipalComponents:
-    """Return the principal components of M motion vectors, shape (M, D), M >= 2.
+def fit_centred(X: FloatArray, mean: FloatArray, *, count: ComponentCount) -> PrincipalComponents:
+    """Return the principal components of M motion vectors, shape (M, D), of which their mean, shape (D,), was taken.
 
     The M x M Gram matrix X X^T has the eigenvalues of the covariance; E_i = X^T u_i / s_i. The rank is at most M - 1.
 
@@ -87,12 +87,6 @@ def fit_components(motions: FloatArray, *, count: ComponentCount = ALL) -> Princ
         If the motions are all the same (`AllTheSameError`), or there are not as many components as asked for
         (`TooFewComponentsError`).
     """
-    mean = motions.mean(axis=0)
-    return fit_centred(motions - mean, mean, count=count)
-
-
-def fit_centred(X: FloatArray, mean: FloatArray, *, count: ComponentCount = ALL) -> PrincipalComponents:
-    """Return the principal components of motion vectors of which their mean, shape (D,), was taken; see above."""
     eigenvalues, vectors = np.linalg.eigh(X @ X.T)
     order = np.argsort(eigenvalues)[::-1][: len(X) - 1]
     eigenvalues = np.maximum(eigenvalues[order], 0.0)

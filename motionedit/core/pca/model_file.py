@@ -74,7 +74,7 @@ def _npz(arrays: Mapping[str, NDArray[Any]]) -> bytes:
     return buffer.getvalue()
 
 
-def read_model(path: Path, *, label: str | None = None) -> MotionModel:
+def read_model(path: Path) -> MotionModel:
     """Return the model of a file.
 
     Raises
@@ -82,7 +82,7 @@ def read_model(path: Path, *, label: str | None = None) -> MotionModel:
     ModelError
         If it cannot be read, or is no model of a format this version knows.
     """
-    label = label or str(path)
+    label = str(path)
     try:
         with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as archive:
             arrays = {name: archive[name] for name in archive.files}

@@ -21,9 +21,7 @@ if TYPE_CHECKING:
     from motionedit.spec.load import LoadedSpec
 
 
-def explicit_events(
-    loaded: LoadedSpec[Document], relative: str, *, others: Collection[str] = (), frames: int | None = None
-) -> dict[str, int]:
+def explicit_events(loaded: LoadedSpec[Document], relative: str, *, others: Collection[str] = ()) -> dict[str, int]:
     """Return the frames that the spec itself gives for a clip's events.
 
     Parameters
@@ -32,29 +30,23 @@ def explicit_events(
         The clip's path below the given folder, or its name.
     others : collection of str
         The same of all clips of the run, so that a stem that two of them share is refused.
-    frames : int, optional
-        Number of frames of the clip, to refuse an event outside it.
 
     Raises
     ------
     SpecError
-        Where a stem is not unique, or a frame is outside the clip.
+        Where a stem is not unique.
     """
     found: dict[str, int] = {}
     for name, event in loaded.model.events.items():
         if event.frames is None:
             continue
-        keys: tuple[str, ...] = ("events", name, "frames")
         value = event.frames.every
         if value is None:
-            place = resolve.Place(loaded, keys, relative)
+            place = resolve.Place(loaded, ("events", name, "frames"), relative)
             key = _clip_key(event.frames.by_clip, relative, others, place)
             if key is None:
                 continue
-            value, keys = event.frames.by_clip[key], (*keys, key)
-        if frames is not None and value >= frames:
-            place = resolve.Place(loaded, ("events", name), relative).at(*keys[2:])
-            raise place.error(f"frame {value} is outside {relative}, whose frames are 0 to {frames - 1}")
+            value = event.frames.by_clip[key]
         found[name] = value
     return found
 

@@ -9,6 +9,7 @@ from motionedit.core.body import ground
 from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.motion import Motion
 from motionedit.core.pca.database import DatabaseMotion, FitSettings, build_model
+from motionedit.core.pca.fit import ALL, fit_centred
 from motionedit.core.pca.model import DatabaseClip
 from motionedit.core.timeline.alignment import align_to, aligned
 from motionedit.core.timeline.resample import resample
@@ -72,6 +73,12 @@ def model_of(motions, timeline, hits, settings=None):
         rules={"align": {"heading": True}},
     )
     return fitted.model
+
+
+def fitted(motions, *, count=ALL):
+    """Return the principal components of motion vectors, shape (M, D)."""
+    mean = motions.mean(axis=0)
+    return fit_centred(motions - mean, mean, count=count)
 
 
 TIMELINE = Timeline(61, 50.0, (("hit", 36),))

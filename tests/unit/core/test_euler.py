@@ -140,7 +140,7 @@ def test_joint_angles_fill_every_column():
     )
     rng = np.random.default_rng(4)
     values = np.cumsum(rng.normal(scale=8.0, size=(100, 8)), axis=0)
-    from motionedit.core.motion import motion_from_channels
+    from channels import motion_from_channels
 
     motion = motion_from_channels(skeleton, values, frame_time=0.01)
     np.testing.assert_allclose(joint_angles(motion, start=values[0]), values, atol=1e-9)

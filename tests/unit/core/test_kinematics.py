@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from motionedit.core import kinematics, rotations
-from motionedit.core.kinematics import Effector, effector_positions, forward, forward_of, local_translations
+from motionedit.core.kinematics import Effector, effector_positions, forward, forward_of
 from motionedit.core.motion import Motion
 from motionedit.core.skeleton import Skeleton
 
@@ -32,7 +32,8 @@ def random_motion(frames, *, seed=0):
 
 def one_by_one(motion, frame):
     """Return the world transforms of one frame, joint by joint, by scipy."""
-    local = local_translations(motion)[frame]
+    local = motion.skeleton.offsets.copy()
+    local[motion.skeleton.translated] = motion.translations[frame]
     positions, turns = [], []
     for j, parent in enumerate(motion.skeleton.parents):
         turn = Rotation.from_quat(motion.rotations[frame, j], scalar_first=True)

@@ -4,12 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from channels import motion_from_channels
 from scipy.spatial.transform import Rotation
 
 from motionedit.core import motion as module
 from motionedit.core import rotations as rot
 from motionedit.core.kinematics import forward
-from motionedit.core.motion import motion_from_channels, position_columns, scaled
+from motionedit.core.motion import position_columns, scaled
 from motionedit.core.skeleton import EndSite, Skeleton
 
 SKELETON = Skeleton(

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 from sklearn.decomposition import PCA
-from strokes import TIMELINE, database, model_of, stroke
+from strokes import TIMELINE, database, fitted, model_of, stroke
 
 from motionedit.core import rotations as rot
 from motionedit.core.motion import Motion
 from motionedit.core.pca.coordinates import rotation_tracks, space_joints
 from motionedit.core.pca.database import FitSettings
-from motionedit.core.pca.fit import components_for, fit_components
+from motionedit.core.pca.fit import components_for
 from motionedit.core.pca.model_file import FORMAT, model_bytes, read_model
 from motionedit.core.rotation_vectors import TURN, relabelled, unwrapped
 from motionedit.errors import ModelError
@@ -17,7 +17,7 @@ from motionedit.errors import ModelError
 
 def test_eigenvalues_and_components_are_scikit_learns():
     X = np.random.default_rng(0).normal(size=(12, 400)) @ np.diag(np.linspace(0.1, 3.0, 400))
-    ours, theirs = fit_components(X), PCA(n_components=11, svd_solver="full").fit(X)
+    ours, theirs = fitted(X), PCA(n_components=11, svd_solver="full").fit(X)
     np.testing.assert_allclose(ours.explained_variance, theirs.explained_variance_, rtol=1e-9)
     np.testing.assert_allclose(ours.explained_variance_ratio, theirs.explained_variance_ratio_, rtol=1e-9)
     same = np.abs(np.sum(ours.components * theirs.components_, axis=1))
@@ -26,7 +26,7 @@ def test_eigenvalues_and_components_are_scikit_learns():
 
 def test_components_are_orthonormal_and_their_signs_do_not_depend_on_the_order_of_clips():
     X = np.random.default_rng(1).normal(size=(8, 90))
-    ours, shuffled = fit_components(X), fit_components(X[::-1])
+    ours, shuffled = fitted(X), fitted(X[::-1])
     np.testing.assert_allclose(ours.components @ ours.components.T, np.eye(7), atol=1e-12)
     np.testing.assert_allclose(shuffled.components, ours.components, atol=1e-10)
     np.testing.assert_allclose(shuffled.coefficients[::-1], ours.coefficients, atol=1e-10)
@@ -34,7 +34,7 @@ def test_components_are_orthonormal_and_their_signs_do_not_depend_on_the_order_o
 
 def test_ten_motions_have_nine_components_and_are_rebuilt_by_them():
     X = np.random.default_rng(2).normal(size=(10, 300))
-    pca = fit_components(X)
+    pca = fitted(X)
     assert len(pca.components) == 9
     np.testing.assert_allclose(pca.mean + pca.coefficients @ pca.components, X, atol=1e-12)
 
@@ -42,13 +42,13 @@ def test_ten_motions_have_nine_components_and_are_rebuilt_by_them():
 def test_motions_of_fewer_dimensions_have_as_many_components():
     rng = np.random.default_rng(3)
     X = 5.0 + rng.normal(size=(9, 3)) @ rng.normal(size=(3, 200))
-    assert len(fit_components(X).components) == 3
+    assert len(fitted(X).components) == 3
 
 
 @pytest.mark.parametrize("count", [2, 9])
 def test_equal_motions_have_nothing_to_teach(count):
     with pytest.raises(ValueError, match="all the same"):
-        fit_components(np.tile(np.random.default_rng(4).normal(size=300), (count, 1)))
+        fitted(np.tile(np.random.default_rng(4).normal(size=300), (count, 1)))
 
 
 @pytest.mark.parametrize(("share", "count"), [(0.5, 1), (0.6, 1), (0.61, 2), (0.9, 2), (0.95, 3), (1.0, 3)])

@@ -6,12 +6,12 @@ import tempfile
 import numpy as np
 import pytest
 from sklearn.decomposition import PCA
-from strokes import TIMELINE, database, model_of
+from strokes import TIMELINE, database, fitted, model_of
 
 from motionedit.core import rotations as rot
 from motionedit.core.pca import tracks, vectors
 from motionedit.core.pca.database import FitSettings
-from motionedit.core.pca.fit import AllTheSameError, ComponentCount, TooFewComponentsError, fit_components
+from motionedit.core.pca.fit import AllTheSameError, ComponentCount, TooFewComponentsError
 from motionedit.core.pca.streaming import DEFAULT_COMPONENTS, MOST_COMPONENTS, RESIDUAL_TOLERANCE, stream_components
 from motionedit.core.pca.tracks import MeanRotations, make_consistent, other_windings
 from motionedit.core.pca.vectors import CentredVectors, VectorsInFile, VectorsInMemory, motion_vectors
@@ -38,7 +38,7 @@ def decaying(clips, values, *, rank, fall, noise=0.0, seed=0):
 
 def test_streaming_finds_the_components_of_the_gram_matrix_and_of_scikit_learn():
     X = decaying(600, 900, rank=60, fall=0.85, noise=1e-4)
-    ours, gram = streamed(X, count=20), fit_components(X, count=ComponentCount(20))
+    ours, gram = streamed(X, count=20), fitted(X, count=ComponentCount(20))
     theirs = PCA(n_components=20, svd_solver="full").fit(X)
     assert ours.residual < RESIDUAL_TOLERANCE
     assert ours.passes <= 6
@@ -56,7 +56,7 @@ def test_streaming_finds_the_components_of_the_gram_matrix_and_of_scikit_learn()
 
 def test_a_residual_bounds_how_far_a_variance_is_from_the_nearest_true_one():
     X = decaying(400, 500, rank=300, fall=0.995)
-    ours, all_of_them = streamed(X, count=30), fit_components(X)
+    ours, all_of_them = streamed(X, count=30), fitted(X)
     off = np.abs(ours.components.explained_variance[:, None] - all_of_them.explained_variance).min(axis=1)
     assert off.max() <= ours.residual * all_of_them.explained_variance[0]
 
@@ -70,7 +70,7 @@ def test_streaming_gives_the_same_numbers_every_time():
 
 def test_as_many_components_are_streamed_as_explain_the_share_that_is_asked_for():
     X = decaying(500, 600, rank=400, fall=0.992)
-    ratios = fit_components(X).explained_variance_ratio
+    ratios = fitted(X).explained_variance_ratio
     pca = streamed(X, share=0.95).components
     wanted = int(np.searchsorted(np.cumsum(ratios), 0.95)) + 1
     assert wanted > DEFAULT_COMPONENTS + 10  # more than the first block holds
@@ -145,7 +145,7 @@ def test_rotations_that_come_in_parts_have_the_mean_of_the_whole():
     mean = MeanRotations(5)
     for part in (q[:7], q[7:30], -q[30:]):
         mean.add(part)
-    np.testing.assert_allclose(mean.mean(), rot.mean(q), atol=1e-12)
+    np.testing.assert_allclose(mean.mean(), rot.mean_of_products(np.einsum("fja,fjb->jab", q, q)), atol=1e-12)
 
 
 def written(several):

@@ -1,0 +1,190 @@
+"""What the reports of edit-pc and edit-prioritized say of a clip."""
+
+from __future__ import annotations
+
+from motionedit.core.priorities.kinds import KINDS
+from report_schema.forms import (
+    CLIP,
+    INTEGER,
+    MESSAGE,
+    NUMBER,
+    OUTPUT,
+    POINT,
+    STRING,
+    UNIT,
+    VERIFY,
+    Schema,
+    count,
+    flag,
+    list_of,
+    number,
+    number_or_null,
+    numbers_or_null,
+    obj,
+    or_null,
+    part,
+    text,
+    word,
+)
+
+
+def _measures(about: str) -> Schema:
+    return obj(
+        about,
+        {
+            "foot_slide_max": number_or_null("the fastest horizontal speed of a planted ankle or toe, per second"),
+            "jerk_rms": number_or_null("root mean square third difference of all joints over time, per second cubed"),
+        },
+    )
+
+
+def _metrics(more: Schema) -> Schema:
+    sides = {side: _measures(f"{side} the edit; null where it has another timing") for side in ("before", "after")}
+    drift = {"foot_drift_max": number_or_null("how far a planted point of the input moved")}
+    return obj("side effects of the edit", {**sides, **drift, **more})
+
+
+_ASKED = {
+    "name": text("its name in the spec"),
+    "priority": {"type": "integer", "description": "larger is more important"},
+    "error_max": number_or_null("the largest distance from where its effector was wanted; null for what only turns"),
+    "error_rms": number_or_null("root mean square of these distances"),
+    "error_angle_max": number_or_null("the largest angle from what was wanted; null where no turn was asked for"),
+    "frame": count("a goal's frame, a constraint's worst"),
+    "tolerance": number_or_null("up to which distance it counts as met; null for none"),
+    "tolerance_angle": number_or_null("up to which angle it counts as met; null for none"),
+    "status": part("goal_status"),
+    "gave_way_to": list_of(STRING, "names of those of higher priority for which it is missed"),
+}
+
+_PC_CLIP = {
+    **CLIP,
+    **OUTPUT,
+    "status": part("edit_status"),
+    **MESSAGE,
+    **UNIT,
+    "metrics": _metrics({}),
+    "goals": list_of(part("goal"), "the spec's goals, in its order"),
+    "iterations": count("of the solver"),
+    "stopped": word("why the solver stopped", "converged", "stalled", "bound", "iterations"),
+    "history": list_of(NUMBER, "the norm of all goals' weighted errors at the start and after each iteration"),
+    "alpha": obj(
+        "the clip's principal coefficients",
+        {side: list_of(NUMBER, f"{side} the edit") for side in ("before", "after")},
+    ),
+    "mahalanobis": obj(
+        "the norm of alpha / sqrt(lambda)",
+        {
+            "before": number("before the edit"),
+            "after": number("after the edit"),
+            "bound": number_or_null("the largest that is allowed; null for any"),
+            "database_max": number("the largest of the database's motions"),
+        },
+    ),
+    "nearest": obj(
+        "the clip of the database that is nearest in coefficients",
+        {side: text(f"{side} the edit") for side in ("before", "after")},
+    ),
+    **VERIFY,
+}
+
+_SOLVED = {
+    "layers": list_of(part("layer"), "layers of priority, the most important first"),
+    "iterations": obj(
+        "iterations of the first solve, over the frames that were solved",
+        {"median": number("the median"), "max": count("the most")},
+    ),
+    "frames_solved": count("how many frames any constraint reaches"),
+    "frames_not_converged": count("how many frames ran out of iterations in the last solve"),
+    "frames": obj(
+        "by frame of the clip",
+        {
+            "iterations": list_of(INTEGER, "of the first solve; 0 where nothing was solved"),
+            "stopped": list_of({"enum": ["converged", "iterations", "untouched"]}, "why the last solve stopped"),
+        },
+    ),
+    "passes": count("smoothing passes"),
+    "solver": word("what solved the layers: C, or numpy where that could not be compiled", "compiled", "numpy"),
+}
+
+_PRIORITIZED_CLIP = {
+    **CLIP,
+    **OUTPUT,
+    "status": part("edit_status"),
+    **MESSAGE,
+    **UNIT,
+    "metrics": _metrics({"com_shift_max": number("how far the center of mass moved")}),
+    "constraints": list_of(part("constraint"), "the spec's constraints, in its order"),
+    **_SOLVED,
+    **VERIFY,
+}
+
+_CONSTRAINT = {
+    "name": _ASKED["name"],
+    "type": word("its type in the spec", *KINDS),
+    **_ASKED,
+    "strict": flag("whether --strict counts it"),
+    "first_frame": count("the first frame at which it is active"),
+    "last_frame": count("the last one, which is in"),
+    "effector": or_null(part("effector"), "what it moves; null for com and posture"),
+    "points": list_of(part("span"), "its points; none where it rides the input's own trajectory"),
+    "recruited": list_of(STRING, "joints that it may move; NAME.position is the root's translation"),
+    "frames": obj(
+        "by frame from first_frame on",
+        {
+            "error": numbers_or_null("the distance from where its effector was wanted"),
+            "error_angle": numbers_or_null("the angle from what was wanted"),
+            "target": or_null(
+                {"type": "array", "items": POINT},
+                "where its effector was wanted, in the world; along axes that are free, where it is. What an aim looks "
+                "at, a com's center of mass; null for what only turns",
+            ),
+        },
+    ),
+}
+
+EDIT_PARTS: Schema = {
+    "edit_status": word(
+        "all goals met; met, but far from the database; a goal missed; a goal missed because it is out of reach",
+        *("ok", "far", "out_of_tolerance", "unreachable"),
+    ),
+    "goal_status": word("met, missed, or out of reach", "ok", "out_of_tolerance", "unreachable"),
+    "effector": obj(
+        "A point fixed in a joint's frame.",
+        {"joint": text("the joint's name"), "offset": {**POINT, "description": "the point in the joint's frame"}},
+    ),
+    "span": obj(
+        "A point of a constraint.",
+        {
+            "mode": word("stands still, rides the input's trajectory, or is one instant", "hold", "during", "at"),
+            "first": count("its first frame"),
+            "last": count("its last frame, which is in"),
+        },
+    ),
+    "goal": obj(
+        "A goal of edit-pc.",
+        {
+            **_ASKED,
+            "effector": part("effector"),
+            "target": or_null(POINT, "where its effector was wanted, in the world; null for what only turns"),
+        },
+    ),
+    "constraint": obj("A constraint of edit-prioritized.", _CONSTRAINT),
+    "layer": obj(
+        "The constraints of one priority.",
+        {
+            "priority": {"type": "integer", "description": "theirs"},
+            "constraints": list_of(STRING, "their names"),
+            "rank": obj(
+                "independent rows while any of them is active", {"min": count("the least"), "max": count("the most")}
+            ),
+            "frames": obj("by frame of the clip", {"rank": list_of(INTEGER, "independent rows")}),
+        },
+    ),
+    "pc_clip": obj("A clip that edit-pc wrote.", _PC_CLIP, optional=("verify",)),
+    "prioritized_clip": obj(
+        "A clip that edit-prioritized wrote; where the spec has no constraints nothing is told of a solver.",
+        _PRIORITIZED_CLIP,
+        optional=("verify", *_SOLVED),
+    ),
+}

@@ -1,0 +1,186 @@
+"""What the reports of normalize, info and diff say of a clip, and that of fit-pca of a model."""
+
+from __future__ import annotations
+
+from report_schema.forms import (
+    CLIP,
+    INTEGER,
+    MESSAGE,
+    NUMBER,
+    OUTPUT,
+    POINT,
+    STRING,
+    UNIT,
+    VERIFY,
+    Schema,
+    count,
+    flag,
+    list_of,
+    map_of,
+    number,
+    obj,
+    or_null,
+    part,
+    text,
+    text_or_null,
+    word,
+)
+
+MODEL: Schema = {
+    "frames": count("of the timeline"),
+    "frame_rate": number("of the timeline, Hz"),
+    "degrees_of_freedom": count("values a frame"),
+    "explained_variance": list_of(NUMBER, "of each component"),
+    "explained_variance_ratio": list_of(NUMBER, "its share of the whole variance"),
+    "database": list_of(part("database_clip"), "the clips that the model was fitted to"),
+}
+
+_NORMALIZED_CLIP = {
+    **CLIP,
+    **OUTPUT,
+    "status": {"const": "ok", "description": "it was written"},
+    **MESSAGE,
+    **UNIT,
+    "frames": list_of(INTEGER, "frames before and after", 2),
+    "first_frame": count("the input's first frame after a rest pose"),
+    "events": map_of(NUMBER, "each event's frame in the input, to a part of a frame"),
+    **VERIFY,
+}
+
+_UNIT = obj(
+    "the unit that makes a leg nearest 0.85 m",
+    {"name": text("such as cm"), "leg": number("the leg in metres"), "likely": flag("that leg is a human's")},
+)
+_HINGE = obj(
+    "A joint that bends about one axis.",
+    {
+        "joint": text("its name"),
+        "axis": {**POINT, "description": "about which it bends"},
+        "limits": list_of(NUMBER, "between which angles it bends in the clip", 2),
+    },
+)
+_DEFECT = obj(
+    "A joint that jumps.",
+    {
+        "joint": text("its name"),
+        "frames": list_of(INTEGER, "the frames into which it jumps"),
+        "frame": count("the frame of the largest jump"),
+        "angle": number("how far it jumps there"),
+        "flips": flag("it jumps to and fro"),
+    },
+)
+_CONTACT = obj(
+    "A plant of a foot.",
+    {
+        "foot": word("which", "left", "right"),
+        "joint": text("its ankle or toe"),
+        "frames": list_of(INTEGER, "from, to, both in", 2),
+        "seconds": number("how long"),
+    },
+)
+_MEASURES = obj(
+    "of the clip as it is",
+    {
+        "foot_slide_max": number("the fastest horizontal speed of a planted ankle or toe, per second"),
+        "jerk_rms": number("root mean square third difference of all joints over time, per second cubed"),
+    },
+)
+
+_SHOWN_CLIP = {
+    **CLIP,
+    "status": word("failed where it lacks a time or a joint that was asked for", "ok", "failed"),
+    **MESSAGE,
+    "frames": count("how many"),
+    "frame_rate": number("Hz"),
+    "frame_time": number("seconds from frame to frame"),
+    "duration": number("seconds from the first frame to the last"),
+    "up": text("the up axis with its sign, such as y or -z"),
+    "heading": number("where the character faces at the first frame after a rest pose"),
+    "rest_pose_frames": count("frames of a rest pose in front of the take"),
+    "travel_joint": text("the joint whose translation carries the travel"),
+    "leg_length": number("from the top of a leg to its ankle"),
+    "height": number("of the skeleton"),
+    "unit": or_null(_UNIT, "null where the skeleton has no length"),
+    "anatomy": map_of(
+        {"anyOf": [map_of({"type": ["string", "null"]}, "the joint of each part"), STRING, {"type": "null"}]},
+        "which joints are head, legs and arms; null where they were not found",
+    ),
+    "joints": list_of(part("joint"), "in the file's order"),
+    "channels": count("values in a row"),
+    "hinges": list_of(_HINGE, "joints that bend about one axis"),
+    "defects": list_of(_DEFECT, "what looks like a fault of the capture"),
+    "metrics": _MEASURES,
+    "warnings": list_of(STRING, "one line each"),
+    "contacts": list_of(_CONTACT, "with --contacts"),
+    "poses": list_of(part("pose"), "with --at and --joint"),
+}
+
+
+def _transform(about: str) -> Schema:
+    return obj(
+        about,
+        {
+            "position": {**POINT, "description": "of the effector"},
+            "euler": {**POINT, "description": "about x, y, z"},
+            "order": text("of the angles, as BVH channels"),
+            "quaternion": list_of(NUMBER, "w, x, y, z", 4),
+        },
+    )
+
+
+def _difference(about: str) -> Schema:
+    keys = {
+        "value": number("how large it is"),
+        "frame": count("where"),
+        "joint": text("of which joint"),
+        "tolerance": number("above which it counts"),
+    }
+    return or_null(obj("The largest difference.", keys), about)
+
+
+_FAILED_STATUS = {"const": "failed", "description": "nothing came of it"}
+
+OTHER_PARTS: Schema = {
+    "failed": obj(
+        "A clip that failed.",
+        {**CLIP, **OUTPUT, "status": _FAILED_STATUS, "message": text("why")},
+        optional=("output",),
+    ),
+    "normalized_clip": obj("A clip that was normalized.", _NORMALIZED_CLIP, optional=("verify",)),
+    "database_clip": obj(
+        "A clip of a model's database.",
+        {"clip": text("its name"), "coefficients": list_of(NUMBER, "its principal coefficients alpha")},
+    ),
+    "shown_clip": obj("A clip that info tells of.", _SHOWN_CLIP, optional=("contacts", "poses")),
+    "joint": obj(
+        "A joint of a skeleton.",
+        {
+            "name": text("as in the file"),
+            "parent": text_or_null("null for a root"),
+            "depth": count("joints above it"),
+            "channels": list_of(STRING, "in the file's order"),
+            "offset": {**POINT, "description": "from its parent"},
+            "end_sites": list_of(POINT, "offsets of its end sites"),
+        },
+    ),
+    "pose": obj(
+        "Where an effector is.",
+        {
+            "at": count("the frame"),
+            "seconds": number("its time"),
+            "effector": {"type": ["string", "object"], "description": "as a spec says it"},
+            "world": _transform("in the world"),
+            "heading": _transform("in the heading frame"),
+        },
+    ),
+    "compared_clip": obj(
+        "A pair of clips that diff compared.",
+        {
+            "clip": text("the path below the two folders, or B's"),
+            "status": word("what came of it", "same", "different", "missing", "not_comparable"),
+            **MESSAGE,
+            "position": _difference("of joints' world positions; null where nothing was compared"),
+            "angle": _difference("of joints' angles; null where nothing was compared"),
+        },
+    ),
+}
