@@ -5,8 +5,9 @@ import pytest
 
 from motionedit.core import rotations as rot
 from motionedit.core.coefficients.chain import CoefficientChain, _exp_and_left_jacobian, evaluate
-from motionedit.core.coefficients.goals import Goal, goal_error, stacked_errors
+from motionedit.core.coefficients.goals import Goal, stacked_errors
 from motionedit.core.measure import Measure
+from motionedit.core.units import METRES_PER_RADIAN
 
 STEP = 1e-6
 AXIS = np.array([2.0, -1.0, 2.0]) / 3.0
@@ -72,8 +73,8 @@ def test_orientation_rows_are_minus_the_derivative_of_the_error_where_it_is_met(
     state = evaluate(each, at).rotation
     wanted = evaluate(other, at).rotation.T @ state if relative else state
     goal = Goal(each, None, wanted, 1.0, base=other)
-    expected = differences(lambda x: goal_error(goal, x).rotation, at)
-    np.testing.assert_allclose(goal_error(goal, at).rotation_jacobian, -expected, atol=1e-6)
+    expected = differences(lambda x: stacked_errors([goal], x)[0], at) / METRES_PER_RADIAN
+    np.testing.assert_allclose(stacked_errors([goal], at)[1] / METRES_PER_RADIAN, -expected, atol=1e-6)
 
 
 def left_jacobian(v):

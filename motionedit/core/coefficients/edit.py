@@ -18,7 +18,7 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
 from motionedit.core.coefficients.chain import CoefficientChain
-from motionedit.core.coefficients.goals import Goal, goal_error
+from motionedit.core.coefficients.goals import Goal
 from motionedit.core.coefficients.projection import Projection, with_rows
 from motionedit.core.coefficients.solver import CoefficientSolution, solve_damped, solve_goals
 from motionedit.core.measure import WORLD, Measure
@@ -99,8 +99,6 @@ class CoefficientEdit:
     solution : CoefficientSolution
     coefficients : shape (m,)
         alpha after the edit.
-    position_errors, angle_errors : tuples of float
-        Per goal, what is left: clip units, radians.
     """
 
     motion: Motion
@@ -108,8 +106,6 @@ class CoefficientEdit:
     moved: BoolArray
     solution: CoefficientSolution
     coefficients: FloatArray
-    position_errors: tuple[float, ...]
-    angle_errors: tuple[float, ...]
 
 
 def edit_by_coefficients(
@@ -139,15 +135,12 @@ def edit_by_coefficients(
     changed = (new_rows != projection.rows).reshape(len(rows), -1, 3).any(axis=2)
     touched = np.zeros((len(rows), len(motion.skeleton)), dtype=np.bool_)
     touched[:, projection.joints] = changed[:, 1:]
-    errors = [goal_error(goal, solution.change) for goal in goals]
     return CoefficientEdit(
         motion=motion,
         touched=touched,
         moved=changed[:, 0],
         solution=solution,
         coefficients=frozen(projection.coefficients + solution.change),
-        position_errors=tuple(float(np.linalg.norm(error.position)) / model.space.scale for error in errors),
-        angle_errors=tuple(float(np.linalg.norm(error.rotation)) for error in errors),
     )
 
 

@@ -46,23 +46,20 @@ class Goal:
     base: CoefficientChain | None = None
 
 
-@dataclass(frozen=True, eq=False)
-class GoalError:
-    """Rows of one goal: `error` (k,) still to go, and `jacobian` (k, m); not weighted, rotations in radians."""
-
-    position: FloatArray
-    position_jacobian: FloatArray
-    rotation: FloatArray
-    rotation_jacobian: FloatArray
-
-
-def goal_error(goal: Goal, unknowns: FloatArray) -> GoalError:
-    """Return the goal's errors, e = g - x(Theta) of eq. (6), and their rows of J(alpha)."""
-    state = _state(goal, unknowns)
-    nothing = np.zeros(0), np.zeros((0, state.position_rows.shape[1]))
-    place = nothing if goal.position is None else _position_error(goal.position, goal, state)
-    turn = nothing if goal.rotation is None else _rotation_error(goal.rotation, state)
-    return GoalError(*place, *turn)
+def stacked_errors(goals: Sequence[Goal], unknowns: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return all goals' weighted errors, e = g - x(Theta) of eq. (6), shape (p,), and J(alpha), (p, m), in metres."""
+    errors, rows = [], []
+    for goal in goals:
+        state, turn = _state(goal, unknowns), goal.weight * METRES_PER_RADIAN
+        if goal.position is not None:
+            e, J = _position_error(goal.position, goal, state)
+            errors.append(goal.weight * e)
+            rows.append(goal.weight * J)
+        if goal.rotation is not None:
+            e, J = _rotation_error(goal.rotation, state)
+            errors.append(turn * e)
+            rows.append(turn * J)
+    return np.concatenate(errors), np.concatenate(rows)
 
 
 def _state(goal: Goal, unknowns: FloatArray) -> EffectorState:
@@ -92,19 +89,3 @@ def _seen_from(base: EffectorState, state: EffectorState) -> EffectorState:
         relative_rows(inverse, between, state.position_rows, base.position_rows, base.rotation_rows),
         inverse @ (state.rotation_rows - base.rotation_rows),
     )
-
-
-def stacked_errors(goals: Sequence[Goal], unknowns: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return all goals' weighted errors, shape (p,), and J(alpha), shape (p, m), in metres."""
-    errors, rows = [], []
-    for goal in goals:
-        state, turn = _state(goal, unknowns), goal.weight * METRES_PER_RADIAN
-        if goal.position is not None:
-            e, J = _position_error(goal.position, goal, state)
-            errors.append(goal.weight * e)
-            rows.append(goal.weight * J)
-        if goal.rotation is not None:
-            e, J = _rotation_error(goal.rotation, state)
-            errors.append(turn * e)
-            rows.append(turn * J)
-    return np.concatenate(errors), np.concatenate(rows)

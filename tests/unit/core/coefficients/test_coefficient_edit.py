@@ -50,7 +50,6 @@ def test_a_goal_at_any_frame_is_met_in_the_clips_own_timing(model, frames, hit):
         edit = edited(model, projection, [request])
         assert len(edit.motion) == frames
         np.testing.assert_allclose(place_of(edit.motion, request), request.position, atol=1e-5)
-        assert edit.position_errors[0] < 1e-5
         assert edit.solution.iterations <= 12
 
 
@@ -116,7 +115,6 @@ def test_an_orientation_goal_is_met(model):
     edit = edited(model, projected(model, motion, 36.0), [request])
     after = kinematics.forward(edit.motion).rotations[36, HAND]
     assert np.degrees(rot.angle_between(after, wanted)) < 0.01
-    assert np.degrees(edit.angle_errors[0]) < 0.01
 
 
 def test_frames_of_a_rest_pose_stay_as_they_are(model):

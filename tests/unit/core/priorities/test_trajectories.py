@@ -15,6 +15,7 @@ from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.bvh import read_clip
 from motionedit.core.kinematics import Effector, effector_positions, forward
 from motionedit.core.priorities.trajectories import ControlPoint, active_interval, position_targets, rotation_targets
+from motionedit.core.units import STANDARD_LEG
 
 # Frames so fine that a difference between two of them is a derivative: 10 s at 1000 frames a second.
 FRAMES, RATE = 10001, 1000.0
@@ -440,7 +441,7 @@ def walk():
     anatomy = find_anatomy(motion.skeleton)
     poses = forward(motion)
     joints = (anatomy.legs[1].ankle, anatomy.arms[1].wrist)
-    scale = 0.85 / anatomy.leg_length
+    scale = STANDARD_LEG / anatomy.leg_length
     return [effector_positions(poses, Effector(j, np.zeros(3))) * scale for j in joints], 1.0 / motion.frame_time
 
 
