@@ -9,10 +9,13 @@ trap 'rm -rf "$folder"' EXIT
 cp -r motionedit tests pyproject.toml "$folder/"
 rm -f "$folder"/motionedit/core/_compiled*
 headers=$("$python" -c 'import sysconfig; print(sysconfig.get_paths()["include"])')
+sources=$("$python" -c 'import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["tool"]["setuptools"]["ext-modules"][0]["sources"])')
+# shellcheck disable=SC2086  # several files
 gcc -shared -fPIC -std=c11 -O1 -g -Wall -Wextra -Werror -fsanitize=address,undefined -fno-sanitize-recover=all \
-  -fno-omit-frame-pointer -I"$headers" motionedit/core/priorities/csrc/{module,motion,solver,solver_avx2}.c -o "$folder/motionedit/core/_compiled.abi3.so"
+  -fno-omit-frame-pointer -I"$headers" $sources -o "$folder/motionedit/core/_compiled.abi3.so"
 # Python itself leaks by design; its own allocator would hide overruns.
 export ASAN_OPTIONS=detect_leaks=0 PYTHONMALLOC=malloc
 export LD_PRELOAD="$(gcc -print-file-name=libasan.so)"
 cd "$folder"
+"$python" -c "from motionedit.core import _compiled"  # else the tests would be skipped
 "$python" -m pytest -q -p no:cacheprovider -n 0 tests/unit/core/priorities/test_compiled.py

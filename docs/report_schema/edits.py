@@ -126,7 +126,7 @@ _CONSTRAINT = {
     "strict": flag("whether --strict counts it"),
     "first_frame": count("the first frame at which it is active"),
     "last_frame": count("the last one, which is in"),
-    "effector": or_null(part("effector"), "what it moves; null for com and posture"),
+    "effector": or_null(part("effector"), "what it moves; null where it is about no one point"),
     "points": list_of(part("span"), "its points; none where it rides the input's own trajectory"),
     "recruited": list_of(STRING, "joints that it may move; NAME.position is the root's translation"),
     "frames": obj(

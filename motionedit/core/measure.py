@@ -38,7 +38,7 @@ class Measure:
     @cached_property
     def rows(self) -> FloatArray:
         """The axes that count, shape (k, 3)."""
-        return self.axes[list(self.counted)]
+        return frozen(self.axes[list(self.counted)])
 
     @property
     def is_whole(self) -> bool:

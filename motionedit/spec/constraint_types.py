@@ -21,6 +21,7 @@ class PositionConstraint(Recruiting, Placed, EffectorItem, ConstraintItem):
     """An effector follows a trajectory: a shape constraint S(T(t))."""
 
     point_keys = ("position", "shift", *SPLINE_KEYS)
+    measure_keys = ("frame", "relative_to", "axes")
 
     type: Literal["position"] = Field(description="The type: position.")
     axes: Annotated[tuple[int, ...], kinds.AXES] = Field(
@@ -51,6 +52,7 @@ class ComConstraint(Recruiting, ConstraintItem):
     """The center of mass keeps its place over the support, section 4.3."""
 
     point_keys = ("shift", *SPLINE_KEYS)
+    measure_keys = ("frame", "axes")
     only_warns = True
 
     type: Literal["com"] = Field(description="The type: com.")
@@ -103,6 +105,8 @@ class AimConstraint(Recruiting, Placed, EffectorItem, ConstraintItem):
     def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
         """Yield what is wrong between keys."""
         yield from super().faults_between_keys(data)
+        if "target" in data and "relative_to" in data:
+            yield Fault("stands beside target, whose frame it is in; give one of them", ("relative_to",))
         if "target" not in data and not data.get("points"):
             yield Fault("needs one of target, points: what shall be looked at")
         for i, point in mappings_in(data, "points"):

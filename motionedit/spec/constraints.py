@@ -45,6 +45,8 @@ class ConstraintItem(Item):
     point_keys: ClassVar[tuple[str, ...]] = ()
     has_position: ClassVar[bool] = True
     has_angle: ClassVar[bool] = False
+    # The keys that say what its positions and rotations are measured in.
+    measure_keys: ClassVar[tuple[str, ...]] = ()
     # A constraint that --strict counts only where it is given a tolerance.
     only_warns: ClassVar[bool] = False
 
@@ -67,10 +69,9 @@ class ConstraintItem(Item):
     )
     tolerance: Annotated[Tolerance | None, kinds.TOLERANCE] = Field(
         default=None,
-        description="How near is met: clip units, degrees for orientation, aim and posture, {position, angle} for "
-        "pose; off: may give way. Default 1 mm and 0.1 degree at leg length 0.85 m. Where none is given, --strict "
-        "counts places and turns that have an at or a hold; com, aim, posture, and what has no points or only during, "
-        "warn alone.",
+        description="How near is met: clip units, degrees for what only turns, {position, angle} for what does both; "
+        "off: may give way. Default 1 mm and 0.1 degree at leg length 0.85 m. Where none is given, --strict counts "
+        "what has a point with at or hold, but for types that only follow or keep something: these warn alone.",
     )
     ease_in: Annotated[Duration, kinds.DURATION] = Field(
         default=EASE, description="Ramp from the input's trajectory before the first point (see defaults)."
@@ -137,6 +138,8 @@ class Recruiting(SpecModel):
 
 class Placed(SpecModel):
     """What a constraint has that is measured in some frame of coordinates."""
+
+    measure_keys: ClassVar[tuple[str, ...]] = ("frame", "relative_to")
 
     frame: Annotated[kinds.Frame, kinds.FRAME] = Field(
         default="world", description="Axes of positions, shifts and orientations: world, or the character's heading."

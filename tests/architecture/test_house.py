@@ -87,11 +87,10 @@ def test_a_kind_of_constraint_is_one_file_one_model_and_a_line_in_the_registry()
 def test_what_a_kinds_model_has_of_its_own_is_what_its_constraint_takes(name):
     model, kind = TYPES[name], KINDS[name]
     keys = {info.alias or key for key, info in model.model_fields.items()}
-    measured = {"frame", "relative_to", "axes"}
     takes = {field.name for field in fields(kind)} - {"measure"}
     # What is common to all, and what becomes the measure, is resolved for every kind alike.
     assert takes - keys == set()
-    assert keys - takes <= {"type", "tolerance", *measured}
+    assert keys - takes <= {"type", "tolerance", *model.measure_keys}
 
 
 def branches_on_kinds(tree):

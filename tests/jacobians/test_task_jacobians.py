@@ -107,7 +107,7 @@ def test_aim_where_it_is_met(motion, at_a_joint):
     if at_a_joint:
         way = poses.positions[:, HAND] - poses.positions[:, HEAD]
         axis = rot.rotate(rot.conjugate(poses.rotations[:1, HEAD]), way[:1])[0]
-        task = AimTask(point(HEAD), axis / np.linalg.norm(axis), None, point(HAND))
+        task = AimTask(point(HEAD), axis / np.linalg.norm(axis), np.zeros((FRAMES, 3)), point(HAND))
         one = slice(0, 1)
         _, J = task.evaluate(
             WorldPoses(poses.positions[one], poses.rotations[one]), motion.rotations[one], np.arange(1)

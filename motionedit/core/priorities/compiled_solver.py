@@ -40,26 +40,21 @@ class Layout:
     buffers: dict[str, NDArray[Any]]
 
 
-@dataclass(frozen=True, eq=False)
-class _Row:
-    """A task's rows with their place: the layer, and the weight in it."""
-
-    task: CompiledTask
-    layer: int
-    weight: float
+# A task's rows, their layer, and their weight in it.
+_Row = tuple["CompiledTask", int, float]
 
 
 def layout_of(problem: Problem) -> Layout | None:
     """Return the layout of a problem; None where there is no compiled solver, or a task that it does not know."""
     module = compiled()
-    rows = None if module is None else _rows(problem, module.kinds)
+    rows = None if module is None else _rows(problem, module.row_kinds)
     if rows is None:
         return None
     columns, skeleton, hinges = problem.columns, problem.columns.skeleton, problem.hinges
-    masses = next((row.task.masses for row in rows if row.task.masses is not None), None)
+    masses = next((task.masses for task, _, _ in rows if task.masses is not None), None)
     nodes = _nodes(problem, rows, masses)
     node_of = _places(nodes, len(skeleton))
-    tasks, targets = _tasks(rows, node_of, module.kinds)
+    tasks, targets = _tasks(rows, node_of, module.row_kinds)
     return Layout(
         {
             "settings": _settings(problem, nodes, node_of, tasks, targets=len(targets)),
@@ -70,7 +65,7 @@ def layout_of(problem: Problem) -> Layout | None:
             "hinges": _records(
                 "hinges", len(hinges.places), {"column": hinges.places, "axis": hinges.axes, "limits": hinges.limits}
             ),
-            "recruited": np.ascontiguousarray([row.task.recruited.joints for row in rows], dtype=np.uint8),
+            "recruited": np.ascontiguousarray([task.recruited.joints for task, _, _ in rows], dtype=np.uint8),
             "targets": targets,
         }
     )
@@ -123,9 +118,9 @@ def _rows(problem: Problem, kinds: Sequence[str]) -> list[_Row] | None:
     for layer, tasks in enumerate(problem.layers):
         for each in tasks:
             rows = each.task.compiled()
-            if rows is None or any(row.kind not in kinds for row in rows):
+            if rows is None or any(row.row_kind not in kinds for row in rows):
                 return None
-            found += [_Row(row, layer, each.weight) for row in rows]
+            found += [(row, layer, each.weight) for row in rows]
     return found
 
 
@@ -192,12 +187,12 @@ def _tasks(rows: Sequence[_Row], node_of: IntArray, kinds: Sequence[str]) -> tup
     """Return the records of all tasks, and their targets one after the other."""
     records = _records("tasks", len(rows), {})
     given: list[FloatArray] = [np.zeros(0)]
-    for record, row in zip(records, rows, strict=True):
-        task, counted = row.task, row.task.measure.counted
+    for record, (task, layer, weight) in zip(records, rows, strict=True):
+        counted = task.measure.counted
         values = {
-            "kind": kinds.index(task.kind),
-            "layer": row.layer,
-            "weight": row.weight,
+            "kind": kinds.index(task.row_kind),
+            "layer": layer,
+            "weight": weight,
             "rows": len(counted),
             "root": task.recruited.root if task.point is None else task.point.moves_with_root,
             "base_root": task.base is not None and task.base.moves_with_root,
@@ -205,14 +200,14 @@ def _tasks(rows: Sequence[_Row], node_of: IntArray, kinds: Sequence[str]) -> tup
             "base": -1 if task.base is None else node_of[task.base.effector.joint],
             "offset": 0.0 if task.point is None else task.point.effector.offset,
             "axis": 0.0 if task.axis is None else task.axis,
-            "width": task.width,
+            "width": task.targets.shape[1],
             "targets": sum(map(len, given)),
         }
         for name, value in values.items():
             record[name] = value
         record["axes"][: len(counted)] = counted
         record["measure"][: len(counted)] = task.measure.rows
-        given.append(np.ravel(task.targets) if task.targets is not None else np.zeros(0))
+        given.append(np.ravel(task.targets))
     return records, np.concatenate(given)
 
 
@@ -236,7 +231,7 @@ def _nodes(problem: Problem, rows: Sequence[_Row], masses: Masses | None) -> Int
     skeleton = problem.columns.skeleton
     needed = np.zeros(len(skeleton), dtype=np.bool_)
     needed[problem.columns.joints] = True
-    points = [point for row in rows for point in (row.task.point, row.task.base) if point is not None]
+    points = [point for task, _, _ in rows for point in (task.point, task.base) if point is not None]
     needed[[point.effector.joint for point in points]] = True
     if len(skeleton.translated):
         needed[problem.columns.root] = True

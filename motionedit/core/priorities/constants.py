@@ -2,12 +2,14 @@
 
 # Metres at leg length 0.85 m: a layer's error is clamped to this much per iteration.
 LARGEST_ERROR = 0.6
-# Radians: no joint turns further than this in one iteration.
+# Radians: no joint turns further than this in one iteration. The series of csrc's q_exp are good up to it.
 LARGEST_TURN = 0.5
 # Radians and metres: a frame is done when its largest step falls below,
 STOP_STEP = 1e-4
 # or when the steps to come, by the ratio of the last two, add up to less than this, and the layers are met to that.
 STOP_LEFT, STOP_ERROR = 2e-5, 1e-5
+# Steps that shrink by a larger ratio promise nothing.
+LARGEST_RATIO = 0.5
 # The gain of the attraction: 1 at first, then this factor per iteration.
 FULL_GAIN_ITERATIONS = 8
 GAIN_DECAY = 0.85
@@ -19,6 +21,9 @@ ANNEALED_ITERATIONS = 10
 LIMIT_ROUNDS = 4
 # Radians: so far beyond its limit a hinge is on it.
 ON_LIMIT = 1e-12
+
+# Metres, and sine: below these a direction is none.
+NO_DIRECTION = 1e-9
 
 # Singular values below this share of the layer's largest (or of the least scale) are no freedom.
 RANK_TOLERANCE = 1e-4

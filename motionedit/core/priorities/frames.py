@@ -40,9 +40,9 @@ def run_of(asked: Asked) -> Run:
     return Run(asked, groups_of(asked))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class Solved:
-    """A motion with every frame solved, and how it went: iterations (F,), converged (F,), ranks (F, L)."""
+    """A motion whose frames are solved in place, and how it went: iterations (F,), converged (F,), ranks (F, L)."""
 
     motion: Motion
     iterations: IntArray

@@ -9,7 +9,7 @@ import numpy as np
 from motionedit.core.priorities.kinds.constraint import Stage
 from motionedit.core.priorities.points import Columns
 from motionedit.core.priorities.problem import HingeColumns, Problem, WeightedTask, order_of_layers
-from motionedit.core.priorities.solver import Prepared, prepared
+from motionedit.core.priorities.solver import Prepared, prepare_problem
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -108,7 +108,7 @@ def _group(asked: Asked, members: Sequence[int], frames: IntArray) -> Group:
         max_iterations=asked.settings.max_iterations,
     )
     levels = asked.levels
-    return Group(frames, np.array([levels.index(priority) for priority in priorities]), prepared(problem))
+    return Group(frames, np.array([levels.index(priority) for priority in priorities]), prepare_problem(problem))
 
 
 def _task(asked: Asked, i: int, frames: IntArray, columns: Columns) -> WeightedTask:

@@ -44,7 +44,7 @@ def attraction(
     return z
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class Memory:
     """The iteration before, of N frames: its pulls (N, n), steps (N, n), lengths of task steps (N,), free unknowns."""
 

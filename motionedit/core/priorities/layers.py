@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class Descent:
-    """What a pass came to in N frames of n unknowns.
+    """What a pass came to in N frames of n unknowns; frames are put in place of others as hinges meet their limits.
 
     Attributes
     ----------

@@ -20,6 +20,7 @@ from motionedit.core.priorities.constants import (
     GAIN_DECAY,
     HASTY_ITERATIONS,
     LARGEST_ERROR,
+    LARGEST_RATIO,
     LARGEST_TURN,
     LIMIT_ROUNDS,
     ON_LIMIT,
@@ -131,10 +132,10 @@ def _iterate(problem: Problem, solution: LayeredSolution, reference: Reference, 
 def _left(moved: FloatArray, before: FloatArray) -> FloatArray:
     """Return what the steps to come add up to, from the lengths of the last two, shape (N,): moved r / (1 - r).
 
-    Steps that shrink by a ratio of r = 1/2 and more promise nothing.
+    Steps that shrink by a larger ratio than `LARGEST_RATIO` promise nothing.
     """
     ratio = moved / np.maximum(before, 1e-300)
-    shrinking = ratio < 0.5
+    shrinking = ratio < LARGEST_RATIO
     left: FloatArray = np.where(shrinking, moved * ratio / np.where(shrinking, 1.0 - ratio, 1.0), np.inf)
     return left
 

@@ -19,14 +19,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class CompiledTask:
-    """A task as csrc knows it: rows of one `kind` there, see `Task` in layered.h.
+    """A task as csrc knows it: rows of one kind there, see `Task` in layered.h.
 
     Attributes
     ----------
-    kind : str
-        A name in the table of csrc/kinds.c.
+    row_kind : str
+        A name in the table of csrc/row_kinds.c.
     recruited : Recruited
-    targets : shape (N, width), or None where it has none
+    targets : shape (N, width)
     point, base : Point or None
         What moves, and what it is seen from.
     measure : Measure
@@ -37,19 +37,14 @@ class CompiledTask:
         Where the kind weighs the body.
     """
 
-    kind: str
+    row_kind: str
     recruited: Recruited
-    targets: FloatArray | None
+    targets: FloatArray
     point: Point | None = None
     base: Point | None = None
     measure: Measure = WORLD
     axis: FloatArray | None = None
     masses: Masses | None = None
-
-    @property
-    def width(self) -> int:
-        """How many numbers a target has."""
-        return 0 if self.targets is None else self.targets.shape[1]
 
 
 class Task(Protocol):
@@ -126,9 +121,9 @@ class Reference:
     root: FloatArray | None
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class LayeredSolution:
-    """What came out: the motion, and of its N frames that were solved iterations (N,), converged (N,), ranks (N, L)."""
+    """What comes out, written in place: the motion, and of its N frames iterations, converged, ranks (N, L)."""
 
     motion: Motion
     iterations: IntArray

@@ -20,25 +20,32 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Sight:
-    """A motion, the world transforms of the joints that were asked for (zeros elsewhere), the CoM, shape (F, 3)."""
+    """A motion; world transforms of the joints, and the CoM, shape (F, 3), that were asked for; zeros elsewhere."""
 
     motion: Motion
     poses: WorldPoses
     center: FloatArray
 
 
-def sight_of(motion: Motion, joints: Collection[int], masses: Masses) -> Sight:
-    """Return what is seen of a motion, block by block: a long motion's whole transforms are twice its file."""
+def sight_of(motion: Motion, joints: Collection[int], masses: Masses | None) -> Sight:
+    """Return what is seen of a motion, block by block: a long motion's whole transforms are twice its file.
+
+    Parameters
+    ----------
+    masses : Masses or None
+        None where nobody asks for the center of mass.
+    """
     frames, count = len(motion), len(motion.skeleton)
     seen = np.array(sorted(joints), dtype=np.intp)
     # Joint by joint: what is never written takes no memory.
     positions = np.zeros((count, frames, 3)).transpose(1, 0, 2)
     rotations = np.zeros((count, frames, 4)).transpose(1, 0, 2)
-    center = np.empty((frames, 3))
+    center = np.zeros((frames, 3))
     for block in frame_blocks(frames):
         part = Motion(motion.skeleton, motion.rotations[block], motion.translations[block], motion.frame_time)
         poses = forward(part)
         positions[block, seen] = poses.positions[:, seen]
         rotations[block, seen] = poses.rotations[:, seen]
-        center[block] = center_of_mass(poses, masses)
+        if masses is not None:
+            center[block] = center_of_mass(poses, masses)
     return Sight(motion, WorldPoses(positions, rotations), center)

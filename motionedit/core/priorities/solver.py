@@ -39,7 +39,7 @@ class Prepared:
     layout: Layout | None
 
 
-def prepared(problem: Problem) -> Prepared:
+def prepare_problem(problem: Problem) -> Prepared:
     """Return a problem ready to be solved: laid out for the compiled solver, where that runs and knows all tasks."""
     return Prepared(problem, layout_of(problem))
 

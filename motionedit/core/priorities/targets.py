@@ -13,7 +13,7 @@ from motionedit.core.priorities.kinds.constraint import Scene, Targets
 from motionedit.core.priorities.sight import Sight, sight_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Sequence
 
     from motionedit.core.arrays import FloatArray
     from motionedit.core.motion import Motion
@@ -30,8 +30,7 @@ def with_targets(
     settings: LayeredSettings,
 ) -> Asked:
     """Return all that is asked of a motion, with the targets of every constraint."""
-    joints = _looked_at(constraints)
-    before = sight_of(motion, joints, body.masses)
+    before = _seen(motion, constraints, body)
     free = [i for i, each in enumerate(constraints) if not each.waits_for_others]
     first = Scene(before, settings.curve, {}, lambda: before)
     found = {i: constraints[i].targets(first) for i in free}
@@ -44,7 +43,7 @@ def with_targets(
         own = tuple(constraints[i] for i in free), tuple(recruits[i] for i in free), tuple(found[i] for i in free)
         alone = run_of(Asked(motion, *own, body, settings))
         solved = solve_frames(alone, motion, reference=motion, pull_root=False)
-        return sight_of(solved.motion, joints, body.masses)
+        return _seen(solved.motion, constraints, body)
 
     scene = Scene(before, settings.curve, _goals(constraints, found, len(motion)), others)
     targets = tuple(found[i] if i in found else each.targets(scene) for i, each in enumerate(constraints))
@@ -53,21 +52,27 @@ def with_targets(
 
 def errors_of(asked: Asked, motion: Motion) -> tuple[ConstraintErrors, ...]:
     """Return what an edited motion leaves of every constraint, by forward kinematics."""
-    after = sight_of(motion, _looked_at(asked.constraints), asked.body.masses)
+    after = _seen(motion, asked.constraints, asked.body)
     return tuple(
         each.errors(targets, after, reference=asked.motion)
         for each, targets in zip(asked.constraints, asked.targets, strict=True)
     )
 
 
-def _looked_at(constraints: Iterable[Constraint]) -> frozenset[int]:
-    return frozenset().union(*(each.looked_at() for each in constraints))
+def _seen(motion: Motion, constraints: Sequence[Constraint], body: Body) -> Sight:
+    """Return what the constraints look at in a motion."""
+    joints = frozenset().union(*(each.looked_at() for each in constraints))
+    return sight_of(motion, joints, body.masses if any(each.weighs for each in constraints) else None)
 
 
 def _goals(constraints: Sequence[Constraint], found: dict[int, Targets], frames: int) -> dict[int, FloatArray]:
-    """Return where constraints put joints in the world, shape (F, 3), nan where none does; a later one stands."""
+    """Return where constraints put joints in the world, shape (F, 3), nan where none does.
+
+    Of several for a joint the most important stands; of equals the one of the larger weight, then the last.
+    """
     goals: dict[int, FloatArray] = {}
-    for i, targets in found.items():
+    for i in sorted(found, key=lambda i: (constraints[i].priority, constraints[i].weight)):
+        targets = found[i]
         goal = constraints[i].goal(targets)
         if goal is not None:
             joint, places = goal

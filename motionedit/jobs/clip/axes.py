@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from motionedit.core import rotations as rot
+from motionedit.core.arrays import frozen
+from motionedit.core.measure import Measure
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -31,7 +33,11 @@ class GivenAxes:
     @property
     def rows(self) -> FloatArray:
         """The axes in the world, rows of shape (3, 3)."""
-        return np.eye(3) if self.heading is None else self.heading.axes
+        return frozen(np.eye(3)) if self.heading is None else self.heading.axes
+
+    def measure(self, *, counted: tuple[int, ...], base: int | None) -> Measure:
+        """Return what positions are measured in: these axes of which some count, or a joint's frame."""
+        return Measure(self.rows, counted, base)
 
     def position(self, given: Sequence[float]) -> FloatArray:
         """Return a position along these axes, from the world's origin."""

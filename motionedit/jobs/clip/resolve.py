@@ -93,8 +93,8 @@ def joints(names: Sequence[str], skeleton: Skeleton, place: Where) -> tuple[int,
     return tuple(joint(name, skeleton, place.at(i)) for i, name in enumerate(names))
 
 
-def effector(spec: EffectorSpec, skeleton: Skeleton, place: Where) -> Effector:
-    """Return the point of the skeleton that an effector names.
+def effector(spec: EffectorSpec, skeleton: Skeleton, place: Where, *, scale: float = 1.0) -> Effector:
+    """Return the point of the skeleton that an effector names, its offset times `scale`.
 
     Raises
     ------
@@ -103,7 +103,7 @@ def effector(spec: EffectorSpec, skeleton: Skeleton, place: Where) -> Effector:
     """
     if not spec.end_site:
         index = joint(spec.joint, skeleton, place.at("joint"))
-        return Effector(index, frozen(np.array(spec.offset or (0.0, 0.0, 0.0))))
+        return Effector(index, frozen(scale * np.array(spec.offset or (0.0, 0.0, 0.0))))
     index = joint(spec.joint, skeleton, place.at("end_site"))
     sites = [site for site in skeleton.end_sites if site.joint == index]
     if spec.index >= len(sites):
@@ -111,7 +111,7 @@ def effector(spec: EffectorSpec, skeleton: Skeleton, place: Where) -> Effector:
             len(sites), f"{len(sites)} end sites, index 0 to {len(sites) - 1}"
         )
         raise place.at("index").error(f"'{spec.joint}' in {place.clip} has {has}; not index {spec.index}")
-    return Effector(index, frozen(np.array(sites[spec.index].offset, dtype=float)))
+    return Effector(index, frozen(scale * np.array(sites[spec.index].offset, dtype=float)))
 
 
 def orientation(spec: OrientationSpec) -> FloatArray:

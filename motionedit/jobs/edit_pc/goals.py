@@ -9,7 +9,6 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.coefficients.edit import GoalRequest
 from motionedit.core.kinematics import effector_positions
-from motionedit.core.measure import Measure
 from motionedit.core.timeline import round_half_up
 from motionedit.core.timeline.warp import make_warp
 from motionedit.dataclass import dataclass
@@ -22,6 +21,7 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import FloatArray
     from motionedit.core.kinematics import Effector, WorldPoses
+    from motionedit.core.measure import Measure
     from motionedit.core.pca.model import MotionModel
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.jobs.clip.resolve import Place
@@ -96,7 +96,7 @@ def _request(goal: PcGoal, facts: ClipFacts, place: Place, *, frame: int, poses:
     if goal.relative_to is not None:
         base = resolve.joint(goal.relative_to, skeleton, place.at("relative_to"))
     axes = GivenAxes.of(facts, goal.frame)
-    measure = Measure(axes.rows, goal.axes, base)
+    measure = axes.measure(counted=goal.axes, base=base)
     position = None if goal.position is None else axes.position(goal.position)
     if goal.shift is not None:
         position = seen(poses, frame, effector, measure)[0] + np.array(goal.shift)

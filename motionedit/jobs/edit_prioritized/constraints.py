@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from motionedit.core.kinematics import Effector
-from motionedit.core.measure import Measure
 from motionedit.core.priorities.kinds import KINDS
 from motionedit.core.priorities.kinds.constraint import Movable
 from motionedit.core.priorities.recruiting import NotOnTheWayError, RecruitRule
@@ -119,11 +118,9 @@ class _Resolver:
         axes = GivenAxes.of(self.facts, own["frame"].value if "frame" in own else "world")
         points = self._points(spec.points, axes, place)
         given = {key: self._value(each, place) for key, each in own.items()}
-        if "frame" in own:
-            joint = "relative_to" in own and own["relative_to"].kind is kinds.JOINT
-            base = given.pop("relative_to") if joint else None
-            given["measure"] = Measure(axes.rows, given.pop("axes", (0, 1, 2)), base)
-            del given["frame"]
+        measured = {key: given.pop(key) for key in spec.measure_keys}
+        if measured:
+            given["measure"] = axes.measure(counted=measured.get("axes", (0, 1, 2)), base=measured.get("relative_to"))
         found = KINDS[spec.type](
             name=str(spec.name),
             priority=spec.priority,
@@ -157,9 +154,8 @@ class _Resolver:
 
     def _effector(self, effectors: Sequence[EffectorSpec], place: Place) -> Effector:
         """Return the one effector of a loaded spec's constraint, lengths in normalised metres."""
-        skeleton = self.facts.clip.motion.skeleton
-        found = self.faults.get(lambda: resolve.effector(effectors[0], skeleton, place), otherwise=_NOWHERE)
-        return Effector(found.joint, found.offset * self.scale)
+        skeleton, scale = self.facts.clip.motion.skeleton, self.scale
+        return self.faults.get(lambda: resolve.effector(effectors[0], skeleton, place, scale=scale), otherwise=_NOWHERE)
 
     def _joint(self, name: str, place: Place) -> int | None:
         return self.faults.get(lambda: resolve.joint(name, self.facts.clip.motion.skeleton, place), otherwise=None)

@@ -23,10 +23,10 @@ typedef struct {
 } Node;
 
 typedef struct {
-    int64_t kind, layer, rows, node, base; /* kind: in the table of kinds.c; base: a node, or -1 */
+    int64_t kind, layer, rows, node, base; /* kind: in the table of row_kinds.c; base: a node, or -1 */
     int64_t root, base_root;               /* whether the root's translation moves the point, the base */
     int64_t axes[3];                       /* which of the targets' axes count, `rows` of them */
-    int64_t width;                         /* numbers a target has: 3, 4, or 0 for none */
+    int64_t width;                         /* numbers a target has: 3 or 4 */
     int64_t targets;                       /* where they begin among all targets: shape (N, width) */
     double weight;
     double offset[3];     /* of the point, in its joint's frame */
@@ -42,8 +42,9 @@ typedef struct {
 
 /* Those of core/priorities/constants.py, where each is explained. */
 typedef struct {
-    double largest_error, largest_turn, stop_step, stop_left, stop_error, gain_decay, on_limit;
-    double rank_tolerance, least_scale, limb, largest_task_share, largest_factor, no_change, metres_per_radian;
+    double largest_error, largest_turn, stop_step, stop_left, stop_error, largest_ratio, gain_decay, on_limit;
+    double rank_tolerance, least_scale, limb, largest_task_share, largest_factor, no_change, no_direction,
+        metres_per_radian;
     int64_t full_gain_iterations, hasty_iterations, annealed_iterations, limit_rounds;
 } Constants;
 
@@ -74,8 +75,21 @@ typedef struct {
     int64_t *ranks;       /* shape (N, L) */
 } Problem;
 
-/* The name of a kind of rows, NULL after the last. */
-const char *kind_name(int kind);
+/* What is known of a kind of rows. */
+typedef struct {
+    const char *name;  /* in Python */
+    int force, torque; /* whether its rows push, and twist */
+    int weighs;        /* whether they pull at all that carries mass, instead of at a node's chain */
+    int measured;      /* whether they are the axes that count, one to three of them, instead of three */
+    int width;         /* numbers of a target */
+} RowKind;
+
+/* A kind of rows, NULL after the last. */
+const RowKind *row_kind(int64_t kind);
+
+/* sense.c: what makes no sense, NULL where all does; the second once the first has found nothing, and sizes fit. */
+const char *settings_fault(const Settings *of);
+const char *problem_fault(const Problem *problem);
 
 /* Solve frames begin to end - 1; 0, or -1 where memory ran out. Both do the same, to the bit: the second for
    processors with AVX2. */

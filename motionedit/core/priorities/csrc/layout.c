@@ -33,7 +33,7 @@ static int chain(const Problem *problem, const Task *task, int64_t node, int *co
     return count;
 }
 
-/* The columns that carry mass. */
+/* All columns that a task may use: what weighs the body is moved by all of them. */
 static int carriers(const Problem *problem, const Task *task, int *columns)
 {
     int count = 0;
@@ -49,7 +49,7 @@ static int carriers(const Problem *problem, const Task *task, int *columns)
 
 static int part_columns(const Problem *problem, const Task *task, int p, int *columns)
 {
-    if (KINDS[task->kind].weighs)
+    if (ROW_KINDS[task->kind].is.weighs)
         return carriers(problem, task, columns);
     return chain(problem, task, p == 0 ? task->node : task->base, columns);
 }
@@ -79,8 +79,8 @@ static void lay_out_pull(const Problem *problem, const Task *task, Pull *pull, c
         memset(part, 0, sizeof *part);
         part->count = count, part->columns = columns, part->levers = levers;
         part->root = (int)(p == 0 ? task->root : task->base_root);
-        part->has_force = KINDS[task->kind].force;
-        part->has_torque = KINDS[task->kind].torque;
+        part->has_force = ROW_KINDS[task->kind].is.force;
+        part->has_torque = ROW_KINDS[task->kind].is.torque;
         part->plain = parts == 1 && !part->has_torque && measures_plainly(task);
         for (int r = 0; r < 3 && part->plain; r++)
             part->force[r][r] = all(task->weight);
@@ -151,7 +151,7 @@ static void lay_out_tasks(Batch *batch, char **memory, size_t *needed)
         list_felt(batch, h);
     batch->weighs = batch->shared_count = 0;
     for (int t = 0; t < tasks; t++)
-        batch->weighs |= KINDS[problem->task[t].kind].weighs;
+        batch->weighs |= ROW_KINDS[problem->task[t].kind].is.weighs;
     for (int s = 0; s < tasks; s++)
         for (int p = 0; p < batch->pulls[s].parts; p++) {
             const Part *mine = batch->pulls[s].part + p;

@@ -29,11 +29,12 @@ static const Field SETTINGS_FIELDS[] = {INTEGER(Settings, frames), INTEGER(Setti
     INTEGER(Settings, pulls_root), INTEGER(Settings, max_iterations), NUMBER(Settings, attraction), {0}};
 static const Field CONSTANTS_FIELDS[] = {NUMBER(Constants, largest_error), NUMBER(Constants, largest_turn),
     NUMBER(Constants, stop_step), NUMBER(Constants, stop_left), NUMBER(Constants, stop_error),
-    NUMBER(Constants, gain_decay), NUMBER(Constants, on_limit), NUMBER(Constants, rank_tolerance),
-    NUMBER(Constants, least_scale), NUMBER(Constants, limb), NUMBER(Constants, largest_task_share),
-    NUMBER(Constants, largest_factor), NUMBER(Constants, no_change), NUMBER(Constants, metres_per_radian),
-    INTEGER(Constants, full_gain_iterations), INTEGER(Constants, hasty_iterations),
-    INTEGER(Constants, annealed_iterations), INTEGER(Constants, limit_rounds), {0}};
+    NUMBER(Constants, largest_ratio), NUMBER(Constants, gain_decay), NUMBER(Constants, on_limit),
+    NUMBER(Constants, rank_tolerance), NUMBER(Constants, least_scale), NUMBER(Constants, limb),
+    NUMBER(Constants, largest_task_share), NUMBER(Constants, largest_factor), NUMBER(Constants, no_change),
+    NUMBER(Constants, no_direction), NUMBER(Constants, metres_per_radian), INTEGER(Constants, full_gain_iterations),
+    INTEGER(Constants, hasty_iterations), INTEGER(Constants, annealed_iterations), INTEGER(Constants, limit_rounds),
+    {0}};
 static const Field NODE_FIELDS[] = {INTEGER(Node, joint), INTEGER(Node, parent), INTEGER(Node, translation),
     INTEGER(Node, column), FIELD(Node, offset, "3f8"), NUMBER(Node, share), FIELD(Node, center, "3f8"), {0}};
 static const Field TASK_FIELDS[] = {INTEGER(Task, kind), INTEGER(Task, layer), INTEGER(Task, rows), INTEGER(Task, node),
@@ -57,7 +58,7 @@ static const struct {
 
 static int has_size(const Py_buffer *buffer, int64_t count, size_t bytes, const char *name)
 {
-    if (count >= 0 && (size_t)buffer->len == (size_t)count * bytes)
+    if (count >= 0 && buffer->len % (Py_ssize_t)bytes == 0 && buffer->len / (Py_ssize_t)bytes == count)
         return 1;
     PyErr_Format(
         PyExc_ValueError, "%s has %zd bytes instead of %zd", name, buffer->len, (Py_ssize_t)((size_t)count * bytes));
@@ -88,48 +89,6 @@ static int take_buffer(Buffers *buffers, const char *name, int64_t count, size_t
     return has_size(held, count, bytes, name);
 }
 
-static int between(int64_t least, int64_t index, int64_t count)
-{
-    return least <= index && index < count;
-}
-
-/* Whether a task's indices are some: nodes, its layer, its kind, its part of the targets. */
-static int is_task(const Settings *of, const Task *task, int64_t kinds)
-{
-    return between(0, task->kind, kinds) && between(0, task->layer, of->layers) && between(0, task->rows, 4) &&
-           between(-1, task->node, of->nodes) && between(-1, task->base, of->nodes) && between(0, task->width, 5) &&
-           0 <= task->targets && task->targets + task->width * of->frames <= of->targets;
-}
-
-/* Whether every index is one: a slip is an error and no crash. */
-static int has_sense(const Problem *problem)
-{
-    const Settings *of = &problem->of;
-    int64_t rows = 0, kinds = 0;
-    int sense = between(-1, of->root, of->nodes);
-    while (kind_name((int)kinds) != NULL)
-        kinds++;
-    for (int64_t i = 0; i < of->nodes; i++) {
-        const Node *node = problem->node + i;
-        sense &= between(0, node->joint, of->joints) && between(-1, node->parent, i) &&
-                 between(-1, node->translation, of->translated) && between(-1, node->column, of->columns);
-    }
-    for (int64_t t = 0; t < of->tasks; t++) {
-        sense &= is_task(of, problem->task + t, kinds);
-        rows += problem->task[t].rows;
-    }
-    for (int64_t h = 0; h < of->hinges; h++)
-        sense &= between(0, problem->hinge[h].column, of->columns);
-    for (int64_t k = 0; k < of->columns; k++)
-        sense &= between(0, problem->column_node[k], of->nodes);
-    for (int64_t f = 0; f < of->frames; f++)
-        sense &= between(0, problem->frames[f], of->motion_frames);
-    sense &= rows == of->rows;
-    if (!sense)
-        PyErr_SetString(PyExc_ValueError, "indices that are none");
-    return sense;
-}
-
 /* Read the problem out of the buffers. */
 static int read_problem(Problem *problem, Buffers *buffers)
 {
@@ -140,24 +99,31 @@ static int read_problem(Problem *problem, Buffers *buffers)
         !take_buffer(buffers, "constants", 1, sizeof *constants, READ, &constants))
         return 0;
     problem->of = *of, problem->constants = *constants;
+    if (settings_fault(of) != NULL) {
+        PyErr_SetString(PyExc_ValueError, settings_fault(of));
+        return 0;
+    }
     const size_t integer = sizeof(int64_t), number = sizeof(double);
     const int64_t angles = of->motion_frames * of->joints * 4, roots = of->pulls_root ? of->motion_frames * 3 : 0;
     const int64_t shifts = of->motion_frames * of->translated * 3;
-    return take_buffer(buffers, "nodes", of->nodes, sizeof(Node), READ, &problem->node) &&
-           take_buffer(buffers, "column_nodes", of->columns, integer, READ, &problem->column_node) &&
-           take_buffer(buffers, "tasks", of->tasks, sizeof(Task), READ, &problem->task) &&
-           take_buffer(buffers, "hinges", of->hinges, sizeof(Hinge), READ, &problem->hinge) &&
-           take_buffer(buffers, "recruited", of->tasks * of->columns, 1, READ, &problem->recruited) &&
-           take_buffer(buffers, "targets", of->targets, number, READ, &problem->targets) &&
-           take_buffer(buffers, "frames", of->frames, integer, READ, &problem->frames) &&
-           take_buffer(buffers, "reference_rotations", angles, number, READ, &problem->reference_rotations) &&
-           take_buffer(buffers, "reference_root", roots, number, READ, &problem->reference_root) &&
-           take_buffer(buffers, "rotations", angles, number, WRITE, &problem->rotations) &&
-           take_buffer(buffers, "translations", shifts, number, WRITE, &problem->translations) &&
-           take_buffer(buffers, "iterations", of->frames, integer, WRITE, &problem->iterations) &&
-           take_buffer(buffers, "converged", of->frames, 1, WRITE, &problem->converged) &&
-           take_buffer(buffers, "ranks", of->frames * of->layers, integer, WRITE, &problem->ranks) &&
-           has_sense(problem);
+    if (!(take_buffer(buffers, "nodes", of->nodes, sizeof(Node), READ, &problem->node) &&
+            take_buffer(buffers, "column_nodes", of->columns, integer, READ, &problem->column_node) &&
+            take_buffer(buffers, "tasks", of->tasks, sizeof(Task), READ, &problem->task) &&
+            take_buffer(buffers, "hinges", of->hinges, sizeof(Hinge), READ, &problem->hinge) &&
+            take_buffer(buffers, "recruited", of->tasks * of->columns, 1, READ, &problem->recruited) &&
+            take_buffer(buffers, "targets", of->targets, number, READ, &problem->targets) &&
+            take_buffer(buffers, "frames", of->frames, integer, READ, &problem->frames) &&
+            take_buffer(buffers, "reference_rotations", angles, number, READ, &problem->reference_rotations) &&
+            take_buffer(buffers, "reference_root", roots, number, READ, &problem->reference_root) &&
+            take_buffer(buffers, "rotations", angles, number, WRITE, &problem->rotations) &&
+            take_buffer(buffers, "translations", shifts, number, WRITE, &problem->translations) &&
+            take_buffer(buffers, "iterations", of->frames, integer, WRITE, &problem->iterations) &&
+            take_buffer(buffers, "converged", of->frames, 1, WRITE, &problem->converged) &&
+            take_buffer(buffers, "ranks", of->frames * of->layers, integer, WRITE, &problem->ranks)))
+        return 0;
+    if (problem_fault(problem) != NULL)
+        PyErr_SetString(PyExc_ValueError, problem_fault(problem));
+    return problem_fault(problem) == NULL;
 }
 
 static PyObject *solve_with(int (*solver)(const Problem *, int64_t, int64_t), PyObject *arguments)
@@ -196,6 +162,17 @@ static PyObject *solve_narrow(PyObject *self, PyObject *arguments)
     return solve_with(solve_frames, arguments);
 }
 
+/* Whether parents come before their children, and every place is a row of the translations, or -1. */
+static int is_tree(const int64_t *parents, const int64_t *places, int64_t joints, int64_t translated)
+{
+    for (int64_t j = 0; j < joints; j++)
+        if (parents[j] < -1 || parents[j] >= j || places[j] < -1 || places[j] >= translated) {
+            PyErr_Format(PyExc_ValueError, "joint %lld has no parent before it, or no translations", (long long)j);
+            return 0;
+        }
+    return 1;
+}
+
 static PyObject *forward_frames(PyObject *self, PyObject *arguments)
 {
     enum { PARENTS, PLACES, OFFSETS, LOCAL, MOVED, POSITIONS, WORLD, COUNT };
@@ -212,7 +189,8 @@ static PyObject *forward_frames(PyObject *self, PyObject *arguments)
                      has_size(b + LOCAL, 4 * poses, number, "rotations") &&
                      has_size(b + MOVED, 3 * translated * frames, number, "translations") &&
                      has_size(b + POSITIONS, 3 * poses, number, "positions") &&
-                     has_size(b + WORLD, 4 * poses, number, "world rotations");
+                     has_size(b + WORLD, 4 * poses, number, "world rotations") &&
+                     is_tree(b[PARENTS].buf, b[PLACES].buf, joints, translated);
     if (fits) {
         Py_BEGIN_ALLOW_THREADS world_poses(b[PARENTS].buf, b[PLACES].buf, b[OFFSETS].buf, frames, joints, translated,
             b[LOCAL].buf, b[MOVED].buf, b[POSITIONS].buf, b[WORLD].buf);
@@ -287,7 +265,7 @@ static PyObject *record_of(const Field *fields, size_t bytes)
     return record;
 }
 
-/* Add to the module `records`, how its structures lie, by their buffers' names, and `kinds`, the rows that it knows. */
+/* Add to the module `records`, how its structures lie, by their buffers' names, and `row_kinds`, the rows that it knows. */
 static int add_tables(PyObject *module)
 {
     PyObject *records = PyDict_New(), *kinds = PyList_New(0);
@@ -297,13 +275,13 @@ static int add_tables(PyObject *module)
         fits = record != NULL && PyDict_SetItemString(records, RECORDS[i].name, record) == 0;
         Py_XDECREF(record);
     }
-    for (int i = 0; fits && kind_name(i) != NULL; i++) {
-        PyObject *name = PyUnicode_FromString(kind_name(i));
+    for (int i = 0; fits && row_kind(i) != NULL; i++) {
+        PyObject *name = PyUnicode_FromString(row_kind(i)->name);
         fits = name != NULL && PyList_Append(kinds, name) == 0;
         Py_XDECREF(name);
     }
     fits = fits && PyModule_AddObjectRef(module, "records", records) == 0 &&
-           PyModule_AddObjectRef(module, "kinds", kinds) == 0;
+           PyModule_AddObjectRef(module, "row_kinds", kinds) == 0;
     Py_XDECREF(records);
     Py_XDECREF(kinds);
     return fits ? 0 : -1;

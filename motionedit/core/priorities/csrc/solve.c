@@ -336,7 +336,8 @@ static void end_after_iterating(Batch *batch, V moved)
 {
     const Constants *constants = &batch->problem->constants;
     const V ratio = moved / larger(batch->moved_before, all(1e-300));
-    batch->nearly = less(ratio, all(0.5)) & less(moved * ratio, constants->stop_left * (1.0 - ratio));
+    batch->nearly =
+        less(ratio, all(constants->largest_ratio)) & less(moved * ratio, constants->stop_left * (1.0 - ratio));
     batch->moved_before = moved;
     for (int lane = 0; lane < LANES; lane++) {
         batch->iteration[lane] += batch->at[lane] >= 0;

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "body.c"
-#include "kinds.c"
+#include "row_kinds.c"
 #include "rows.c"
 #include "algebra.c"
 #include "layers.c"

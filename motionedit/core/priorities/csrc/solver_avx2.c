@@ -18,7 +18,7 @@
 #endif
 #define FOUR_LANES
 #define solve_frames solve_frames_avx2
-#define kind_name kind_name_avx2
+#define row_kind row_kind_avx2
 #include "solver.c"
 #ifdef __clang__
 #pragma clang attribute pop

@@ -10,6 +10,7 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.kinematics import effector_positions
 from motionedit.core.measure import Measure
+from motionedit.core.priorities.constants import NO_DIRECTION
 from motionedit.core.priorities.kinds.constraint import ConstraintErrors, Targets
 from motionedit.core.priorities.kinds.effector import EffectorConstraint
 from motionedit.core.priorities.problem import CompiledTask
@@ -25,9 +26,6 @@ if TYPE_CHECKING:
     from motionedit.core.priorities.points import Point
     from motionedit.core.priorities.sight import Sight
 
-# Metres, and sine: below these a direction is none.
-_NO_DIRECTION = 1e-9
-
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Aim(EffectorConstraint):
@@ -38,7 +36,7 @@ class Aim(EffectorConstraint):
     axis : shape (3,)
         A unit vector, in the joint.
     target : int or None
-        The joint that is looked at.
+        The joint that is looked at; the measure has no base then.
     """
 
     type: ClassVar[str] = "aim"
@@ -50,7 +48,7 @@ class Aim(EffectorConstraint):
 
     @property
     def seen(self) -> Measure:
-        """What it is measured in: the frame of the joint that is looked at stands before that of the measure."""
+        """What it is measured in: the frame of the joint that is looked at, where there is one."""
         return self.measure if self.target is None else Measure(base=self.target)
 
     @property
@@ -62,11 +60,6 @@ class Aim(EffectorConstraint):
     def base_turns_it(self) -> bool:
         """Whether turning the base's own joint moves the task: not where its place is looked at."""
         return self.target is None
-
-    def looked_at(self) -> frozenset[int]:
-        """Return the effector's joint, its base, and the joint that is looked at."""
-        named = (self.effector.joint, self.measure.base, self.target)
-        return frozenset(joint for joint in named if joint is not None)
 
     def words(self, names: tuple[str, ...]) -> str:
         """Return ``aim of Head at LeftHand``."""
@@ -125,15 +118,12 @@ class Aim(EffectorConstraint):
 
 @dataclass(frozen=True, eq=False)
 class AimTask:
-    """A direction fixed in a joint, unit (3,), looks at targets (N, 3) in the world, or in the frame of a base joint.
-
-    A base without targets is looked at itself.
-    """
+    """A direction fixed in a joint, unit (3,), looks at targets (N, 3) in the world, or in a base joint's frame."""
 
     point: Point
     axis: FloatArray
-    targets: FloatArray | None
-    base: Point | None
+    targets: FloatArray
+    base: Point | None = None
 
     def evaluate(self, poses: WorldPoses, local: FloatArray, frames: IntArray) -> tuple[FloatArray, FloatArray]:
         """Return the turn from d to the target's direction, and (I - d d^T) w + d x (dp_e - dp_t) / r, as `Task`."""
@@ -141,14 +131,14 @@ class AimTask:
         d = rot.rotate(self.point.rotation(poses), self.axis)
         at, moved = self._place(poses, frames)
         way = at - self.point.position(poses)
-        distance = np.maximum(np.linalg.norm(way, axis=1, keepdims=True), _NO_DIRECTION)
+        distance = np.maximum(np.linalg.norm(way, axis=1, keepdims=True), NO_DIRECTION)
         t = way / distance
         turn = rot.cross(d, t)
         sine = np.linalg.norm(turn, axis=1, keepdims=True)
         cosine = np.sum(d * t, axis=1, keepdims=True)
         angle = np.arctan2(sine, cosine)
         # Straight behind, any axis square to d will do.
-        side = np.where(sine < _NO_DIRECTION, _square_to(d), turn / np.maximum(sine, _NO_DIRECTION))
+        side = np.where(sine < NO_DIRECTION, _square_to(d), turn / np.maximum(sine, NO_DIRECTION))
         J = self.point.rotation_rows(poses)
         J = J - d[:, :, None] * (d[:, None, :] @ J)
         swing = self.point.position_rows(poses)
@@ -160,12 +150,8 @@ class AimTask:
     def _place(self, poses: WorldPoses, frames: IntArray) -> tuple[FloatArray, FloatArray | None]:
         """Return what is looked at, p_b + R_b t, and its rows, dp_b - [R_b t]x w_b; None where it stands still."""
         if self.base is None:
-            if self.targets is None:
-                raise ValueError("an aim needs targets or a base")
             return self.targets[frames], None
         at, rows = self.base.position(poses), self.base.position_rows(poses)
-        if self.targets is None:
-            return at, rows
         arm = rot.rotate(self.base.rotation(poses), self.targets[frames])
         return at + arm, rows - rot.skew(arm) @ self.base.rotation_rows(poses)
 

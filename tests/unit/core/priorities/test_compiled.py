@@ -23,10 +23,10 @@ from motionedit.core.priorities.edit import edit_by_priorities
 from motionedit.core.priorities.kinds import KINDS, Position
 from motionedit.core.priorities.kinds.position import PositionTask
 from motionedit.core.priorities.points import Columns, Point, Recruited
-from motionedit.core.priorities.problem import HingeColumns, LayeredSolution, Problem, Reference, WeightedTask
+from motionedit.core.priorities.problem import HingeColumns, Problem, Reference, WeightedTask
 from motionedit.core.priorities.recruiting import RecruitRule
 from motionedit.core.priorities.settings import Body, LayeredSettings, PaperFilter, Passes
-from motionedit.core.priorities.solver import prepared, solve_layers
+from motionedit.core.priorities.solver import prepare_problem, solve_layers
 from motionedit.core.priorities.trajectories import ControlPoint
 from motionedit.core.skeleton import Skeleton
 
@@ -210,7 +210,7 @@ def arms_of(seed, frames=8):
 def solved(problem, motion, frames, **how):
     """Return a copy of a motion, solved at some frames, and how that went."""
     own = Motion(motion.skeleton, motion.rotations.copy(), motion.translations.copy(), motion.frame_time)
-    return solve_layers(prepared(problem), own, Reference(motion.rotations.copy(), None), frames, **how)
+    return solve_layers(prepare_problem(problem), own, Reference(motion.rotations.copy(), None), frames, **how)
 
 
 @pytest.mark.parametrize("seed", range(30))
@@ -323,8 +323,8 @@ def test_a_task_that_the_compiled_solver_does_not_know_is_solved_by_numpy(patch)
     (layer,) = problem.layers
     unknown = replace(problem, layers=((replace(layer[0], task=Unknown(layer[0].task)), *layer[1:]),))
     frames = np.arange(len(motion))
-    assert prepared(problem).layout is not None
-    assert prepared(unknown).layout is None
+    assert prepare_problem(problem).layout is not None
+    assert prepare_problem(unknown).layout is None
     mine, theirs = solved(unknown, motion, frames), by_numpy(patch, lambda: solved(problem, motion, frames))
     # Forward kinematics are compiled here and numpy's there.
     assert difference(mine, theirs) < FEASIBLE
@@ -332,15 +332,69 @@ def test_a_task_that_the_compiled_solver_does_not_know_is_solved_by_numpy(patch)
     assert mine.iterations.max() > 0
 
 
-def test_an_index_that_is_none_is_an_error_and_no_crash():
+def slips():
+    """Yield what may be wrong in the buffers of `arms_of`: a buffer, a field, the record, the value, what is said."""
+    far = 10**6
+    for field, value in (("joint", far), ("parent", far), ("parent", 3), ("translation", far), ("column", far)):
+        yield "nodes", field, 3, value, "nodes or columns"
+    yield "nodes", "translation", 0, -1, "nodes or columns"  # the root's
+    yield "nodes", "column", 1, 3, "nodes or columns"
+    for field, value in (("node", -1), ("node", far), ("base", far), ("kind", far), ("kind", -1)):
+        yield "tasks", field, 0, value, "tasks"
+    for field, value in (("rows", 0), ("rows", 4), ("axes", (7, 0, 0)), ("axes", (-3, 0, 0)), ("width", 4)):
+        yield "tasks", field, 0, value, "tasks"
+    for field, value in (("targets", far), ("targets", -1), ("layer", 1), ("layer", -1)):
+        yield "tasks", field, 0, value, "tasks"
+    yield "hinges", "column", 0, far, "hinges"
+    yield "hinges", "column", 0, 4, "hinges"  # twice
+    for field, value in (("frames", 2**61), ("motion_frames", -1), ("columns", 2**40), ("root", far)):
+        yield "settings", field, 0, value, "sizes"
+
+
+@pytest.mark.parametrize(("buffer", "field", "at", "value", "said"), list(slips()))
+def test_an_index_that_is_none_is_an_error_and_no_crash(buffer, field, at, value, said):
     problem, motion = arms_of(0)
-    layout = prepared(problem).layout
-    for buffer, field in (("tasks", "node"), ("tasks", "kind"), ("tasks", "targets"), ("hinges", "column")):
-        broken = {name: array.copy() for name, array in layout.buffers.items()}
-        broken[buffer][field][0] = 10**6
-        slip = replace(layout, buffers=broken)
-        solution = LayeredSolution(motion, *(np.zeros(8, dtype=kind) for kind in (int, bool)), np.zeros((8, 1), int))
-        with pytest.raises(ValueError, match="indices that are none"):
-            compiled_solver.solve(
-                slip, solution, Reference(motion.rotations, None), np.arange(8), in_order=False, threads=1
-            )
+    with pytest.raises(ValueError, match=f"{said}.* that are none"):
+        raw_solve(problem, motion, **{buffer: (field, at, value)})
+
+
+def raw_solve(problem, motion, *, frames=tuple(range(8)), in_order=False, **slip):
+    """Solve a problem by its buffers, one field of which is another."""
+    count = len(frames)
+    buffers = {name: array.copy() for name, array in prepare_problem(problem).layout.buffers.items()}
+    settings = buffers["settings"]
+    settings["frames"], settings["motion_frames"], settings["in_order"] = count, len(motion), in_order
+    for buffer, (field, at, value) in slip.items():
+        buffers[buffer][field][at] = value
+    how = {
+        "iterations": np.zeros(count, int),
+        "converged": np.zeros(count, bool),
+        "ranks": np.zeros((count, len(problem.layers)), int),
+    }
+    own = {"rotations": motion.rotations.copy(), "translations": motion.translations.copy()}
+    pull = {"reference_rotations": motion.rotations, "reference_root": np.zeros(0)}
+    compiled().solve({**buffers, **how, **own, **pull, "frames": np.array(frames)}, 0, count)
+
+
+def test_frames_in_order_follow_each_other():
+    problem, motion = arms_of(0)
+    raw_solve(problem, motion, in_order=True)
+    with pytest.raises(ValueError, match="frames that are none"):
+        raw_solve(problem, motion, in_order=True, frames=range(8)[::-1])
+    with pytest.raises(ValueError, match="frames that are none"):
+        raw_solve(problem, motion, frames=range(1, 9))
+
+
+def test_layers_come_one_after_the_other():
+    problem, motion = arms_of(0)
+    (tasks,) = problem.layers
+    two = replace(problem, layers=(tasks[:2], tasks[2:]))
+    with pytest.raises(ValueError, match="tasks that are none"):
+        raw_solve(two, motion, tasks=("layer", 0, 1))
+
+
+@pytest.mark.parametrize(("parents", "places"), [((-1, 1), (0, -1)), ((-1, 0), (1, -1)), ((-2, 0), (0, -1))])
+def test_a_skeleton_that_is_no_tree_is_an_error_and_no_crash(parents, places):
+    buffers = [np.zeros(n) for n in (6, 8, 3, 6, 8)]
+    with pytest.raises(ValueError, match="has no parent before it, or no translations"):
+        compiled().forward(np.array(parents), np.array(places), *buffers, 1)

@@ -112,6 +112,17 @@ def test_a_center_of_mass_goes_with_a_body_that_is_moved(motion, body):
     assert bent < 0.5 * rot.angle_between(upright.motion.rotations, motion.rotations).max()
 
 
+@pytest.mark.parametrize(("priority", "weight"), [(10, 1.0), (2, 3.0)])
+def test_a_center_of_mass_goes_with_the_most_important_goal_of_a_foot(motion, body, priority, weight):
+    aside = held("RightFoot", (0.3, 0.0, 0.0), priority=priority, weight=weight)
+    still, others = held("RightFoot", priority=2), [each for each in feet(1) if each.name != "RightFoot"]
+    before = run(motion, [*others, still, balance(-1)], body).errors[-1].places
+    for asked in ([aside, still], [still, aside]):
+        after = run(motion, [*others, *asked, balance(-1)], body).errors[-1].places
+        # A quarter of the way of one of the four points of the support.
+        np.testing.assert_allclose(after - before, np.broadcast_to([0.075, 0.0, 0.0], before.shape), atol=1e-9)
+
+
 def test_an_unreachable_hand_leaves_the_feet_where_they_are(motion, body):
     edit = run(motion, [*feet(), held("RightHand", (3.0, 2.0, 1.0), priority=4)], body)
     *of_feet, of_hand = errors(edit)

@@ -127,23 +127,21 @@ static void evaluate_aim(const Batch *batch, const Task *task, Pull *pull, const
     add(from, batch->positions + 3 * task->node);
     memcpy(at, target, sizeof at);
     if (task->base >= 0) {
+        V arm[3];
+        turned(batch->rotations + 9 * task->base, target, arm);
         memcpy(at, batch->positions + 3 * task->base, sizeof at);
-        if (task->width) {
-            V arm[3];
-            turned(batch->rotations + 9 * task->base, target, arm);
-            add(at, arm);
-        }
+        add(at, arm);
     }
     for (int a = 0; a < 3; a++)
         t[a] = at[a] - from[a];
-    const V distance = larger(root_of(dot(t, t)), all(1e-9));
+    const V distance = larger(root_of(dot(t, t)), all(batch->problem->constants.no_direction));
     for (int a = 0; a < 3; a++)
         t[a] /= distance;
     cross(d, t, side);
     const V sine = root_of(dot(side, side)), cosine = dot(d, t);
     for (int lane = 0; lane < LANES; lane++) {
         LANE(angle, lane) = atan2(LANE(sine, lane), LANE(cosine, lane));
-        if (LANE(sine, lane) < 1e-9)
+        if (LANE(sine, lane) < batch->problem->constants.no_direction)
             any_side(d, lane, side);
     }
     const V of_unit = angle / root_of(dot(side, side));
@@ -165,25 +163,21 @@ static void evaluate_aim(const Batch *batch, const Task *task, Pull *pull, const
     }
 }
 
-/* What is known of a kind: its name in Python, whether its rows push and twist, whether they pull at all that carries mass
-   instead of at a chain, and how they are evaluated: errors into e, rows into the parts of the pull. */
-typedef struct {
-    const char *name;
-    int force, torque, weighs;
+static const struct {
+    RowKind is;
+    /* errors into e, rows into the parts of the pull */
     void (*evaluate)(const Batch *batch, const Task *task, Pull *pull, const V *target, V *e);
-} Kind;
-
-static const Kind KINDS[] = {
-    {"position", 1, 0, 0, evaluate_position},
-    {"orientation", 0, 1, 0, evaluate_orientation},
-    {"center of mass", 1, 0, 1, evaluate_center_of_mass},
-    {"aim", 1, 1, 0, evaluate_aim},
-    {"posture", 0, 1, 0, evaluate_posture},
+} ROW_KINDS[] = {
+    {{"position", .force = 1, .measured = 1, .width = 3}, evaluate_position},
+    {{"orientation", .torque = 1, .width = 4}, evaluate_orientation},
+    {{"center of mass", .force = 1, .weighs = 1, .measured = 1, .width = 3}, evaluate_center_of_mass},
+    {{"aim", .force = 1, .torque = 1, .width = 3}, evaluate_aim},
+    {{"posture", .torque = 1, .width = 4}, evaluate_posture},
 };
 
-const char *kind_name(int kind)
+const RowKind *row_kind(int64_t kind)
 {
-    return kind < (int)(sizeof KINDS / sizeof *KINDS) ? KINDS[kind].name : NULL;
+    return kind < (int64_t)(sizeof ROW_KINDS / sizeof *ROW_KINDS) ? &ROW_KINDS[kind].is : NULL;
 }
 
 /* Errors, shape (R,), and the rows of every task, at the pose that `forward` has laid out. */
@@ -192,6 +186,6 @@ static void evaluate_tasks(Batch *batch)
     for (int64_t t = 0; t < batch->problem->of.tasks; t++) {
         const Task *task = batch->problem->task + t;
         Pull *pull = batch->pulls + t;
-        KINDS[task->kind].evaluate(batch, task, pull, batch->targets + 4 * t, batch->errors + pull->first_row);
+        ROW_KINDS[task->kind].evaluate(batch, task, pull, batch->targets + 4 * t, batch->errors + pull->first_row);
     }
 }
