@@ -58,7 +58,7 @@ class Case:
         return lambda: solve_in_passes(run, self._passes(passes))
 
     def tiled(self, times: int) -> Case:
-        """Return the edit of the clip with its frames repeated, each constraint in the first copy as it was."""
+        """Return the edit of the clip repeated; constraints with points act in the first copy, others all through."""
         motion = self.motion
         long = Motion(
             motion.skeleton,
@@ -180,7 +180,7 @@ def _growth_rows(walk: Case, scratch: Path) -> list[Row]:
             Row(
                 f"walk, {name}: first solve",
                 f"{len(each.motion) / seconds:,.0f} frames/s",
-                f"{edit.iterations.mean():.2f} iterations a frame, {_unknowns(each)} unknowns, {_task_rows(edit)} rows",
+                f"{edit.iterations.mean():.2f} iterations a frame, {_unknowns(each)} unknowns, rank {_rank(edit)}",
                 f"{microseconds:.1f} us an iteration",
             )
         )
@@ -234,11 +234,14 @@ def _above_the_unmet(edit: PrioritizedEdit) -> float:
 
 
 def _unknowns(each: Case) -> int:
+    """Return the most unknowns of a frame: three for a joint that turns, one for a hinge, three for the root."""
     run, _ = prepare(each.motion, each.constraints, each.body, each.settings)
-    return 3 * len(frozenset().union(*(r.joints for r in run.asked.recruits))) + 3
+    problems = [group.problem for group in run.groups]
+    return max(problem.columns.size - 2 * len(problem.hinges.places) for problem in problems)
 
 
-def _task_rows(edit: PrioritizedEdit) -> int:
+def _rank(edit: PrioritizedEdit) -> int:
+    """Return the most independent rows of a frame, all layers together."""
     return int(edit.ranks.sum(axis=1).max())
 
 

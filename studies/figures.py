@@ -53,10 +53,10 @@ def main() -> None:
         print_table("Prioritized constraints: the same on real clips", figures_prioritized.real(lab, Path(clips)))
 
 
-def row(what: str, value: float, aim: float, *, form: str = ".3g", least: bool = False) -> tuple[str, str, str, str]:
+def row(what: str, value: float, aim: float, *, least: bool = False) -> tuple[str, str, str, str]:
     """Return a line of a table: the figure beside its aim."""
     met = value >= aim if least else value <= aim
-    return what, f"{value:{form}}", f"{'>=' if least else '<='} {aim:g}", "" if met else "MISSED"
+    return what, f"{value:.3g}", f"{'>=' if least else '<='} {aim:g}", "" if met else "MISSED"
 
 
 def told(what: str, value: str) -> tuple[str, str, str, str]:

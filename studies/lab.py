@@ -73,11 +73,11 @@ class Lab:
         return path
 
 
-def effector_path(path: Path, joint: str, *, end_site: bool = False, offset: Sequence[float] = (0, 0, 0)) -> FloatArray:
+def effector_path(path: Path, joint: str, *, end_site: bool = False) -> FloatArray:
     """Return the world positions of a point over all frames of a file, shape (F, 3)."""
     motion = read_clip(path).motion
     index = motion.skeleton.names.index(joint)
-    local = np.array(offset, dtype=float)
+    local = np.zeros(3)
     if end_site:
         local = next(site.offset for site in motion.skeleton.end_sites if site.joint == index)
     return kinematics.effector_positions(kinematics.forward(motion), Effector(index, local))

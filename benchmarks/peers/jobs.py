@@ -35,7 +35,8 @@ if TYPE_CHECKING:
 # Stands for a joint where a task is the center of mass, as in protocol.py.
 COM = -1
 WALK = Path(__file__).resolve().parents[2] / "data" / "walk.bvh"
-# The reach: metres from where the wrist is, the frames in which it stands still there, and frames to either side.
+# The reach: where the wrist is to be in the room (the file's unit), the frames in which it stands still there, and
+# frames to either side.
 PLACE, HELD, EASE = (58.0, 150.0, 322.0), (66, 72), 17.5
 # Metres: a task is met when it is as near.
 TOLERANCE = 1e-3
@@ -148,7 +149,7 @@ def unreachable(whole: Job) -> Job:
 
 
 def _job(motion: Motion, body: Body, constraints: Sequence[Constraint]) -> Job:
-    """Return the job of constraints whose points, if any, are shifts of positions."""
+    """Return the job of constraints whose points, if any, are places of joints."""
     poses = forward(motion)
     targets = places(poses, body.masses, [COM if each.at is None else each.at.joint for each in constraints])
     active = np.ones(targets.shape[:2], dtype=np.bool_)

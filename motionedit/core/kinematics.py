@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Effector:
-    """A point fixed in a joint's frame: `offset`, shape (3,), in clip units; zero is the joint itself."""
+    """A point fixed in a joint's frame: `offset`, shape (3,), in the motion's unit; zero is the joint itself."""
 
     joint: int
     offset: FloatArray
@@ -25,7 +25,7 @@ class Effector:
 
 @dataclass(frozen=True, eq=False)
 class WorldPoses:
-    """World transforms of every joint: `positions` (F, J, 3) in clip units, `rotations` (F, J, 4) quaternions."""
+    """World transforms of all joints: `positions` (F, J, 3) in the motion's unit, `rotations` (F, J, 4) quaternions."""
 
     positions: FloatArray
     rotations: FloatArray

@@ -166,12 +166,12 @@ class Stage:
             zorder=4.0,
         )
 
-    def text(self, words: str, at: float, *, below: float = 0.0, color: str = INK) -> None:
+    def text(self, words: str, at: float, *, color: str = INK) -> None:
         """Write words under a group; each line takes its room."""
         self.axes.annotate(
             words,
             (at, self._low[1]),
-            (0.0, -4.0 - below),
+            (0.0, -4.0),
             textcoords="offset points",
             ha="center",
             va="top",

@@ -14,6 +14,7 @@ from motionedit.core.timeline.warp import make_warp
 from motionedit.dataclass import dataclass
 from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.axes import GivenAxes
+from motionedit.jobs.clip.edit_record import DEFAULT_ANGLE_TOLERANCE, DEFAULT_TOLERANCE
 from motionedit.jobs.edit_pc.solver import solver_tolerance
 
 if TYPE_CHECKING:
@@ -28,10 +29,6 @@ if TYPE_CHECKING:
     from motionedit.spec.edit_pc import EditPcSpec, PcGoal
     from motionedit.spec.load import LoadedSpec
     from motionedit.spec.times import Time
-
-# Where a goal gives no tolerance: metres at leg length 0.85 m, and degrees.
-DEFAULT_TOLERANCE = 1e-3
-DEFAULT_ANGLE_TOLERANCE = 0.1
 
 
 @dataclass(frozen=True, eq=False)

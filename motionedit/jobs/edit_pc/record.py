@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from motionedit.dataclass import dataclass
+from motionedit.jobs.clip.edit_record import EditRecord
 from motionedit.jobs.clip.effector_record import effector_record
 from motionedit.jobs.edit_pc.goals import ClipGoal, goal_place, goal_record, is_met
 from motionedit.jobs.edit_pc.solver import largest_norm
@@ -22,16 +22,6 @@ if TYPE_CHECKING:
 
 # A met goal whose coefficients lie further out than this times the database's largest norm is reported `far`.
 FAR = 1.75
-
-
-@dataclass(frozen=True)
-class EditRecord:
-    """A clip's `status`, its `message` or None, its `warnings`, and its `record` in the report."""
-
-    status: str
-    message: str | None
-    warnings: tuple[str, ...]
-    record: dict[str, Any]
 
 
 def edit_record(

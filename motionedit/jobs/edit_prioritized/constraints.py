@@ -14,6 +14,7 @@ from motionedit.core.priorities.trajectories import ControlPoint, active_interva
 from motionedit.dataclass import dataclass
 from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.axes import GivenAxes
+from motionedit.jobs.clip.edit_record import DEFAULT_ANGLE_TOLERANCE, DEFAULT_TOLERANCE
 from motionedit.jobs.clip.faults import Faults
 from motionedit.spec import kinds
 from motionedit.spec.faults import listed
@@ -30,10 +31,6 @@ if TYPE_CHECKING:
     from motionedit.spec.model import Kind
     from motionedit.spec.points import Point
     from motionedit.spec.values import EffectorSpec, Recruit
-
-# Where a constraint gives no tolerance: metres at leg length 0.85 m, and degrees.
-DEFAULT_TOLERANCE = 1e-3
-DEFAULT_ANGLE_TOLERANCE = 0.1
 
 _NOWHERE = Effector(0, np.zeros(3))
 

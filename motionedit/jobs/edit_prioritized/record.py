@@ -10,6 +10,7 @@ from motionedit.core.arrays import median
 from motionedit.core.priorities.problem import order_of_layers
 from motionedit.core.priorities.settings import LayeredSettings, PaperFilter
 from motionedit.dataclass import dataclass
+from motionedit.jobs.clip.edit_record import EditRecord
 from motionedit.jobs.clip.effector_record import effector_record
 from motionedit.jobs.edit_prioritized.recruits import recruited_names
 
@@ -28,16 +29,6 @@ FAR_OFF = 10.0
 _DIGITS = 6
 _OUT_OF_REACH = "out of reach of the joints it recruits"
 _FILTERED = "the low-pass on the root moved it (smoothing: paper)"
-
-
-@dataclass(frozen=True)
-class EditRecord:
-    """A clip's `status`, its `message` or None, its `warnings`, and its `record` in the report."""
-
-    status: str
-    message: str | None
-    warnings: tuple[str, ...]
-    record: dict[str, Any]
 
 
 @dataclass(frozen=True, eq=False)
