@@ -32,10 +32,7 @@ _CONSTANTS = {"METRES_PER_RADIAN": units.METRES_PER_RADIAN, **vars(constants)}
 
 @dataclass(frozen=True, eq=False)
 class Layout:
-    """What of a problem does not change from solve to solve: buffers of module.c by their names.
-
-    The `settings` among them lack what a solve adds.
-    """
+    """What of a problem does not change from solve to solve: buffers of module.c by their names."""
 
     buffers: dict[str, NDArray[Any]]
 
@@ -82,12 +79,8 @@ def solve(
 ) -> None:
     """Solve those `frames` of a motion that are not converged from where they are, as `solve_layers`."""
     count, motion = len(frames), solution.motion
-    settings = layout.buffers["settings"].copy()
-    settings["frames"], settings["motion_frames"] = count, len(motion)
-    settings["in_order"], settings["pulls_root"] = in_order, reference.root is not None
     buffers = {
         **layout.buffers,
-        "settings": settings,
         "frames": _integers(frames),
         "reference_rotations": _numbers(reference.rotations),
         "reference_root": _numbers([] if reference.root is None else reference.root),
@@ -101,7 +94,7 @@ def solve(
     bounds = [count * i // shares for i in range(shares + 1)]
 
     def run(share: int) -> None:
-        compiled().solve(buffers, bounds[share], bounds[share + 1])
+        compiled().solve(buffers, bounds[share], bounds[share + 1], in_order)
 
     if shares == 1:
         run(0)

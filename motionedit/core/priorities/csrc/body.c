@@ -20,7 +20,7 @@ static void load(Batch *batch, int lane, int64_t at)
     for (int64_t k = 0; k < problem->of.columns; k++)
         for (int a = 0; a < 4; a++)
             LANE(batch->reference[4 * k + a], lane) = reference[4 * problem->node[problem->column_node[k]].joint + a];
-    for (int a = 0; a < 3 && problem->of.pulls_root; a++)
+    for (int a = 0; a < 3 && problem->pulls_root; a++)
         LANE(batch->reference_root[a], lane) = problem->reference_root[3 * own + a];
     for (int64_t t = 0; t < problem->of.tasks; t++) {
         const Task *task = problem->task + t;
@@ -146,7 +146,7 @@ static void attraction(Batch *batch)
             turned(parent_rotation(batch, i), turn, z);
     }
     root[0] = root[1] = root[2] = all(0.0);
-    if (problem->of.pulls_root && problem->of.root >= 0) {
+    if (problem->pulls_root && problem->of.root >= 0) {
         V back[3];
         for (int a = 0; a < 3; a++)
             back[a] = batch->reference_root[a] - batch->offsets[3 * problem->of.root + a];

@@ -48,16 +48,18 @@ typedef struct {
     int64_t full_gain_iterations, hasty_iterations, annealed_iterations, limit_rounds;
 } Constants;
 
-/* How many there are of what, and how the frames are solved. */
+/* How many there are of what, and how frames are solved. */
 typedef struct {
-    int64_t frames, motion_frames, nodes, columns, tasks, hinges, layers, joints, translated, rows, targets;
-    int64_t root, in_order, moves_root, pulls_root, max_iterations; /* root: a node, or -1 */
+    int64_t nodes, columns, tasks, hinges, layers, joints, translated, rows, targets;
+    int64_t root, moves_root, max_iterations; /* root: a node, or -1 */
     double attraction;
 } Settings;
 
 typedef struct {
     Settings of;
     Constants constants;
+    int64_t count, motion_frames; /* N, F */
+    int in_order, pulls_root;
     const Node *node;
     const int64_t *column_node; /* shape (K,) */
     const Task *task;

@@ -22,11 +22,10 @@ typedef struct {
 #define INTEGER(structure, name) FIELD(structure, name, "i8")
 #define NUMBER(structure, name) FIELD(structure, name, "f8")
 
-static const Field SETTINGS_FIELDS[] = {INTEGER(Settings, frames), INTEGER(Settings, motion_frames),
-    INTEGER(Settings, nodes), INTEGER(Settings, columns), INTEGER(Settings, tasks), INTEGER(Settings, hinges),
-    INTEGER(Settings, layers), INTEGER(Settings, joints), INTEGER(Settings, translated), INTEGER(Settings, rows),
-    INTEGER(Settings, targets), INTEGER(Settings, root), INTEGER(Settings, in_order), INTEGER(Settings, moves_root),
-    INTEGER(Settings, pulls_root), INTEGER(Settings, max_iterations), NUMBER(Settings, attraction), {0}};
+static const Field SETTINGS_FIELDS[] = {INTEGER(Settings, nodes), INTEGER(Settings, columns), INTEGER(Settings, tasks),
+    INTEGER(Settings, hinges), INTEGER(Settings, layers), INTEGER(Settings, joints), INTEGER(Settings, translated),
+    INTEGER(Settings, rows), INTEGER(Settings, targets), INTEGER(Settings, root), INTEGER(Settings, moves_root),
+    INTEGER(Settings, max_iterations), NUMBER(Settings, attraction), {0}};
 static const Field CONSTANTS_FIELDS[] = {NUMBER(Constants, largest_error), NUMBER(Constants, largest_turn),
     NUMBER(Constants, stop_step), NUMBER(Constants, stop_left), NUMBER(Constants, stop_error),
     NUMBER(Constants, largest_ratio), NUMBER(Constants, gain_decay), NUMBER(Constants, on_limit),
@@ -89,6 +88,20 @@ static int take_buffer(Buffers *buffers, const char *name, int64_t count, size_t
     return has_size(held, count, bytes, name);
 }
 
+/* How many items of so many bytes the buffer `name` has, 0 where there is none: `take_buffer` then says so. */
+static int64_t items_of(const Buffers *buffers, const char *name, size_t bytes)
+{
+    PyObject *given = PyDict_GetItemString(buffers->given, name);
+    Py_buffer seen;
+    if (given == NULL || PyObject_GetBuffer(given, &seen, PyBUF_SIMPLE) < 0) {
+        PyErr_Clear();
+        return 0;
+    }
+    const int64_t items = (int64_t)(seen.len / (Py_ssize_t)bytes);
+    PyBuffer_Release(&seen);
+    return items;
+}
+
 /* Read the problem out of the buffers. */
 static int read_problem(Problem *problem, Buffers *buffers)
 {
@@ -104,22 +117,24 @@ static int read_problem(Problem *problem, Buffers *buffers)
         return 0;
     }
     const size_t integer = sizeof(int64_t), number = sizeof(double);
-    const int64_t angles = of->motion_frames * of->joints * 4, roots = of->pulls_root ? of->motion_frames * 3 : 0;
-    const int64_t shifts = of->motion_frames * of->translated * 3;
+    const int64_t N = items_of(buffers, "frames", integer), pulls = items_of(buffers, "reference_root", number);
+    const int64_t F = of->joints == 0 ? 0 : items_of(buffers, "rotations", number) / (4 * of->joints);
+    problem->count = N, problem->motion_frames = F, problem->pulls_root = pulls > 0;
     if (!(take_buffer(buffers, "nodes", of->nodes, sizeof(Node), READ, &problem->node) &&
             take_buffer(buffers, "column_nodes", of->columns, integer, READ, &problem->column_node) &&
             take_buffer(buffers, "tasks", of->tasks, sizeof(Task), READ, &problem->task) &&
             take_buffer(buffers, "hinges", of->hinges, sizeof(Hinge), READ, &problem->hinge) &&
             take_buffer(buffers, "recruited", of->tasks * of->columns, 1, READ, &problem->recruited) &&
             take_buffer(buffers, "targets", of->targets, number, READ, &problem->targets) &&
-            take_buffer(buffers, "frames", of->frames, integer, READ, &problem->frames) &&
-            take_buffer(buffers, "reference_rotations", angles, number, READ, &problem->reference_rotations) &&
-            take_buffer(buffers, "reference_root", roots, number, READ, &problem->reference_root) &&
-            take_buffer(buffers, "rotations", angles, number, WRITE, &problem->rotations) &&
-            take_buffer(buffers, "translations", shifts, number, WRITE, &problem->translations) &&
-            take_buffer(buffers, "iterations", of->frames, integer, WRITE, &problem->iterations) &&
-            take_buffer(buffers, "converged", of->frames, 1, WRITE, &problem->converged) &&
-            take_buffer(buffers, "ranks", of->frames * of->layers, integer, WRITE, &problem->ranks)))
+            take_buffer(buffers, "frames", N, integer, READ, &problem->frames) &&
+            take_buffer(
+                buffers, "reference_rotations", 4 * F * of->joints, number, READ, &problem->reference_rotations) &&
+            take_buffer(buffers, "reference_root", pulls > 0 ? 3 * F : 0, number, READ, &problem->reference_root) &&
+            take_buffer(buffers, "rotations", 4 * F * of->joints, number, WRITE, &problem->rotations) &&
+            take_buffer(buffers, "translations", 3 * F * of->translated, number, WRITE, &problem->translations) &&
+            take_buffer(buffers, "iterations", N, integer, WRITE, &problem->iterations) &&
+            take_buffer(buffers, "converged", N, 1, WRITE, &problem->converged) &&
+            take_buffer(buffers, "ranks", N * of->layers, integer, WRITE, &problem->ranks)))
         return 0;
     if (problem_fault(problem) != NULL)
         PyErr_SetString(PyExc_ValueError, problem_fault(problem));
@@ -132,12 +147,12 @@ static PyObject *solve_with(int (*solver)(const Problem *, int64_t, int64_t), Py
     Problem problem = {0};
     long long begin, end;
     int status = -2;
-    if (!PyArg_ParseTuple(arguments, "OLL", &buffers.given, &begin, &end))
+    if (!PyArg_ParseTuple(arguments, "OLLp", &buffers.given, &begin, &end, &problem.in_order))
         return NULL;
     if (!PyDict_Check(buffers.given))
         PyErr_SetString(PyExc_TypeError, "buffers come in a dictionary");
     else if (read_problem(&problem, &buffers)) {
-        if (0 <= begin && begin <= end && end <= problem.of.frames) {
+        if (0 <= begin && begin <= end && end <= problem.count) {
             Py_BEGIN_ALLOW_THREADS status = solver(&problem, begin, end);
             Py_END_ALLOW_THREADS if (status < 0) PyErr_NoMemory();
         } else
@@ -235,7 +250,8 @@ static PyObject *smooth(PyObject *self, PyObject *arguments)
 }
 
 static PyMethodDef methods[] = {
-    {"solve", solve, METH_VARARGS, "Solve frames begin to end - 1 in place, given buffers by their names."},
+    {"solve", solve, METH_VARARGS,
+        "Solve frames begin to end - 1 in place, perhaps in order, given buffers by their names."},
     {"solve_narrow", solve_narrow, METH_VARARGS, "As solve, with what every processor has: the same to the bit."},
     {"forward", forward_frames, METH_VARARGS, "Write the world transforms of all joints at all frames."},
     {"smooth", smooth, METH_VARARGS, "Write rotations plus their low-passed displacement."},

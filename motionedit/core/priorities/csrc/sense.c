@@ -4,7 +4,7 @@
 
 /* More than anybody has, and so few that no product of sizes overflows. */
 enum { MOST = 1 << 20 };
-static const int64_t MOST_FRAMES = (int64_t)1 << 32, MOST_TARGETS = (int64_t)1 << 50;
+static const int64_t MOST_TARGETS = (int64_t)1 << 50;
 
 static int between(int64_t least, int64_t index, int64_t count)
 {
@@ -15,8 +15,7 @@ const char *settings_fault(const Settings *of)
 {
     const int64_t counts[] = {
         of->nodes, of->columns, of->tasks, of->hinges, of->layers, of->joints, of->translated, of->rows};
-    int sense = between(0, of->frames, MOST_FRAMES) && between(0, of->motion_frames, MOST_FRAMES) &&
-                between(0, of->targets, MOST_TARGETS) && between(-1, of->root, of->nodes);
+    int sense = between(0, of->targets, MOST_TARGETS) && between(-1, of->root, of->nodes);
     for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
         sense &= between(0, counts[i], MOST);
     return sense ? 0 : "sizes that are none";
@@ -43,14 +42,15 @@ static int are_nodes(const Problem *problem)
 }
 
 /* A task's kind, its node, base and layer, its axes, and its part of the targets. */
-static int is_task(const Settings *of, const Task *task)
+static int is_task(const Problem *problem, const Task *task)
 {
+    const Settings *of = &problem->of;
     const RowKind *kind = task->kind < 0 ? 0 : row_kind(task->kind);
     if (kind == 0 || !between(0, task->layer, of->layers) || !between(kind->measured ? 1 : 3, task->rows, 4))
         return 0;
     int sense = between(kind->weighs ? -1 : 0, task->node, of->nodes) && between(-1, task->base, of->nodes) &&
                 task->width == kind->width && between(0, task->targets, of->targets + 1) &&
-                task->targets + task->width * of->frames <= of->targets;
+                task->targets + task->width * problem->count <= of->targets;
     for (int64_t r = 0; r < task->rows; r++)
         sense &= !kind->measured || between(0, task->axes[r], 3);
     return sense;
@@ -62,7 +62,7 @@ static int are_tasks(const Problem *problem)
     int64_t rows = 0;
     int sense = 1;
     for (int64_t t = 0; t < of->tasks; t++) {
-        sense &= is_task(of, problem->task + t);
+        sense &= is_task(problem, problem->task + t);
         sense &= t == 0 || problem->task[t - 1].layer <= problem->task[t].layer; /* layer by layer */
         rows += problem->task[t].rows;
     }
@@ -86,9 +86,9 @@ static int are_hinges(const Problem *problem)
 static int are_frames(const Problem *problem)
 {
     int sense = 1;
-    for (int64_t f = 0; f < problem->of.frames; f++) {
-        sense &= between(0, problem->frames[f], problem->of.motion_frames);
-        sense &= f == 0 || !problem->of.in_order || problem->frames[f] == problem->frames[f - 1] + 1;
+    for (int64_t f = 0; f < problem->count; f++) {
+        sense &= between(0, problem->frames[f], problem->motion_frames);
+        sense &= f == 0 || !problem->in_order || problem->frames[f] == problem->frames[f - 1] + 1;
     }
     return sense;
 }

@@ -299,12 +299,12 @@ static void start_where_the_last_ended(const Problem *problem, int64_t at)
 static int64_t fill(Batch *batch, int64_t next, int64_t end)
 {
     const Problem *problem = batch->problem;
-    for (int lane = 0; lane < (problem->of.in_order ? 1 : LANES); lane++) {
+    for (int lane = 0; lane < (problem->in_order ? 1 : LANES); lane++) {
         while (next < end && problem->converged[next])
             next++;
         if (batch->at[lane] >= 0 || next == end)
             continue;
-        if (problem->of.in_order && next > 0)
+        if (problem->in_order && next > 0)
             start_where_the_last_ended(problem, next);
         begin_frame(batch, lane, next++);
     }

@@ -289,9 +289,9 @@ def test_smoothing_is_the_same(patch, first, sigma):
 def test_buffers_of_a_wrong_size_are_an_error_and_no_crash():
     empty = np.zeros(0)
     with pytest.raises(ValueError, match="settings has 0 bytes"):
-        compiled().solve({"settings": empty}, 0, 0)
+        compiled().solve({"settings": empty}, 0, 0, False)
     with pytest.raises(ValueError, match="settings is missing"):
-        compiled().solve({}, 0, 0)
+        compiled().solve({}, 0, 0, False)
     with pytest.raises(ValueError, match="places has 0 bytes"):
         compiled().forward(np.array([-1]), empty, empty, empty, empty, empty, empty, 1)
     with pytest.raises(ValueError, match="rotations after"):
@@ -347,7 +347,7 @@ def slips():
         yield "tasks", field, 0, value, "tasks"
     yield "hinges", "column", 0, far, "hinges"
     yield "hinges", "column", 0, 4, "hinges"  # twice
-    for field, value in (("frames", 2**61), ("motion_frames", -1), ("columns", 2**40), ("root", far)):
+    for field, value in (("nodes", 2**61), ("joints", -1), ("columns", 2**40), ("root", far)):
         yield "settings", field, 0, value, "sizes"
 
 
@@ -362,8 +362,6 @@ def raw_solve(problem, motion, *, frames=tuple(range(8)), in_order=False, **slip
     """Solve a problem by its buffers, one field of which is another."""
     count = len(frames)
     buffers = {name: array.copy() for name, array in prepare_problem(problem).layout.buffers.items()}
-    settings = buffers["settings"]
-    settings["frames"], settings["motion_frames"], settings["in_order"] = count, len(motion), in_order
     for buffer, (field, at, value) in slip.items():
         buffers[buffer][field][at] = value
     how = {
@@ -373,7 +371,7 @@ def raw_solve(problem, motion, *, frames=tuple(range(8)), in_order=False, **slip
     }
     own = {"rotations": motion.rotations.copy(), "translations": motion.translations.copy()}
     pull = {"reference_rotations": motion.rotations, "reference_root": np.zeros(0)}
-    compiled().solve({**buffers, **how, **own, **pull, "frames": np.array(frames)}, 0, count)
+    compiled().solve({**buffers, **how, **own, **pull, "frames": np.array(frames)}, 0, count, in_order)
 
 
 def test_frames_in_order_follow_each_other():
