@@ -159,7 +159,7 @@ def test_the_module_lists_what_it_has():
 FUNCTIONS = ("read", "normalize", "fit_pca", "edit_pc", "edit_prioritized")
 
 
-@pytest.mark.parametrize("place", ["", *(f".library.{name}" for name in FUNCTIONS)])
+@pytest.mark.parametrize("place", ["", ".core.bvh.read", *(f".library.{name}" for name in FUNCTIONS)])
 def test_examples_in_docstrings_run(place, tmp_path, monkeypatch):
     for folder in ("data", "configs"):
         (tmp_path / folder).symlink_to(ROOT / folder)
