@@ -1,106 +1,100 @@
-"""What the functions of the face take: clips, specs and folders in their several forms."""
+"""What the functions of the face take for clips: files, folders, clips in memory, edited clips."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path, PurePath
-from typing import Any
 
 from motionedit.core.bvh import Clip
 from motionedit.errors import UsageError
-from motionedit.jobs.batch.plan import ClipTask, RunOptions, find_clips
+from motionedit.jobs.batch.one_clip import read_task
+from motionedit.jobs.batch.plan import ClipTask, find_clips
+from motionedit.library.edited import Edited
+from motionedit.library.paths import AnyPath, path_of
 
-AnyPath = str | os.PathLike[str]
-AnySpec = AnyPath | Mapping[str, Any]
-AnyClip = AnyPath | Clip
+AnyClip = AnyPath | Clip | Edited
+AnyClips = AnyClip | Iterable[AnyClip]
 
-_CLIP = "a clip, as a path or a Clip"
-
-
-def path_of(path: AnyPath, *, wanted: str = "a path") -> Path:
-    """Return a path; ``-``, which is a stream on the command line, is refused, and so is what is no path.
-
-    Raises
-    ------
-    UsageError
-        It is neither; `wanted` says in the message what would be right.
-    """
-    name = os.fspath(path) if isinstance(path, (str, os.PathLike)) else None
-    if not isinstance(name, str):
-        raise UsageError(f"must be {wanted}, not a value of type {type(path).__name__}")
-    if name in ("", "-") or "\0" in name:
-        raise UsageError(f"{name!r} is no file; give a path")
-    return Path(name)
+_CLIP = "a clip, as a path, a Clip or an Edited"
 
 
-def events_of(events: Mapping[str, int] | None) -> Mapping[str, int]:
-    """Return frames of events as `load_spec` takes them.
+def clip_task(clip: AnyClip, *, lenient: bool) -> tuple[Clip, ClipTask]:
+    """Return one clip, read if it is a file, and its task.
 
     Raises
     ------
     UsageError
-        They are no mapping of names.
+        It is no clip, or a folder.
+    BvhError, ClipError
+        It cannot be read; or its motion is another one than its file's, and cannot be written into it.
     """
-    if events is None:
-        return {}
-    if not isinstance(events, Mapping) or not all(isinstance(name, str) for name in events):
-        raise UsageError("events must be a mapping of names to frames, such as {'hit': 94}")
-    return events
+    if isinstance(clip, (Clip, Edited)):
+        task = _in_memory(clip)
+    else:
+        path = _path_of(clip)
+        if path.is_dir():
+            raise UsageError("is a folder; an edit takes one clip", file=str(path))
+        (task,) = _found(path)
+    read = read_task(task, lenient=lenient)
+    return read, replace(task, clip=read)
 
 
-def spec_of(spec: AnySpec) -> Path | Mapping[str, Any]:
-    """Return a spec as `load_spec` takes it."""
-    return spec if isinstance(spec, Mapping) else path_of(spec, wanted="a spec, as a path or a mapping")
-
-
-def task_of(clip: AnyClip) -> ClipTask:
-    """Return the task of one clip."""
-    if isinstance(clip, Clip):
-        # A clip in memory is called by its name, as one that is given as a file.
-        return ClipTask(clip.source, clip.label, None, PurePath(clip.label).name, clip=clip)
-    path = path_of(clip, wanted=_CLIP)
-    if path.is_dir():
-        raise UsageError("is a folder; an edit takes one clip", file=str(path))
-    (task,) = find_clips([path])
-    return task
-
-
-def tasks_of(clips: AnyClip | Iterable[AnyClip]) -> list[ClipTask]:
+def clip_tasks(clips: AnyClips) -> list[ClipTask]:
     """Return the tasks of clips; folders stand for the clips below them, as on the command line.
 
     Raises
     ------
     UsageError
-        There is no clip; something given does not exist; two clips in memory have one label.
+        There is no clip; something given does not exist; two clips have one name.
     """
-    if isinstance(clips, (str, os.PathLike, Clip)):
-        several = [clips]
+    if isinstance(clips, (str, os.PathLike, Clip, Edited)):
+        several: list[AnyClip] = [clips]
     elif isinstance(clips, Iterable):
         several = list(clips)
     else:
         raise UsageError(f"must be clips or folders, not a value of type {type(clips).__name__}")
     tasks: list[ClipTask] = []
     for clip in several:
-        tasks += [task_of(clip)] if isinstance(clip, Clip) else find_clips([path_of(clip, wanted=_CLIP)])
+        tasks += [_in_memory(clip)] if isinstance(clip, (Clip, Edited)) else _found(_path_of(clip))
     if not tasks:
         raise UsageError("no clip is given")
-    names = [task.relative for task in tasks]
-    for i, name in enumerate(names):
-        if name in names[:i]:
-            first = tasks[names.index(name)].label
-            raise UsageError(f"{first} and {tasks[i].label} would both be called {name}; give each its own label")
+    _refuse_shared_names(tasks)
     return tasks
 
 
-def options_of(*, jobs: int = 1, lenient: bool = False) -> RunOptions:
-    """Return how a run goes about its clips: all or none, and what is no user's error is raised as it is.
+def _path_of(clip: AnyPath) -> Path:
+    if hasattr(clip, "clip"):
+        # The mean of a model, or the first of several clips: not what is meant by the whole.
+        kind = type(clip).__name__
+        raise UsageError(f"must be {_CLIP}, not a value of type {kind}; give one of its clips, such as its .clip")
+    return path_of(clip, wanted=_CLIP)
 
-    Raises
-    ------
-    UsageError
-        A negative number of workers.
+
+def _found(path: Path) -> list[ClipTask]:
+    """Return the tasks of a file or folder, whose paths hold after the working folder has changed."""
+    return [replace(task, source=task.source and task.source.absolute()) for task in find_clips([path])]
+
+
+def _in_memory(clip: Clip | Edited) -> ClipTask:
+    """Return the task of a clip in memory, which is called by its name, as one that is given as a file.
+
+    Where its motion is not that of its text, the motion is what is meant.
     """
-    if jobs < 0:
-        raise UsageError(f"{jobs} workers; give 1 or more, or 0 for all cores")
-    return RunOptions(jobs=jobs, lenient=lenient, keep_going=False, verbosity=2)
+    given = clip.clip if isinstance(clip, Edited) else clip
+    meant = given.with_motion(given.motion)
+    source = meant.source and meant.source.absolute()
+    return ClipTask(source, meant.label, None, PurePath(meant.label).name, clip=meant)
+
+
+def _refuse_shared_names(tasks: list[ClipTask]) -> None:
+    first: dict[str, ClipTask] = {}
+    for task in tasks:
+        other = first.setdefault(task.relative, task)
+        if other is task:
+            continue
+        remedy = "give the folder that both are below"
+        if task.clip is not None or other.clip is not None:
+            remedy = "give one another label, such as dataclasses.replace(clip, label='other.bvh')"
+        raise UsageError(f"{other.label} and {task.label} would both be called {task.relative}; {remedy}")

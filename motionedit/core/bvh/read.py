@@ -81,8 +81,10 @@ class Clip:
         Examples
         --------
         >>> from dataclasses import replace
+        >>> import numpy as np
         >>> clip = motionedit.read("data/walk.bvh")
-        >>> higher = clip.with_motion(replace(clip.motion, translations=clip.motion.translations + [0, 10, 0]))
+        >>> places = clip.motion.translations + np.array([0.0, 10.0, 0.0])
+        >>> higher = clip.with_motion(replace(clip.motion, translations=places))
         >>> float(higher.values[0, 1] - clip.values[0, 1])
         10.0
         """
