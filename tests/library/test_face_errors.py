@@ -310,6 +310,10 @@ def test_an_input_is_not_overwritten_after_the_working_folder_has_changed(tmp_pa
     monkeypatch.chdir("elsewhere")
     for edit in edits:
         assert "an input is never overwritten" in refused(edit.write, "../golf/swing01.bvh")[0]
+    again = motionedit.edit_prioritized(edits[1], NOTHING)
+    assert "an input is never overwritten" in refused(again.write, "../golf/swing01.bvh")[0]
+    for clip in (edits[1].clip, normalized.clips[0]):
+        assert "an input is never overwritten" in refused(motionedit.write, clip, "../golf/swing01.bvh")[0]
     for result in (*edits, normalized, made):
         assert all(each.is_absolute() and each.exists() for each in result.inputs)
     assert {tmp_path / "model.npz", tmp_path / path} == set(edits[-1].inputs)

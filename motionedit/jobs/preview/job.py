@@ -76,7 +76,7 @@ def edit_page(clip: Clip, task: ClipTask, record: Mapping[str, Any], spec: Mappi
     The same bytes as those that `run` would write of the two files and the report.
     """
     output = str(task.output)
-    written = read_task(replace(task, source=task.output, label=output, clip=None), lenient=True)
+    written = read_task(replace(task, source=task.output, label=output), lenient=True)
     return page_of_edit(replace(clip, label=task.label), written, record, spec)
 
 
