@@ -106,3 +106,8 @@ class MotionEditErrors(ExceptionGroup[MotionEditError], MotionEditError):  # typ
 
     def __str__(self) -> str:
         return "\n".join(map(str, self.errors))
+
+
+def together(message: str, faults: Sequence[MotionEditError]) -> MotionEditError:
+    """Return faults as one error, to be raised: the fault itself where there is one alone, else a group."""
+    return faults[0] if len(faults) == 1 else MotionEditErrors(message, faults)

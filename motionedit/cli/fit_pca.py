@@ -17,7 +17,6 @@ from motionedit.cli.options import (
 )
 from motionedit.cli.progress import progress_on_terminal
 from motionedit.cli.verbosity import verbosity_of, verbosity_options
-from motionedit.errors import UsageError
 
 if TYPE_CHECKING:
     from motionedit.jobs.fit_pca import FitReport
@@ -57,8 +56,6 @@ def command(
         raise click.UsageError(f"-o {output}: fit-pca writes a file; give a name such as model.npz")
     if overrides and spec_path is None:
         raise click.UsageError("--set overrides a key of a spec: give -s too")
-    if not folder.is_dir():
-        raise UsageError("no such folder", file=str(folder))
     from motionedit.cli.finish import write_report
     from motionedit.jobs import fit_pca
     from motionedit.jobs.batch.plan import RunOptions, refuse_existing

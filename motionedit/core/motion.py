@@ -41,6 +41,15 @@ class Motion:
     def __len__(self) -> int:
         return len(self.rotations)
 
+    def __repr__(self) -> str:
+        # Not its arrays, which would fill a screen.
+        return f"<Motion: {len(self)} frames, {len(self.skeleton)} joints, {self.frame_rate:.4g} Hz>"
+
+    @property
+    def is_fixed(self) -> bool:
+        """Whether no array of it can have been changed in place: copies and pickles of arrays can be."""
+        return not (self.rotations.flags.writeable or self.translations.flags.writeable)
+
     @property
     def frame_rate(self) -> float:
         """Frames per second."""

@@ -169,3 +169,17 @@ class Skeleton:
     def indices(self, name: str) -> tuple[int, ...]:
         """Return every joint of that name: none, one, or several where the file repeats a name."""
         return tuple(j for j, other in enumerate(self.names) if other == name)
+
+
+def same_skeleton(one: Skeleton, other: Skeleton) -> bool:
+    """Return whether two skeletons are the same to the last bit: names, parents, channels, offsets, end sites."""
+    if one is other:
+        return True
+    if (one.names, one.channels) != (other.names, other.channels) or len(one.end_sites) != len(other.end_sites):
+        return False
+    sites = zip(one.end_sites, other.end_sites, strict=True)
+    return (
+        np.array_equal(one.parents, other.parents)
+        and np.array_equal(one.offsets, other.offsets)
+        and all(a.joint == b.joint and np.array_equal(a.offset, b.offset) for a, b in sites)
+    )

@@ -16,7 +16,7 @@ from motionedit.core.pca.model_file import model_bytes
 from motionedit.core.pca.streaming import MOST_COMPONENTS
 from motionedit.core.skeleton_match import match_joints
 from motionedit.dataclass import dataclass
-from motionedit.errors import ClipError, ModelError, MotionEditError, MotionEditErrors
+from motionedit.errors import ClipError, ModelError, MotionEditError, UsageError, together
 from motionedit.jobs.batch.files import atomic_write, clean_leftovers
 from motionedit.jobs.batch.one_clip import read_task
 from motionedit.jobs.batch.plan import ClipTask, refuse_overwriting
@@ -85,9 +85,14 @@ def database_in(folder: Path) -> Database:
 
     Raises
     ------
+    UsageError
+        It is no folder.
     ModelError
         There is no normalization, or it cannot be read.
     """
+    if not folder.is_dir():
+        what = "is a file, not a folder" if folder.exists() else "no such folder"
+        raise UsageError(f"{what}; give the folder that 'motionedit normalize' wrote", file=str(folder))
     normalization = read_normalization(folder)
     paths = [folder / each.clip for each in normalization.clips]
     tasks = [ClipTask(path, str(path), None, each.clip) for path, each in zip(paths, normalization.clips, strict=True)]
@@ -101,7 +106,7 @@ def fit(database: Database, loaded: LoadedSpec[FitPcaSpec] | None, *, options: R
     ------
     ModelError
         There is nothing to learn from them.
-    MotionEditErrors
+    ClipError, MotionEditErrors
         Clips that cannot be used.
     SpecError
         The spec names joints or a number of components that are not there.
@@ -162,7 +167,7 @@ def _motions(database: Database, options: RunOptions) -> Iterator[DatabaseMotion
             clip = DatabaseClip(_stem(listed.clip), listed.digest, tuple(listed.events.items()))
             yield DatabaseMotion(clip, value, joint_map)
     if errors:
-        raise errors[0] if len(errors) == 1 else MotionEditErrors("clips cannot be used", errors)
+        raise together("clips cannot be used", errors)
 
 
 def _stem(relative: str) -> str:

@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 from motionedit.core.pca.model import MotionModel
 from motionedit.core.pca.model_file import read_model
 from motionedit.jobs.edit_pc import job
-from motionedit.library.edited import edited
+from motionedit.library.clips import AnyClip, clip_task
+from motionedit.library.edited import Edited, edited
 from motionedit.library.file_errors import file_errors
 from motionedit.library.fit_pca import Fitted
-from motionedit.library.inputs import events_of, options_of, path_of, spec_of, task_of
+from motionedit.library.options import Events, events_of, options_of, refuse_unknown_events
+from motionedit.library.paths import AnyPath, AnySpec, path_of, spec_of
 from motionedit.spec.load import load_spec
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from pathlib import Path
-
-    from motionedit.library.edited import Edited
-    from motionedit.library.inputs import AnyClip, AnyPath, AnySpec
 
 # What messages call a model that was never written.
 _IN_MEMORY = "(in memory)"
@@ -26,20 +21,29 @@ _IN_MEMORY = "(in memory)"
 
 @file_errors()
 def edit_pc(
-    clip: AnyClip, model: Fitted | MotionModel | AnyPath, spec: AnySpec, *, events: Mapping[str, int] | None = None
+    clip: AnyClip,
+    model: Fitted | MotionModel | AnyPath,
+    spec: AnySpec,
+    *,
+    events: Events | None = None,
+    lenient: bool = False,
 ) -> Edited:
     """Return a clip edited within the style of a PCA model ([PC] 4.2, 4.3), as `motionedit edit-pc` writes it.
 
     Parameters
     ----------
-    clip : path-like or Clip
-        The clip.
-    model : path-like, Fitted or MotionModel
+    clip : str or path-like, Clip, or Edited
+        The clip: a file, what `read` returned, or what another edit did.
+    model : str or path-like, Fitted, or MotionModel
         What `fit_pca` returned, or the file that it or the command wrote.
-    spec : path-like or mapping
-        As for `normalize`: goals at single frames.
-    events : mapping, optional
+    spec : str or path-like, or mapping
+        A YAML file, or the same as a mapping, in which `schema` may be left out: goals at single frames, each a
+        position, a shift or an orientation of an effector. All keys: `docs/spec.md`, and ``motionedit schema edit-pc``.
+    events : mapping of str to int, optional
         Frames of this clip's events, 0-based, in place of those of the spec and the model: one spec serves many clips.
+        Each is an event that the spec or the model lists, or that the spec names.
+    lenient : bool
+        As for `read`, where the clip is a file.
 
     Returns
     -------
@@ -60,11 +64,13 @@ def edit_pc(
     >>> edit.report["status"]
     'ok'
     """
+    options = options_of(lenient=lenient)
     loaded = load_spec(spec_of(spec), "edit-pc", events=events_of(events))
-    task = task_of(clip)
+    before, task = clip_task(clip, lenient=options.lenient)
     full, label, files = _model(model)
-    result = job.edit(loaded, [task], model=full, label=label, options=options_of())
-    return edited(task, result, files=(*loaded.files, *files))
+    known = loaded.known_events | {name for name, _ in full.timeline.events}
+    refuse_unknown_events(events, known, where="the spec or the model")
+    return edited(before, task, job.edit(loaded, [task], model=full, label=label, options=options), loaded, files)
 
 
 def _model(model: Fitted | MotionModel | AnyPath) -> tuple[MotionModel, str, tuple[Path, ...]]:

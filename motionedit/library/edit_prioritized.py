@@ -2,35 +2,41 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import SupportsIndex
 
 from motionedit.jobs.edit_prioritized import job
-from motionedit.library.edited import edited
+from motionedit.library.clips import AnyClip, clip_task
+from motionedit.library.edited import Edited, edited
 from motionedit.library.file_errors import file_errors
-from motionedit.library.inputs import events_of, options_of, spec_of, task_of
+from motionedit.library.options import Events, events_of, options_of, refuse_unknown_events
+from motionedit.library.paths import AnySpec, spec_of
 from motionedit.spec.load import load_spec
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from motionedit.library.edited import Edited
-    from motionedit.library.inputs import AnyClip, AnySpec
 
 
 @file_errors()
 def edit_prioritized(
-    clip: AnyClip, spec: AnySpec, *, events: Mapping[str, int] | None = None, threads: int = 1
+    clip: AnyClip,
+    spec: AnySpec,
+    *,
+    events: Events | None = None,
+    lenient: bool = False,
+    threads: SupportsIndex = 1,
 ) -> Edited:
     """Return a clip edited by constraints in priority layers ([PRIO]), as `motionedit edit-prioritized` writes it.
 
     Parameters
     ----------
-    clip : path-like or Clip
-        The clip.
-    spec : path-like or mapping
-        As for `normalize`: constraints over intervals.
-    events : mapping, optional
-        Frames of this clip's events, 0-based, in place of those of the spec: one spec serves many clips.
+    clip : str or path-like, Clip, or Edited
+        The clip: a file, what `read` returned, or what another edit did.
+    spec : str or path-like, or mapping
+        A YAML file, or the same as a mapping, in which `schema` may be left out: constraints over intervals, of the
+        types position, orientation, pose, com, aim and posture. All keys: `docs/spec.md`, and ``motionedit schema
+        edit-prioritized``.
+    events : mapping of str to int, optional
+        Frames of this clip's events, 0-based, in place of those of the spec: one spec serves many clips. Each is an
+        event that the spec lists or names.
+    lenient : bool
+        As for `read`, where the clip is a file.
     threads : int
         Threads of the compiled solver; 0 means all cores. The result is the same for any number.
 
@@ -51,7 +57,8 @@ def edit_prioritized(
     'ok'
     >>> path = edit.write("walk-stairs.bvh")
     """
+    options = options_of(threads=threads, lenient=lenient)
     loaded = load_spec(spec_of(spec), "edit-prioritized", events=events_of(events))
-    task = task_of(clip)
-    result = job.edit(loaded, [task], options=options_of(jobs=threads))
-    return edited(task, result, files=loaded.files)
+    refuse_unknown_events(events, loaded.known_events, where="the spec")
+    before, task = clip_task(clip, lenient=options.lenient)
+    return edited(before, task, job.edit(loaded, [task], options=options), loaded)

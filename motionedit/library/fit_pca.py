@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any, SupportsIndex
 
+from motionedit.core.bvh import Clip
+from motionedit.core.pca.model import MotionModel
 from motionedit.core.pca.model_file import model_bytes
 from motionedit.dataclass import dataclass
 from motionedit.errors import UsageError
@@ -11,18 +14,12 @@ from motionedit.jobs import fit_pca as job
 from motionedit.jobs.batch.plan import ClipTask
 from motionedit.jobs.normalize.normalization_file import NAME
 from motionedit.library.file_errors import file_errors
-from motionedit.library.inputs import options_of, path_of, spec_of
 from motionedit.library.mean_clip import mean_clip
 from motionedit.library.normalize import Normalized
-from motionedit.library.outputs import report_of, sources_of, write_files
+from motionedit.library.options import options_of
+from motionedit.library.outputs import inputs_of, report_of, write_files
+from motionedit.library.paths import AnyPath, AnySpec, path_of, spec_of
 from motionedit.spec.load import load_spec
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from motionedit.core.bvh import Clip
-    from motionedit.core.pca.model import MotionModel
-    from motionedit.library.inputs import AnyPath, AnySpec
 
 # What messages call clips that were never written.
 _IN_MEMORY = "normalized clips"
@@ -42,7 +39,7 @@ class Fitted:
     warnings : tuple of str
         The lines that the command prints after ``motionedit: warning:``.
     inputs : tuple of Path
-        The files that it was made from: `write` overwrites none of them.
+        The files that it was made from, absolute: `write` overwrites none of them.
     """
 
     model: MotionModel
@@ -75,17 +72,18 @@ class Fitted:
 
 
 @file_errors()
-def fit_pca(normalized: Normalized | AnyPath, spec: AnySpec | None = None, *, jobs: int = 1) -> Fitted:
+def fit_pca(normalized: Normalized | AnyPath, spec: AnySpec | None = None, *, jobs: SupportsIndex = 1) -> Fitted:
     """Return a motion PCA model of normalized clips ([PC] 4.1), as `motionedit fit-pca` writes it.
 
     Parameters
     ----------
-    normalized : Normalized or path-like
+    normalized : Normalized, or str or path-like
         What `normalize` returned, or the folder that it or the command wrote.
-    spec : path-like or mapping, optional
-        As for `normalize`; all components if not given.
+    spec : str or path-like, or mapping, optional
+        A YAML file, or the same as a mapping, in which `schema` may be left out: how many components are kept (all if
+        not given), which joints are left out. All keys: `docs/spec.md`, and ``motionedit schema fit-pca``.
     jobs : int
-        As for `normalize`.
+        Clips in parallel processes; 0 means all cores. The result is the same for any number.
 
     Raises
     ------
@@ -99,19 +97,21 @@ def fit_pca(normalized: Normalized | AnyPath, spec: AnySpec | None = None, *, jo
     >>> fit.model.components.explained_variance_ratio.round(2)
     array([0.47, 0.25, 0.12, 0.05, 0.04, 0.02])
     """
+    options = options_of(jobs=jobs)
     loaded = None if spec is None else load_spec(spec_of(spec), "fit-pca")
-    database, sources = _database(normalized)
-    made = job.fit(database, loaded, options=options_of(jobs=jobs))
+    database, read = _database(normalized)
+    made = job.fit(database, loaded, options=options)
     report = report_of("fit-pca", [], spec=None if loaded is None else loaded.data, more=made.report.record)
     files = () if loaded is None else loaded.files
-    return Fitted(made.model, report, tuple(made.report.warnings), (*sources, *files))
+    return Fitted(made.model, report, tuple(made.report.warnings), inputs_of(database.tasks, (*read, *files)))
 
 
 def _database(normalized: Normalized | AnyPath) -> tuple[job.Database, tuple[Path, ...]]:
-    """Return the clips to learn from, and the files that they are read from."""
+    """Return the clips to learn from, and the files that are read beside them."""
     if isinstance(normalized, Normalized):
-        tasks = [ClipTask(None, clip.label, None, clip.label, clip=clip) for clip in normalized.clips]
+        meant = [clip.with_motion(clip.motion) for clip in normalized.clips]
+        tasks = [ClipTask(None, clip.label, None, clip.label, clip=clip) for clip in meant]
         return job.Database(normalized.normalization, tasks, _IN_MEMORY, _IN_MEMORY), normalized.inputs
     folder = path_of(normalized, wanted="what normalize returned, or its folder")
     found = job.database_in(folder)
-    return found, (*sources_of(found.tasks), folder / NAME)
+    return found, (folder / NAME,)

@@ -3,25 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any, SupportsIndex
 
-from motionedit.core.bvh import parse_clip
+from motionedit.core.bvh import Clip, parse_clip
 from motionedit.dataclass import dataclass
 from motionedit.errors import UsageError
 from motionedit.jobs.normalize import job
-from motionedit.jobs.normalize.normalization_file import NAME, normalization_bytes
+from motionedit.jobs.normalize.normalization_file import NAME, Normalization, normalization_bytes
+from motionedit.library.clips import AnyClips, clip_tasks
 from motionedit.library.file_errors import file_errors
-from motionedit.library.inputs import options_of, path_of, spec_of, tasks_of
-from motionedit.library.outputs import contents_of, report_of, sources_of, write_files
+from motionedit.library.options import options_of
+from motionedit.library.outputs import contents_of, inputs_of, report_of, text_of, write_files
+from motionedit.library.paths import AnyPath, AnySpec, path_of, spec_of
 from motionedit.spec.load import load_spec
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-    from pathlib import Path
-
-    from motionedit.core.bvh import Clip
-    from motionedit.jobs.normalize.normalization_file import Normalization
-    from motionedit.library.inputs import AnyClip, AnyPath, AnySpec
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +35,7 @@ class Normalized:
     warnings : tuple of str
         The lines that the command prints after ``motionedit: warning:``.
     inputs : tuple of Path
-        The files that they were made from: `write` overwrites none of them.
+        The files that they were made from, absolute: `write` overwrites none of them.
     """
 
     clips: tuple[Clip, ...]
@@ -65,7 +60,7 @@ class Normalized:
         target = path_of(folder)
         if target.name.lower().endswith(".bvh"):
             raise UsageError("several files are written; give a folder", file=str(target))
-        files = {target / clip.label: clip.text.data for clip in self.clips}
+        files = {target / clip.label: text_of(clip) for clip in self.clips}
         files[target / NAME] = normalization_bytes(self.normalization)
         write_files(files, inputs=self.inputs)
         return target
@@ -75,17 +70,18 @@ class Normalized:
 
 
 @file_errors()
-def normalize(clips: AnyClip | Iterable[AnyClip], spec: AnySpec, *, lenient: bool = False, jobs: int = 1) -> Normalized:
+def normalize(clips: AnyClips, spec: AnySpec, *, lenient: bool = False, jobs: SupportsIndex = 1) -> Normalized:
     """Return clips of one behaviour on one timeline ([PC] section 5), as `motionedit normalize` writes them.
 
     Parameters
     ----------
-    clips : path-like, Clip, or several of them
+    clips : str or path-like, Clip, Edited, or several of them
         Files, folders (all their ``.bvh``) and clips in memory.
-    spec : path-like or mapping
-        A YAML file, or the same as a mapping, in which `schema` may be left out.
+    spec : str or path-like, or mapping
+        A YAML file, or the same as a mapping, in which `schema` may be left out: frames, rate, events, alignment. All
+        keys: `docs/spec.md`, and ``motionedit schema normalize``.
     lenient : bool
-        As `read`, for clips that are given as paths.
+        As for `read`, for clips that are given as paths.
     jobs : int
         Clips in parallel processes; 0 means all cores. The result is the same for any number.
 
@@ -101,9 +97,10 @@ def normalize(clips: AnyClip | Iterable[AnyClip], spec: AnySpec, *, lenient: boo
     >>> swings.normalization.timeline.frames
     131
     """
+    options = options_of(jobs=jobs, lenient=lenient)
     loaded = load_spec(spec_of(spec), "normalize")
-    tasks = tasks_of(clips)
-    done = job.normalize(loaded, tasks, options=options_of(jobs=jobs, lenient=lenient))
+    tasks = clip_tasks(clips)
+    done = job.normalize(loaded, tasks, options=options)
     contents = contents_of(done.result)
     if done.normalization is None:
         raise AssertionError("a run without failures has a normalization")
@@ -115,5 +112,5 @@ def normalize(clips: AnyClip | Iterable[AnyClip], spec: AnySpec, *, lenient: boo
         normalization=done.normalization,
         report=report_of("normalize", done.result.records, spec=loaded.data),
         warnings=tuple(done.result.warnings),
-        inputs=(*sources_of(tasks), *loaded.files),
+        inputs=inputs_of(tasks, loaded.files),
     )

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any
 
-from motionedit.errors import MotionEditErrors
+from motionedit.errors import together
 from motionedit.jobs.batch.files import clean_leftovers
 from motionedit.jobs.batch.one_clip import write_file
 from motionedit.jobs.batch.plan import refuse_overwriting
 from motionedit.library.file_errors import file_errors
+from motionedit.library.paths import AnyPath, path_of
 from motionedit.report.record import report_bytes
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
-    from pathlib import Path
 
+    from motionedit.core.bvh import Clip
     from motionedit.jobs.batch.plan import ClipTask
     from motionedit.jobs.batch.run import BatchResult
 
@@ -29,13 +31,14 @@ def contents_of(result: BatchResult) -> list[bytes]:
         What went wrong with any of them.
     """
     if result.failures:
-        raise result.failures[0] if len(result.failures) == 1 else MotionEditErrors("clips failed", result.failures)
+        raise together("clips failed", result.failures)
     return [content for content in result.contents if content is not None]
 
 
-def sources_of(tasks: Iterable[ClipTask]) -> tuple[Path, ...]:
-    """Return the files that clips were read from."""
-    return tuple(task.source for task in tasks if task.source is not None)
+def inputs_of(tasks: Iterable[ClipTask], files: Iterable[Path]) -> tuple[Path, ...]:
+    """Return the files that clips were read from, and others, by paths that hold wherever the caller goes."""
+    sources = [task.source for task in tasks if task.source is not None]
+    return tuple(path.absolute() for path in (*sources, *files))
 
 
 def report_of(
@@ -48,6 +51,17 @@ def report_of(
     """Return a report as its file would be read back."""
     report: dict[str, Any] = json.loads(report_bytes(command, records, spec=spec, more=more))
     return report
+
+
+def file_for(clip: Clip, path: AnyPath) -> Path:
+    """Return the file of a clip: a name ending in ``.bvh`` itself, in any other folder one of the clip's own name."""
+    target = path_of(path)
+    return target if target.name.lower().endswith(".bvh") else target / PurePath(clip.label).name
+
+
+def text_of(clip: Clip) -> bytes:
+    """Return the bytes of a clip's file, with the motion that it has now."""
+    return clip.with_motion(clip.motion).text.data
 
 
 @file_errors()

@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from motionedit.core.bvh import read_clip
+from motionedit.core.bvh import Clip, read_clip
 from motionedit.library.file_errors import file_errors
-from motionedit.library.inputs import path_of
-
-if TYPE_CHECKING:
-    from motionedit.core.bvh import Clip
-    from motionedit.library.inputs import AnyPath
+from motionedit.library.options import switch
+from motionedit.library.paths import AnyPath, path_of
 
 
 @file_errors()
@@ -19,7 +14,7 @@ def read(path: AnyPath, *, lenient: bool = False) -> Clip:
 
     Parameters
     ----------
-    path : path-like
+    path : str or path-like
         The file.
     lenient : bool
         Whether a row count other than `Frames:` says is accepted: the whole rows are used, and `clip.warnings` says so.
@@ -29,7 +24,8 @@ def read(path: AnyPath, *, lenient: bool = False) -> Clip:
     Clip
         `clip.motion` has `rotations`, unit quaternions w, x, y, z, shape (F, J, 4), `translations` in clip units,
         `frame_time` in seconds and `skeleton` (names, parents, offsets); `clip.values` are the numbers of the file,
-        degrees and clip units, shape (F, C). All arrays are read-only.
+        degrees and clip units, shape (F, C). All arrays are read-only: `clip.with_motion` makes a clip of others, and
+        `motionedit.write` a file of it.
 
     Raises
     ------
@@ -42,4 +38,6 @@ def read(path: AnyPath, *, lenient: bool = False) -> Clip:
     >>> clip.motion.rotations.shape
     (145, 31, 4)
     """
-    return read_clip(path_of(path, wanted="a path"), lenient=lenient)
+    file = path_of(path)
+    # Its source holds after the working folder has changed: nothing is written over it.
+    return read_clip(file.absolute(), label=str(file), lenient=switch(lenient, "lenient"))

@@ -6,10 +6,10 @@ import re
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, Literal, TypedDict, TypeVar, Unpack, overload
+from typing import TYPE_CHECKING, Any, Generic, Literal, SupportsIndex, TypedDict, TypeVar, Unpack, overload
 
 from motionedit.dataclass import dataclass
-from motionedit.errors import MotionEditError, MotionEditErrors, SpecError
+from motionedit.errors import MotionEditError, SpecError, together
 from motionedit.spec import SPEC_COMMANDS, model_of, schema_name
 from motionedit.spec.faults import Fault, Keys, dotted
 from motionedit.spec.mapping_tree import NO_LINE, tree_of
@@ -50,6 +50,8 @@ class LoadedSpec(Generic[Model_co]):
         The plain spec with the overrides applied, keys in the file's order: for reports.
     tree : Node
         The lines of all keys.
+    listed : frozenset of str
+        The events that the spec itself lists.
     """
 
     model: Model_co
@@ -57,6 +59,14 @@ class LoadedSpec(Generic[Model_co]):
     label: str
     data: dict[str, Any]
     tree: Node
+    listed: frozenset[str] = frozenset()
+
+    @property
+    def known_events(self) -> frozenset[str]:
+        """The events that the spec itself lists, or names in a time: those whose frames may be given beside it."""
+        from motionedit.spec.event_names import events_named
+
+        return self.listed | frozenset(events_named(self.model))
 
     @property
     def files(self) -> tuple[Path, ...]:
@@ -81,7 +91,7 @@ class Overrides(TypedDict, total=False):
     """
 
     overrides: Sequence[str]
-    events: Mapping[str, int]
+    events: Mapping[str, SupportsIndex]
 
 
 Spec = Path | Mapping[str, Any]
@@ -110,14 +120,16 @@ def load_spec(spec: Spec, command: str, **changes: Unpack[Overrides]) -> LoadedS
 
     Raises
     ------
-    MotionEditErrors
-        All faults of the spec, sorted by line.
+    MotionEditError
+        The fault of the spec, or all of them, sorted by line.
     """
     path = spec if isinstance(spec, Path) else None
     label = _MAPPING if path is None else str(path)
     tree, faults = _tree_of_mapping(spec, command) if isinstance(spec, Mapping) else _tree(spec, command)
     # What no spec can say is told once, not again as a value that is missing.
     unsayable = {fault.keys for fault in faults} if path is None else set()
+    own = tree.child("events")
+    listed = frozenset(own.value) if own is not None and isinstance(own.value, dict) else frozenset()
     tree, found = _with_events(tree, changes.get("events", {}))
     faults += found
     tree, found = apply_overrides(tree, changes.get("overrides", ()))
@@ -132,7 +144,7 @@ def load_spec(spec: Spec, command: str, **changes: Unpack[Overrides]) -> LoadedS
     faults += [fault for fault in found if fault.keys not in unsayable]
     if faults or model is None:
         raise _together(faults, tree, label)
-    return LoadedSpec(model, path, label, data, tree)
+    return LoadedSpec(model, path, label, data, tree, listed)
 
 
 def _tree_of_mapping(spec: Mapping[str, Any], command: str) -> tuple[Node, list[Fault]]:
@@ -143,7 +155,7 @@ def _tree_of_mapping(spec: Mapping[str, Any], command: str) -> tuple[Node, list[
     return tree, faults
 
 
-def _with_events(tree: Node, events: Mapping[str, int]) -> tuple[Node, list[Fault]]:
+def _with_events(tree: Node, events: Mapping[str, SupportsIndex]) -> tuple[Node, list[Fault]]:
     """Return the tree with frames of events in place of its own, and the faults of those that are none."""
     own = tree.child("events")
     children = dict(own.value) if own is not None and isinstance(own.value, dict) else {}
@@ -203,7 +215,7 @@ def _validated(data: dict[str, Any], command: str, folder: Path) -> tuple[Docume
         return None, faults_of(error, data)
 
 
-def _together(faults: Sequence[Fault], tree: Node, file: str) -> MotionEditErrors:
+def _together(faults: Sequence[Fault], tree: Node, file: str) -> MotionEditError:
     """Return all faults in one error: those of the command line, of the file by line, of other files by line."""
     placed = [_located(fault, tree, file) for fault in faults]
 
@@ -211,7 +223,7 @@ def _together(faults: Sequence[Fault], tree: Node, file: str) -> MotionEditError
         source = error.file or ""
         return not source.startswith("--set"), source != file, source, error.line or 0
 
-    return MotionEditErrors(f"{file} cannot be used", sorted(placed, key=place))
+    return together(f"{file} cannot be used", sorted(placed, key=place))
 
 
 def _located(fault: Fault, tree: Node, file: str) -> SpecError:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import operator
 import os
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, SupportsIndex
 
 from motionedit.spec.faults import Fault, Keys, show
 from motionedit.spec.syntax import DEEPEST
@@ -42,6 +43,8 @@ class _Builder:
             return self._faulty(f"nested more than {DEEPEST} deep", keys[:3])
         if hasattr(value, "tolist"):  # numpy's arrays and numbers, and all that behave like them
             value = value.tolist()
+        elif isinstance(value, SupportsIndex) and not isinstance(value, int):  # other libraries' whole numbers
+            value = operator.index(value)
         if isinstance(value, os.PathLike):
             value = os.fspath(value)
         if isinstance(value, Mapping):

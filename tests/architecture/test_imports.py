@@ -23,7 +23,7 @@ MAY_IMPORT = {
     "errors": set(),
     "dataclass": set(),
     "version": set(),
-    "__init__": {"library", "errors"},
+    "__init__": {"library", "core", "errors"},
     "__main__": {"cli"},
 }
 # The rooms (and files) in which an outside package may be imported.

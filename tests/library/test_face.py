@@ -140,6 +140,36 @@ def test_an_edit_that_changes_nothing_returns_the_clip_itself():
     assert motionedit.edit_prioritized(clip, {"constraints": []}).clip is clip
 
 
+def test_an_edited_clip_can_be_edited_and_normalized_as_it_is(fitted):
+    first = motionedit.edit_pc(SWING, fitted, {"goals": [{**BALL, "shift": [0, 0, 3]}]})
+    second = motionedit.edit_prioritized(first, RAISED)
+    assert second.before is first.clip
+    assert second.clip.text.data == motionedit.edit_prioritized(first.clip, RAISED).clip.text.data
+    assert motionedit.normalize([first, "data/golf/swing05.bvh"], {}).clips[0].label == "swing04.bvh"
+
+
+def test_whole_numbers_of_other_libraries_are_frames_of_events():
+    class Whole:
+        def __index__(self):
+            return 70
+
+    waving = {"constraints": [{**HAND, "points": [{"at": "wave", "shift": [0, 15, 0]}]}]}
+    edits = [
+        motionedit.edit_prioritized("data/walk.bvh", waving, events={"wave": n}) for n in (70, np.int16(70), Whole())
+    ]
+    assert len({edit.clip.text.data for edit in edits}) == 1
+
+
+def test_a_page_is_written_over_no_input(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    shutil.copy(ROOT / "data" / "walk.bvh", "walk.bvh")
+    Path("edit.html").write_text("schema: motionedit/edit-prioritized/v1\nconstraints: []\n")
+    edit = motionedit.edit_prioritized("walk.bvh", "edit.html")
+    with pytest.raises(motionedit.UsageError, match=r"edit\.html: is an input"):
+        edit.write("edit.bvh", page=True)
+    assert not Path("edit.bvh").exists()
+
+
 def test_results_are_short_where_they_are_shown(fitted, normalized):
     edit = motionedit.edit_prioritized("data/walk.bvh", RAISED)
     assert repr(edit) == "<Edited 'data/walk.bvh': ok, 145 frames>"
@@ -159,7 +189,7 @@ def test_the_module_lists_what_it_has():
 FUNCTIONS = ("read", "normalize", "fit_pca", "edit_pc", "edit_prioritized")
 
 
-@pytest.mark.parametrize("place", ["", *(f".library.{name}" for name in FUNCTIONS)])
+@pytest.mark.parametrize("place", ["", ".core.bvh.read", *(f".library.{name}" for name in FUNCTIONS)])
 def test_examples_in_docstrings_run(place, tmp_path, monkeypatch):
     for folder in ("data", "configs"):
         (tmp_path / folder).symlink_to(ROOT / folder)

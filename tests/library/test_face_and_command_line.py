@@ -89,6 +89,44 @@ def test_leniency_is_that_of_the_command_line(command_line, tmp_path):
         result = motionedit.edit_prioritized(clip, path)
         assert result.write(tmp_path / "b.bvh").read_bytes() == (tmp_path / "a.bvh").read_bytes()
         assert list(result.warnings) == command_line.warnings
+        same = motionedit.edit_prioritized(short, path, lenient=True)
+        assert same.clip.text.data == result.clip.text.data
+        assert list(same.warnings) == command_line.warnings
+        with pytest.raises(motionedit.BvhError, match="Frames: says 150"):
+            motionedit.edit_prioritized(short, path)
+
+
+def test_leniency_of_an_edit_by_a_model_is_that_of_the_command_line(command_line, tmp_path, fitted):
+    short, model, spec = tmp_path / "short.bvh", fitted.write(tmp_path / "golf.npz"), tmp_path / "edit.yaml"
+    short.write_bytes(Path(SWING).read_bytes().replace(b"Frames: 121", b"Frames: 150"))
+    spec.write_text(
+        "schema: motionedit/edit-pc/v1\nevents: {hit: 85}\n"
+        "goals: [{at: hit, effector: {end_site: Club}, shift: [0, 0, 3]}]\n"
+    )
+    command_line("edit-pc", short, "-m", model, "-s", spec, "-o", tmp_path / "a.bvh", "--lenient")
+    with pytest.raises(motionedit.BvhError, match="Frames: says 150"):
+        motionedit.edit_pc(short, model, spec)
+    result = motionedit.edit_pc(short, model, spec, lenient=True)
+    assert result.clip.text.data == (tmp_path / "a.bvh").read_bytes()
+    assert list(result.warnings) == command_line.warnings
+
+
+@pytest.mark.parametrize("read", [str, motionedit.read], ids=["path", "memory"])
+def test_a_page_is_that_of_the_command_line_for_the_same_paths(command_line, tmp_path, fitted, read):
+    model = fitted.write(tmp_path / "golf.npz")
+    outputs = [tmp_path / "out" / name for name in ("walk-reach.bvh", "swing04.bvh")]
+    command_line("edit-prioritized", "data/walk.bvh", "-s", "configs/reach.yaml", "-o", outputs[0], "--preview")
+    command_line("edit-pc", SWING, "-m", model, "-s", "configs/golf-edit.yaml", "-o", outputs[1], "--preview")
+    pages = [output.with_suffix(".html").read_bytes() for output in outputs]
+    edits = [
+        motionedit.edit_prioritized(read("data/walk.bvh"), "configs/reach.yaml"),
+        motionedit.edit_pc(read(SWING), fitted, "configs/golf-edit.yaml"),
+    ]
+    for edit, output, page in zip(edits, outputs, pages, strict=True):
+        output.with_suffix(".html").unlink()
+        assert edit.write(output, page=True) == output
+        assert output.with_suffix(".html").read_bytes() == page
+    assert edits[0].page().replace(b"walk-edited", b"walk-reach") == pages[0]
 
 
 def test_any_number_of_workers_and_threads_gives_the_same(normalized, fitted):

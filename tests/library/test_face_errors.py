@@ -4,6 +4,7 @@ import pickle
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import motionedit
@@ -72,6 +73,130 @@ def test_a_faulty_event_is_named(fitted, frame, message):
     assert message in refused(motionedit.edit_pc, SWING, fitted, {"goals": [goal]}, events={"hit": frame})
 
 
+WAVE = {"type": "position", "effector": "LeftHand", "priority": 1, "points": [{"at": "wave", "shift": [0, 1, 0]}]}
+
+
+def test_an_event_that_nothing_asks_for_is_refused(fitted):
+    goal = {"at": 80, "effector": "RightHand", "shift": [0, 0, 1]}
+    assert refused(motionedit.edit_pc, SWING, fitted, {"goals": [goal]}, events={"hti": 85}) == [
+        "events.hti: no such event in the spec or the model; did you mean 'hit'?"
+    ]
+    for spec, words in (
+        ({"constraints": [WAVE], "events": {"wave": 4}}, "did you mean 'wave'?"),
+        ({"constraints": [], "events": {"step": 4}}, "there are: step"),
+        (NOTHING, "there are none"),
+    ):
+        assert refused(motionedit.edit_prioritized, "data/walk.bvh", spec, events={"wvae": 70}) == [
+            f"events.wvae: no such event in the spec; {words}"
+        ]
+
+
+def test_an_event_that_the_spec_lists_or_names_or_the_model_has_is_taken(fitted):
+    rule = {"effector": "Head", "maximum_of": "height"}
+    for spec in (
+        {"constraints": [WAVE]},
+        {"constraints": [], "events": {"wave": 4}},
+        {"constraints": [], "events": {"top": {"detect": {**rule, "after": "wave"}}}},
+        {"constraints": [], "events": {"top": {"detect": {**rule, "between": ["wave - 5", "wave + 5"]}}}},
+    ):
+        assert motionedit.edit_prioritized("data/walk.bvh", spec, events={"wave": 70}).report["status"] == "ok"
+    goal = {"at": "top", "effector": "RightHand", "shift": [0, 0, 1]}
+    edit = motionedit.edit_pc(SWING, fitted, {"goals": [goal]}, events={"top": 70, "hit": 85})
+    assert edit.report["goals"][0]["frame"] == 70
+
+
+def test_one_fault_is_raised_as_itself_with_its_place(tmp_path):
+    spec = tmp_path / "reach.yaml"
+    spec.write_text("schema: motionedit/edit-prioritized/v1\nconstraints: []\nsmoothign: 3\n")
+    with pytest.raises(motionedit.SpecError) as caught:
+        motionedit.edit_prioritized("data/walk.bvh", spec)
+    assert (caught.value.file, caught.value.line, caught.value.key) == (str(spec), 3, "smoothign")
+    with pytest.raises(motionedit.SpecError) as caught:
+        motionedit.edit_prioritized(
+            "data/walk.bvh", {"constraints": [{**WAVE, "effector": "LeftHnd"}]}, events={"wave": 4}
+        )
+    assert (caught.value.file, caught.value.key) == ("spec", "constraints.0.effector")
+    assert caught.value.errors == (caught.value,)
+    with pytest.raises(motionedit.MotionEditErrors) as group:
+        motionedit.edit_prioritized("data/walk.bvh", {"constraints": [], "a": 1, "b": 2})
+    assert [error.key for error in group.value.errors] == ["a", "b"]
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("constraints: []", "'constraints: []'"),
+        ("{constraints: []}", "'{constraints: []}'"),
+        ("schema: motionedit/edit-prioritized/v1\nconstraints: []\n", "'schema: motionedit/edit-prioritized/..."),
+        ("# reach\n" * 1000, "'# reach\\n# reach\\n# reach\\n# reach\\n..."),
+    ],
+)
+def test_a_spec_s_text_is_told_from_a_path(text, shown):
+    wanted = [f"{shown} looks like YAML text; give a spec as a path or a mapping"]
+    assert refused(motionedit.edit_prioritized, "data/walk.bvh", text) == wanted
+    assert refused(motionedit.normalize, "data/golf", text) == wanted
+
+
+def test_a_file_whose_name_looks_like_yaml_is_a_spec(tmp_path, monkeypatch):
+    shutil.copy(ROOT / "data" / "walk.bvh", tmp_path)
+    monkeypatch.chdir(tmp_path)
+    Path("spec: one").write_text("schema: motionedit/edit-prioritized/v1\nconstraints: []\n")
+    assert motionedit.edit_prioritized("walk.bvh", "spec: one").report["status"] == "ok"
+
+
+def test_long_texts_are_not_shown_whole():
+    for text, words in (
+        ("x" * 9000, "too long"),
+        ("HIERARCHY\nROOT\n" * 900, "several lines"),
+        ("y\0" * 9000, "no file"),
+    ):
+        for call in (motionedit.read, motionedit.normalize):
+            (line,) = refused(call, text, *([{}] if call is motionedit.normalize else []))
+            assert words in line
+            assert len(line) < 120
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"), [("2", "'2'"), (None, "None"), (1.5, "1.5"), (-1, "-1"), (True, "True"), ([1], "a list")]
+)
+def test_a_number_of_workers_is_a_whole_number(value, shown):
+    for name, call, arguments in (
+        ("jobs", motionedit.normalize, ("data/golf", {})),
+        ("jobs", motionedit.fit_pca, ("data/golf",)),
+        ("threads", motionedit.edit_prioritized, ("data/walk.bvh", NOTHING)),
+    ):
+        with pytest.raises(motionedit.UsageError) as caught:
+            call(*arguments, **{name: value})
+        assert str(caught.value) == f"{name} must be a whole number, 1 or more, or 0 for all cores; not {shown}"
+
+
+@pytest.mark.parametrize(("value", "shown"), [("yes", "'yes'"), (None, "None"), (1, "1"), ([], "a list")])
+def test_a_switch_is_true_or_false(value, shown, fitted, tmp_path):
+    for call, arguments in (
+        (motionedit.read, ("data/walk.bvh",)),
+        (motionedit.normalize, ("data/golf", {})),
+        (motionedit.edit_pc, (SWING, fitted, {"goals": []})),
+        (motionedit.edit_prioritized, ("data/walk.bvh", NOTHING)),
+    ):
+        with pytest.raises(motionedit.UsageError) as caught:
+            call(*arguments, lenient=value)
+        assert str(caught.value) == f"lenient must be True or False, not {shown}"
+    edit = motionedit.edit_prioritized("data/walk.bvh", NOTHING)
+    assert refused(edit.write, tmp_path / "x.bvh", page=value) == [f"page must be True or False, not {shown}"]
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_numbers_and_switches_of_numpy_are_taken():
+    edit = motionedit.edit_prioritized("data/walk.bvh", NOTHING, threads=np.int32(2), lenient=np.bool_(0))
+    assert edit.report["status"] == "ok"
+
+
+def test_a_result_of_many_clips_is_no_clip(fitted, normalized):
+    for result in (fitted, normalized):
+        (line,) = refused(motionedit.edit_prioritized, result, NOTHING)
+        assert line.endswith(f"not a value of type {type(result).__name__}; give one of its clips, such as its .clip")
+
+
 def test_what_is_no_clip_no_spec_and_no_model_is_refused(fitted):
     assert refused(motionedit.read, 3) == ["must be a path, not a value of type int"]
     assert refused(motionedit.read, "-") == ["'-' is no file; give a path"]
@@ -81,7 +206,7 @@ def test_what_is_no_clip_no_spec_and_no_model_is_refused(fitted):
     ]
     assert refused(motionedit.read, "nix.bvh") == ["nix.bvh: cannot be read: No such file or directory"]
     assert refused(motionedit.edit_prioritized, None, NOTHING) == [
-        "must be a clip, as a path or a Clip, not a value of type NoneType"
+        "must be a clip, as a path, a Clip or an Edited, not a value of type NoneType"
     ]
     assert refused(motionedit.edit_prioritized, "nix.bvh", NOTHING) == ["nix.bvh: no such file or folder"]
     assert refused(motionedit.edit_prioritized, "data/golf", NOTHING) == [
@@ -105,15 +230,27 @@ def test_what_is_no_clip_no_spec_and_no_model_is_refused(fitted):
 def test_what_cannot_be_normalized_or_fitted_is_refused():
     assert refused(motionedit.normalize, [], {}) == ["no clip is given"]
     assert refused(motionedit.normalize, 3, {}) == ["must be clips or folders, not a value of type int"]
-    assert refused(motionedit.normalize, [3], {}) == ["must be a clip, as a path or a Clip, not a value of type int"]
-    assert refused(motionedit.normalize, "data/golf", {}, jobs=-1) == ["-1 workers; give 1 or more, or 0 for all cores"]
+    assert refused(motionedit.normalize, [3], {}) == [
+        "must be a clip, as a path, a Clip or an Edited, not a value of type int"
+    ]
+    assert refused(motionedit.normalize, "data/golf", {}, jobs=-1) == [
+        "jobs must be a whole number, 1 or more, or 0 for all cores; not -1"
+    ]
     swing = motionedit.read(SWING)
-    assert "would both be called swing04.bvh" in refused(motionedit.normalize, [swing, swing], {})[0]
+    both = "data/golf/swing04.bvh and data/golf/swing04.bvh would both be called swing04.bvh; "
+    assert refused(motionedit.normalize, [SWING, SWING], {}) == [f"{both}give the folder that both are below"]
+    for clips in ([swing, swing], [swing, SWING]):
+        assert refused(motionedit.normalize, clips, {}) == [
+            f"{both}give one another label, such as dataclasses.replace(clip, label='other.bvh')"
+        ]
     one = motionedit.normalize(swing, {})
     assert refused(motionedit.fit_pca, one) == ["normalized clips: lists 1 clip; a PCA needs two or more"]
     assert refused(motionedit.fit_pca, "data/golf") == [
         "data/golf/normalization.json: not there; 'motionedit normalize' writes it beside the clips"
     ]
+    what = "give the folder that 'motionedit normalize' wrote"
+    assert refused(motionedit.fit_pca, SWING) == [f"{SWING}: is a file, not a folder; {what}"]
+    assert refused(motionedit.fit_pca, "nix") == [f"nix: no such folder; {what}"]
     assert "what normalize returned, or its folder" in refused(motionedit.fit_pca, swing)[0]
 
 
@@ -156,6 +293,33 @@ def test_an_input_is_never_overwritten_under_any_name_or_after_any_number_of_ste
     assert "an input is never overwritten" in refused(normalized.write, ".")[0]
     assert sorted(path.name for path in Path().iterdir()) == ["link.bvh", "reach.yaml", "walk.bvh"]
     assert Path("walk.bvh").read_bytes() == before
+
+
+def test_an_input_is_not_overwritten_after_the_working_folder_has_changed(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    shutil.copytree(ROOT / "data" / "golf", "golf")
+    Path("reach.yaml").write_text("schema: motionedit/edit-prioritized/v1\nconstraints: []\n")
+    clip, path = motionedit.read("golf/swing01.bvh"), "golf/swing01.bvh"
+    normalized = motionedit.normalize("golf", {"events": {"hit": {"frames": "golf/events.csv"}}})
+    made = motionedit.fit_pca(normalized.write("normalized"))
+    model = made.write("model.npz")
+    edits = [motionedit.edit_prioritized(one, "reach.yaml") for one in (clip, path)]
+    edits += [motionedit.edit_prioritized(edits[0], NOTHING), motionedit.edit_prioritized(normalized.clips[0], NOTHING)]
+    edits.append(motionedit.edit_pc(path, model, {"goals": []}))
+    Path("elsewhere").mkdir()
+    monkeypatch.chdir("elsewhere")
+    for edit in edits:
+        assert "an input is never overwritten" in refused(edit.write, "../golf/swing01.bvh")[0]
+    again = motionedit.edit_prioritized(edits[1], NOTHING)
+    assert "an input is never overwritten" in refused(again.write, "../golf/swing01.bvh")[0]
+    for clip in (edits[1].clip, normalized.clips[0]):
+        assert "an input is never overwritten" in refused(motionedit.write, clip, "../golf/swing01.bvh")[0]
+    for result in (*edits, normalized, made):
+        assert all(each.is_absolute() and each.exists() for each in result.inputs)
+    assert {tmp_path / "model.npz", tmp_path / path} == set(edits[-1].inputs)
+    assert tmp_path / "golf" / "events.csv" in normalized.inputs
+    assert "an input is never overwritten" in refused(normalized.write, "../golf")[0]
+    assert "an input is never overwritten" in refused(made.write, "../normalized/swing01.bvh")[0]
 
 
 def test_a_clip_from_memory_may_take_any_free_name(tmp_path, monkeypatch):

@@ -4,7 +4,7 @@ from textwrap import dedent
 
 import pytest
 
-from motionedit.errors import MotionEditErrors
+from motionedit.errors import MotionEditError
 from motionedit.spec.load import load_spec
 
 HEADS = {
@@ -34,10 +34,10 @@ def messages(load):
     """Return the lines that a faulty spec is answered with; line 1 is the schema's."""
 
     def lines(text, command="edit-pc", *overrides, head=True):
-        with pytest.raises(MotionEditErrors) as caught:
+        with pytest.raises(MotionEditError) as caught:
             load(text, command, *overrides, head=head)
         assert caught.value.exit_code == 2
-        found = [str(error) for error in caught.value.exceptions]
+        found = [str(error) for error in caught.value.errors]
         assert all("\n" not in line for line in found)
         return found
 

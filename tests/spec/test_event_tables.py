@@ -83,7 +83,7 @@ def test_faults_of_the_table_come_after_those_of_the_spec(table, messages):
 
 
 def test_a_table_beside_a_spec_in_another_folder_is_named_from_here(tmp_path, monkeypatch):
-    from motionedit.errors import MotionEditErrors
+    from motionedit.errors import MotionEditError
     from motionedit.spec.load import load_spec
 
     monkeypatch.chdir(tmp_path)
@@ -91,7 +91,7 @@ def test_a_table_beside_a_spec_in_another_folder_is_named_from_here(tmp_path, mo
     folder.mkdir()
     (folder / "golf.yaml").write_text(f"schema: motionedit/normalize/v1\n{SPEC}\n")
     (folder / "hits.csv").write_text("clip,frame\na,x\n")
-    with pytest.raises(MotionEditErrors) as caught:
+    with pytest.raises(MotionEditError) as caught:
         load_spec((folder / "golf.yaml").relative_to(tmp_path), "normalize")
-    (error,) = caught.value.exceptions
+    (error,) = caught.value.errors
     assert str(error) == "configs/hits.csv:2: frame must be a whole number of at least 0, not 'x'"

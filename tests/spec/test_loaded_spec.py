@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from contract import EDIT_PRIORITIZED
 
-from motionedit.errors import EXIT_USAGE, MotionEditErrors, SpecError
+from motionedit.errors import EXIT_USAGE, MotionEditError, SpecError
 from motionedit.spec.load import load_spec
 
 
@@ -74,26 +74,26 @@ def test_a_model_cannot_be_changed(stairs):
 )
 def test_a_file_that_cannot_be_read_is_answered_with_the_reason(path, message, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(MotionEditErrors) as caught:
+    with pytest.raises(MotionEditError) as caught:
         load_spec(path, "edit-pc")
-    assert [str(error) for error in caught.value.exceptions] == [message]
-    assert isinstance(caught.value.exceptions[0], SpecError)
+    assert [str(error) for error in caught.value.errors] == [message]
+    assert isinstance(caught.value.errors[0], SpecError)
 
 
 @pytest.mark.skipif(os.name != "posix" or os.geteuid() == 0, reason="root may read everything")
 def test_a_file_without_permission_is_answered_with_the_reason(tmp_path):
     path = tmp_path / "spec.yaml"
     path.touch(mode=0o000)
-    with pytest.raises(MotionEditErrors) as caught:
+    with pytest.raises(MotionEditError) as caught:
         load_spec(path, "edit-pc")
-    assert "no permission to read it" in str(caught.value.exceptions[0])
+    assert "no permission to read it" in str(caught.value.errors[0])
 
 
 @pytest.mark.skipif(not Path("/dev/zero").exists(), reason="the system has no endless device")
 def test_a_device_without_end_is_not_read_to_its_end():
-    with pytest.raises(MotionEditErrors) as caught:
+    with pytest.raises(MotionEditError) as caught:
         load_spec(Path("/dev/zero"), "edit-pc")
-    assert str(caught.value.exceptions[0]) == "/dev/zero: larger than 4 MB; is it the right file?"
+    assert str(caught.value.errors[0]) == "/dev/zero: larger than 4 MB; is it the right file?"
 
 
 def test_naming_the_specs_loads_neither_yaml_nor_pydantic():

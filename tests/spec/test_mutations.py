@@ -12,7 +12,7 @@ from contract import EXAMPLES
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from motionedit.errors import MotionEditErrors, SpecError
+from motionedit.errors import MotionEditError, SpecError
 from motionedit.spec import schema_of
 from motionedit.spec.load import load_spec
 from motionedit.spec.yaml_tree import value_from_text
@@ -76,9 +76,9 @@ def test_a_changed_example_is_valid_for_editors_too_or_refused_in_plain_words(ca
         path.write_text(yaml.safe_dump(data, sort_keys=False))
         try:
             loaded = load_spec(path, command)
-        except MotionEditErrors as errors:
-            lines = [str(error) for error in errors.exceptions]
-            refused = errors.exceptions
+        except MotionEditError as errors:
+            lines = [str(error) for error in errors.errors]
+            refused = errors.errors
         else:
             validator(command).validate(loaded.data)
             return
@@ -97,6 +97,6 @@ def test_each_key_of_an_example_without_a_value_is_refused(command, text, tmp_pa
         container[key] = None
         path = tmp_path / "spec.yaml"
         path.write_text(yaml.safe_dump(data, sort_keys=False))
-        with pytest.raises(MotionEditErrors):
+        with pytest.raises(MotionEditError):
             load_spec(path, command)
         container[key] = value

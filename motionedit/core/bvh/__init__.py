@@ -1,8 +1,9 @@
 """BVH files: reading, writing, and the adapter to `bvhio`; the only place where clips are read or written."""
 
 from motionedit.core.bvh.adapter import VerifyResult, check_with_bvhio, from_bvhio, to_bvhio
-from motionedit.core.bvh.read import BvhText, Clip, parse_clip, read_clip
+from motionedit.core.bvh.read import Clip, parse_clip, read_clip
 from motionedit.core.bvh.splice import edited_bytes, edited_pieces
+from motionedit.core.bvh.text import BvhText
 from motionedit.core.bvh.write import new_bytes, resampled_bytes, unedited_bytes
 from motionedit.core.euler import joint_angles
 

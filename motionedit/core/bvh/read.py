@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.arrays import frozen
-from motionedit.core.bvh.header import Header, read_header
-from motionedit.core.bvh.rows import Rows, read_rows, row_capacity, values_between
+from motionedit.core.bvh.header import read_header
+from motionedit.core.bvh.rows import read_rows, row_capacity
 from motionedit.core.bvh.scan import refusal
+from motionedit.core.bvh.text import BvhText
 from motionedit.core.motion import Motion, write_poses
 from motionedit.dataclass import dataclass
 from motionedit.errors import BvhError
@@ -20,15 +21,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from motionedit.core.arrays import FloatArray
-
-
-@dataclass(frozen=True, eq=False)
-class BvhText:
-    """A file's own bytes and where its header's numbers and its rows stand in them."""
-
-    data: bytes
-    header: Header
-    rows: Rows
+    from motionedit.core.bvh.header import Header
+    from motionedit.core.bvh.rows import Rows
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +36,8 @@ class Clip:
     motion : Motion
         Its F frames.
     text : BvhText
-        The file's own bytes and their layout.
+        The file's own bytes and their layout. It belongs to `motion`: `dataclasses.replace` with another motion would
+        leave the old one in it, `with_motion` does not.
     warnings : tuple of str
         What leniency accepted, one line each.
     source : Path or None
@@ -66,11 +61,48 @@ class Clip:
 
         Read from the text when first asked for: a long clip that is only edited does not hold them.
         """
-        return frozen(self.values_between(0, len(self.motion)))
+        return frozen(self.text.values_between(0, len(self.text.rows.starts)))
 
-    def values_between(self, start: int, stop: int) -> FloatArray:
-        """Return the channel values of the frames from start up to stop, shape (stop - start, C)."""
-        return values_between(self.text.data, self.text.rows, start, stop)
+    def with_motion(self, motion: Motion) -> Clip:
+        """Return the clip with another motion in its file, of any number of frames and any frame time.
+
+        What differs from the file's own numbers is written anew, to as many decimals as the file has and at least six;
+        all other bytes stay. The new clip has the motion as its file has it, and the label and source of this one. It
+        is this one where nothing differs. Rotations need not be of unit length.
+
+        Raises
+        ------
+        ClipError
+            The motion has another skeleton than the file, or arrays of other shapes; or it turns or moves a joint that
+            has no channels for it.
+        BvhError
+            A value is not finite.
+
+        Examples
+        --------
+        >>> from dataclasses import replace
+        >>> import numpy as np
+        >>> clip = motionedit.read("data/walk.bvh")
+        >>> places = clip.motion.translations + np.array([0.0, 10.0, 0.0])
+        >>> higher = clip.with_motion(replace(clip.motion, translations=places))
+        >>> float(higher.values[0, 1] - clip.values[0, 1])
+        10.0
+        """
+        text = self.text
+        if motion is text.motion and motion.is_fixed:
+            return self if motion is self.motion else replace(self, motion=motion)
+        # Imported here: who only reads needs no writer.
+        from motionedit.core.bvh.other_motion import bytes_with_motion
+
+        own = text.motion if text.motion.is_fixed else self._read_again(text.data).motion
+        data = bytes_with_motion(self, motion, own=own)
+        if data is text.data:
+            return self if motion is self.motion else replace(self, motion=own)
+        return self._read_again(data)
+
+    def _read_again(self, data: bytes) -> Clip:
+        """Return the clip of other bytes; lenient, as the input may have been."""
+        return replace(parse_clip(data, label=self.label, lenient=True), source=self.source)
 
     @cached_property
     def sha256(self) -> str:
@@ -123,7 +155,7 @@ def parse_clip(data: bytes, *, label: str, lenient: bool = False) -> Clip:
     warnings = _row_count_warnings(data, header, rows, label=label, lenient=lenient)
     frames = len(rows.starts)
     motion = Motion(skeleton, frozen(rotations[:frames]), frozen(translations[:frames]), header.frame_time)
-    return Clip(label, motion, BvhText(data, header, rows), warnings)
+    return Clip(label, motion, BvhText(data, header, rows, motion), warnings)
 
 
 def _row_count_warnings(data: bytes, header: Header, rows: Rows, *, label: str, lenient: bool) -> tuple[str, ...]:

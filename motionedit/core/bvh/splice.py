@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
-    from motionedit.core.bvh.read import Clip
+    from motionedit.core.bvh.text import Written
     from motionedit.core.euler import Piece
     from motionedit.core.motion import Motion
 
@@ -32,13 +32,13 @@ SEGMENT = 1 << 14
 _WIDE_GAP = 16
 
 
-def edited_bytes(clip: Clip, motion: Motion, *, touched: BoolArray, moved: BoolArray | None = None) -> bytes:
+def edited_bytes(clip: Written, motion: Motion, *, touched: BoolArray, moved: BoolArray | None = None) -> bytes:
     """Return the clip's bytes with the values that an edit touched replaced, and all other bytes kept.
 
     Parameters
     ----------
     motion : Motion
-        The edited motion, as many frames as the clip.
+        The edited motion, as many frames as the clip; its frame time is written where it is another one.
     touched : shape (F, J)
         Where a joint's rotation channels are rewritten.
     moved : shape (F, P), optional
@@ -59,14 +59,14 @@ def edited_bytes(clip: Clip, motion: Motion, *, touched: BoolArray, moved: BoolA
 
 
 def edited_pieces(
-    clip: Clip, motion: Motion, *, touched: BoolArray, moved: BoolArray | None = None
+    clip: Written, motion: Motion, *, touched: BoolArray, moved: BoolArray | None = None
 ) -> Iterator[bytes | memoryview]:
     """Yield what `edited_bytes` returns, piece by piece: a long file need not be held to be written."""
     plan = _plan(clip, motion, touched, moved)
-    if len(plan.columns) == 0:
+    if len(plan.columns) == 0 and motion.frame_time == clip.text.header.frame_time:
         yield clip.text.data
         return
-    yield head_bytes(clip, frames=len(motion))
+    yield head_bytes(clip, frames=len(motion), frame_time=motion.frame_time)
     at = clip.text.header.rows_start
     for start in range(0, len(motion), SEGMENT):
         edit = _edit(plan, motion, touched, moved, slice(start, min(start + SEGMENT, len(motion))))
@@ -92,10 +92,10 @@ class _Edit:
     cells: BoolArray
 
 
-def _plan(clip: Clip, motion: Motion, touched: BoolArray, moved: BoolArray | None) -> _Plan:
-    skeleton = clip.motion.skeleton
+def _plan(clip: Written, motion: Motion, touched: BoolArray, moved: BoolArray | None) -> _Plan:
+    skeleton = clip.text.motion.skeleton
     # Joints mostly ask for the same few rows.
-    given = cache(clip.values_between)
+    given = cache(clip.text.values_between)
     pieces: dict[int, list[Piece]] = {}
     columns: list[int] = []
     for joint in np.flatnonzero(touched.any(axis=0)).tolist():
@@ -130,7 +130,7 @@ def _edit(plan: _Plan, motion: Motion, touched: BoolArray, moved: BoolArray | No
     return _Edit(plan.columns, values, cells)
 
 
-def _spliced_rows(clip: Clip, edit: _Edit, first: int, at: int) -> Generator[bytes | memoryview, None, int]:
+def _spliced_rows(clip: Written, edit: _Edit, first: int, at: int) -> Generator[bytes | memoryview, None, int]:
     """Yield a segment of rows from frame `first` on, with the new text of the touched values in place of the old.
 
     What stands from byte `at` up to the last touched row is yielded; the byte after it is returned.
@@ -153,20 +153,20 @@ def _spliced_rows(clip: Clip, edit: _Edit, first: int, at: int) -> Generator[byt
     return at
 
 
-def _is_plain(clip: Clip, span: tuple[int, int], columns: IntArray, count: int) -> bool:
+def _is_plain(clip: Written, span: tuple[int, int], columns: IntArray, count: int) -> bool:
     """Return whether so many whole rows are written, and nothing stands between values but single blanks and LF.
 
     Such rows need no splicing: all their bytes are new. N values have N - 1 gaps, so as many blanks leave no room for
     a second one anywhere.
     """
-    width = clip.motion.skeleton.channel_count
+    width = clip.text.motion.skeleton.channel_count
     text = clip.text.data[span[0] : span[1]]
     if len(columns) < width or any(blank in text for blank in (b"\t", b"\r", b"\v", b"\f")):
         return False
     return text.count(b" ") + text.count(b"\n") == count * width - 1
 
 
-def _tail(clip: Clip, at: int) -> bytes | memoryview:
+def _tail(clip: Written, at: int) -> bytes | memoryview:
     cut_off = clip.text.rows.cut_off
     if cut_off is None:
         return memoryview(clip.text.data)[at:]
@@ -175,7 +175,7 @@ def _tail(clip: Clip, at: int) -> bytes | memoryview:
 
 
 def _spliced(
-    clip: Clip,
+    clip: Written,
     span: tuple[int, int],
     columns: IntArray,
     values: FloatArray,
@@ -186,7 +186,7 @@ def _spliced(
     """Return the text of the rows in a span of bytes, with the touched cells of some columns replaced."""
     data, (begin, end) = clip.text.data, span
     starts, stops = words_between(data, begin, end)
-    width = clip.motion.skeleton.channel_count
+    width = clip.text.motion.skeleton.channel_count
     word = (np.arange(0, len(starts), width)[:, None] + columns).reshape(-1)
     if not cells.all():
         word, values = word[cells], values[cells]

@@ -14,7 +14,7 @@ from motionedit.errors import BvhError
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray
-    from motionedit.core.bvh.read import Clip
+    from motionedit.core.bvh.text import Written
     from motionedit.core.motion import Motion
     from motionedit.core.skeleton import Skeleton
 
@@ -23,18 +23,18 @@ FEWEST_DECIMALS = 6
 MOST_DECIMALS = 17
 
 
-def unedited_bytes(clip: Clip) -> bytes:
+def unedited_bytes(clip: Written) -> bytes:
     """Return the file's own bytes."""
     return clip.text.data
 
 
-def resampled_bytes(clip: Clip, motion: Motion) -> bytes:
+def resampled_bytes(clip: Written, motion: Motion) -> bytes:
     """Return a file of the clip's own header with the rows of another motion of its skeleton.
 
     `Frames:` and `Frame Time:` are put right; rows use the file's line ending and one blank between values. `BvhError`
     where a value is not finite.
     """
-    values = joint_angles(motion, start=clip.values_between(0, 1)[0])
+    values = joint_angles(motion, start=clip.text.values_between(0, 1)[0])
     check_finite(clip, values)
     data, header = clip.text.data, clip.text.header
     head = head_bytes(clip, frames=len(values), frame_time=motion.frame_time)
@@ -63,12 +63,12 @@ def plain_number(value: float) -> str:
     return np.format_float_positional(value, trim="0")
 
 
-def decimals_of_edits(clip: Clip) -> int:
+def decimals_of_edits(clip: Written) -> int:
     """Return how many decimals new values get: the most among the clip's own, within limits."""
     return min(max(clip.text.rows.decimals, FEWEST_DECIMALS), MOST_DECIMALS)
 
 
-def check_finite(clip: Clip, values: FloatArray, cells: BoolArray | None = None, *, first: int = 0) -> None:
+def check_finite(clip: Written, values: FloatArray, cells: BoolArray | None = None, *, first: int = 0) -> None:
     """Raise `BvhError` where a value of the chosen cells, or of all, is not finite; row 0 is frame `first`."""
     bad = ~np.isfinite(values)
     if cells is not None:
@@ -79,7 +79,7 @@ def check_finite(clip: Clip, values: FloatArray, cells: BoolArray | None = None,
         raise BvhError(message, file=clip.label)
 
 
-def head_bytes(clip: Clip, *, frames: int, frame_time: float | None = None) -> bytes:
+def head_bytes(clip: Written, *, frames: int, frame_time: float | None = None) -> bytes:
     """Return the bytes above the rows, with the frame count, and the frame time if given, put right."""
     data, header = clip.text.data, clip.text.header
     start, stop = header.frames_span

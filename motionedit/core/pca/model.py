@@ -59,6 +59,12 @@ class MotionModel:
     clips: tuple[DatabaseClip, ...]
     rules: dict[str, Any]
 
+    def __repr__(self) -> str:
+        # Not its arrays, which would fill a screen.
+        count, timeline = len(self.components.explained_variance), self.timeline
+        size = f"{timeline.frames} frames, {timeline.frame_rate:.4g} Hz"
+        return f"<MotionModel: {count} components of {len(self.clips)} clips, {size}>"
+
     @property
     def mean_rows(self) -> FloatArray:
         """The mean motion, shape (F, n)."""

@@ -6,7 +6,7 @@ from dataclasses import field
 from typing import TYPE_CHECKING, TypeVar
 
 from motionedit.dataclass import dataclass
-from motionedit.errors import MotionEditError, MotionEditErrors
+from motionedit.errors import MotionEditError, together
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -39,7 +39,8 @@ class Faults:
 
         Raises
         ------
-        MotionEditErrors
+        MotionEditError
+            The one there is, or all of them.
         """
         if self.errors:
-            raise MotionEditErrors(what, self.errors)
+            raise together(what, self.errors)

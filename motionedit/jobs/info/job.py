@@ -12,7 +12,7 @@ from motionedit.core.body.hinges import find_hinges
 from motionedit.core.body.quality import find_defects, foot_slide_max, jerk_rms
 from motionedit.core.units import STANDARD_LEG
 from motionedit.dataclass import dataclass
-from motionedit.errors import ClipError, MotionEditError, MotionEditErrors
+from motionedit.errors import ClipError, MotionEditError, together
 from motionedit.jobs.batch.one_clip import read_task
 from motionedit.jobs.batch.plan import find_clips
 from motionedit.jobs.clip.facts import ClipFacts, facts_of
@@ -77,7 +77,7 @@ def run(
         records.append(record)
         texts.append(describe(record))
     if lacking and all(record["status"] == "failed" for record in records):
-        raise MotionEditErrors("no clip has what is asked for", failures)
+        raise together("no clip has what is asked for", failures)
     return InfoReport("\n".join(texts), records, failures)
 
 

@@ -40,6 +40,11 @@ class Normalization:
     rules: dict[str, Any]
     clips: tuple[NormalizedClip, ...]
 
+    def __repr__(self) -> str:
+        # Not all its clips, which would fill a screen.
+        timeline = self.timeline
+        return f"<Normalization: {len(self.clips)} clips, {timeline.frames} frames, {timeline.frame_rate:.4g} Hz>"
+
 
 def normalization_bytes(normalization: Normalization) -> bytes:
     """Return the file; the same bytes for the same normalization."""

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
-from motionedit.errors import MotionEditError, MotionEditErrors, UsageError
+from motionedit.errors import MotionEditError, UsageError, together
 from motionedit.jobs.batch.files import atomic_write
 from motionedit.jobs.batch.one_clip import read_task
 from motionedit.jobs.batch.plan import find_clips, refuse_overwriting
@@ -75,13 +75,18 @@ def edit_page(clip: Clip, task: ClipTask, record: Mapping[str, Any], spec: Mappi
 
     The same bytes as those that `run` would write of the two files and the report.
     """
+    output = str(task.output)
+    written = read_task(replace(task, source=task.output, label=output), lenient=True)
+    return page_of_edit(replace(clip, label=task.label), written, record, spec)
+
+
+def page_of_edit(before: Clip, after: Clip, record: Mapping[str, Any], spec: Mapping[str, Any]) -> bytes:
+    """Return the page of one edit: the clip that it was made from, the edited one, and the report's `record` of it."""
     from motionedit.jobs.preview.marks import edit_of
     from motionedit.report.preview.page import page
     from motionedit.report.record import plain
 
-    output = str(task.output)
-    written = replace(task, source=task.output, label=output)
-    figures = _figures([clip, read_task(written, lenient=True)], short_labels([task.label, output]))
+    figures = _figures([before, after], short_labels([before.label, after.label]))
     edit = edit_of(plain(record), figures, edited=1, before=0, masses=spec.get("masses") or {}, report="--preview")
     bodies = [figure.body for figure in figures]
     return page(bodies, title=_title([body.label for body in bodies]), edits=[edit])
@@ -125,10 +130,8 @@ def _clips(tasks: Sequence[ClipTask], *, lenient: bool) -> list[Clip]:
             clips.append(read_task(task, lenient=lenient))
         except MotionEditError as error:
             errors.append(error)
-    if len(errors) == 1:
-        raise errors[0]
     if errors:
-        raise MotionEditErrors("clips that cannot be shown", errors)
+        raise together("clips that cannot be shown", errors)
     return clips
 
 

@@ -1,0 +1,40 @@
+"""The text of a BVH file: its own bytes, where its numbers stand in them, and the motion that they are."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol
+
+from motionedit.core.bvh.rows import values_between
+from motionedit.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from motionedit.core.arrays import FloatArray
+    from motionedit.core.bvh.header import Header
+    from motionedit.core.bvh.rows import Rows
+    from motionedit.core.motion import Motion
+
+
+@dataclass(frozen=True, eq=False)
+class BvhText:
+    """A file's own bytes, where its header's numbers and its rows stand in them, and the motion they were read as."""
+
+    data: bytes
+    header: Header
+    rows: Rows
+    motion: Motion
+
+    def values_between(self, start: int, stop: int) -> FloatArray:
+        """Return the channel values of the frames from start up to stop, shape (stop - start, C)."""
+        return values_between(self.data, self.rows, start, stop)
+
+
+class Written(Protocol):
+    """What the writers need of a clip: its name in messages, and its text."""
+
+    @property
+    def label(self) -> str:
+        """The name that messages give it."""
+
+    @property
+    def text(self) -> BvhText:
+        """The file's own bytes and their layout."""
