@@ -205,7 +205,7 @@ static PyObject *forward_frames(PyObject *self, PyObject *arguments)
                      has_size(b + MOVED, 3 * translated * frames, number, "translations") &&
                      has_size(b + POSITIONS, 3 * poses, number, "positions") &&
                      has_size(b + WORLD, 4 * poses, number, "world rotations") &&
-                     is_tree(b[PARENTS].buf, b[PLACES].buf, joints, translated);
+                     (frames == 0 || is_tree(b[PARENTS].buf, b[PLACES].buf, joints, translated));
     if (fits) {
         Py_BEGIN_ALLOW_THREADS world_poses(b[PARENTS].buf, b[PLACES].buf, b[OFFSETS].buf, frames, joints, translated,
             b[LOCAL].buf, b[MOVED].buf, b[POSITIONS].buf, b[WORLD].buf);
