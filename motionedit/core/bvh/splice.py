@@ -157,13 +157,14 @@ def _is_plain(clip: Written, span: tuple[int, int], columns: IntArray, count: in
     """Return whether so many whole rows are written, and nothing stands between values but single blanks and LF.
 
     Such rows need no splicing: all their bytes are new. N values have N - 1 gaps, so as many blanks leave no room for
-    a second one anywhere.
+    a second one anywhere. (All blanks are counted at once: where each value has one, numpy is quicker than `count`.)
     """
     width = clip.text.motion.skeleton.channel_count
     text = clip.text.data[span[0] : span[1]]
     if len(columns) < width or any(blank in text for blank in (b"\t", b"\r", b"\v", b"\f")):
         return False
-    return text.count(b" ") + text.count(b"\n") == count * width - 1
+    blanks = np.count_nonzero(np.frombuffer(text, np.uint8) <= ord(" "))
+    return bool(blanks == count * width - 1)
 
 
 def _tail(clip: Written, at: int) -> bytes | memoryview:
