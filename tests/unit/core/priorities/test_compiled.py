@@ -35,7 +35,7 @@ pytestmark = pytest.mark.skipif(solver_name() == "numpy", reason="no compiled so
 FRAMES = 5
 # What the two may differ by (rad, m) where everything can be met, and where something cannot.
 FEASIBLE, INFEASIBLE = 1e-9, 1e-8
-NAMES = ("position", "orientation", "pose", "com", "aim", "posture")
+NAMES = ("position", "orientation", "pose", "com", "aim")
 
 
 def by_numpy(monkeypatch, function):
@@ -100,9 +100,8 @@ def constraint_of(rng, skeleton, number, reach):
         "effector": Effector(joint, offset),
         "measure": Measure(counted=axes, base=base if base != joint else None),
         "recruit": rules[int(rng.integers(2))] if kind in {"position", "orientation"} else rules[0],
-        "points": () if kind == "posture" else (point,),
+        "points": (point,),
         "axis": axis / np.linalg.norm(axis),
-        "joints": (joint,) if kind == "posture" else (),
     }
     has = {each.name for each in fields(KINDS[kind])}
     own = {key: value for key, value in whole.items() if key in has}
