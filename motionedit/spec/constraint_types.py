@@ -118,6 +118,22 @@ class AimConstraint(Recruiting, Placed, EffectorItem, ConstraintItem):
                 yield Fault("needs a target: JOINT; at a position, use hold", ("points", i, "during"))
 
 
+class PostureConstraint(ConstraintItem):
+    """Joints keep the local rotations they have in the input."""
+
+    has_position = False
+    has_angle = True
+    only_warns = True
+
+    type: Literal["posture"] = Field(description="The type: posture.")
+    joints: Annotated[tuple[str, ...], kinds.JOINTS] = Field(description="The joints that keep their rotations.")
+
+    @property
+    def default_name(self) -> str:
+        """The name of one that gives none."""
+        return self.type
+
+
 def _with_known_type(value: object) -> object:
     """Return the value itself where it is a mapping whose type is known; pydantic's union needs no words then."""
     if not isinstance(value, dict):

@@ -15,6 +15,7 @@ from motionedit.core.priorities.kinds.com import CenterOfMassTask
 from motionedit.core.priorities.kinds.orientation import OrientationTask
 from motionedit.core.priorities.kinds.pose import PoseTask
 from motionedit.core.priorities.kinds.position import PositionTask
+from motionedit.core.priorities.kinds.posture import PostureTask
 from motionedit.core.priorities.points import Columns, Point, Recruited
 
 STEP = 1e-6
@@ -126,6 +127,11 @@ def test_aim_at_a_point_that_goes_with_another_joint(motion):
     way = poses.positions[:, HEAD] + 1.7 * rot.rotate(poses.rotations[:, HEAD], axis) - poses.positions[:, HAND]
     seen = rot.rotate(rot.conjugate(poses.rotations[:, HAND]), way)
     check(AimTask(point(HEAD), axis, seen, point(HAND)), motion, atol=1e-5)
+
+
+def test_posture_where_it_is_met(motion):
+    places = np.array([HEAD, SPINE])
+    check(PostureTask(COLUMNS, places, motion.rotations[:, places]), motion)
 
 
 def test_joints_that_are_not_recruited_have_no_part(motion):

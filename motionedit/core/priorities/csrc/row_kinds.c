@@ -90,6 +90,19 @@ static void evaluate_orientation(const Batch *batch, const Task *task, Pull *pul
         negated(pull->part[0].torque, pull->part[1].torque);
 }
 
+/* One joint's local rotation: e = log(q_target q^-1) as a world-axis increment, the identity in its own column. */
+static void evaluate_posture(const Batch *batch, const Task *task, Pull *pull, const V *target, V *e)
+{
+    const double scale = task->weight * batch->problem->constants.metres_per_radian;
+    V turn[3];
+    turn_to(target, batch->local + 4 * task->node, turn);
+    turned(parent_rotation(batch, task->node), turn, turn);
+    for (int r = 0; r < 3; r++) {
+        e[r] = scale * turn[r];
+        pull->part[0].torque[r][r] = all(scale);
+    }
+}
+
 /* Where an aim looks straight ahead or behind, any axis square to d will do: the one most square of the world's. */
 static void any_side(const V *d, int lane, V *side)
 {
@@ -159,6 +172,7 @@ static const struct {
     {{"orientation", .torque = 1, .width = 4}, evaluate_orientation},
     {{"center of mass", .force = 1, .weighs = 1, .measured = 1, .width = 3}, evaluate_center_of_mass},
     {{"aim", .force = 1, .torque = 1, .width = 3}, evaluate_aim},
+    {{"posture", .torque = 1, .width = 4}, evaluate_posture},
 };
 
 const RowKind *row_kind(int64_t kind)

@@ -6,8 +6,9 @@ from motionedit.core.priorities.kinds.constraint import Constraint
 from motionedit.core.priorities.kinds.orientation import Orientation
 from motionedit.core.priorities.kinds.pose import Pose
 from motionedit.core.priorities.kinds.position import Position
+from motionedit.core.priorities.kinds.posture import Posture
 
 # By their names in a spec.
 KINDS: dict[str, type[Constraint]] = {
-    kind.type: kind for kind in (Position, Orientation, Pose, CenterOfMass, Aim)
+    kind.type: kind for kind in (Position, Orientation, Pose, CenterOfMass, Aim, Posture)
 }

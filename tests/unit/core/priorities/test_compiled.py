@@ -35,7 +35,7 @@ pytestmark = pytest.mark.skipif(solver_name() == "numpy", reason="no compiled so
 FRAMES = 5
 # What the two may differ by (rad, m) where everything can be met, and where something cannot.
 FEASIBLE, INFEASIBLE = 1e-9, 1e-8
-NAMES = ("position", "orientation", "pose", "com", "aim")
+NAMES = ("position", "orientation", "pose", "com", "aim", "posture")
 
 
 def by_numpy(monkeypatch, function):
@@ -100,8 +100,9 @@ def constraint_of(rng, skeleton, number, reach):
         "effector": Effector(joint, offset),
         "measure": Measure(counted=axes, base=base if base != joint else None),
         "recruit": rules[int(rng.integers(2))] if kind in {"position", "orientation"} else rules[0],
-        "points": (point,),
+        "points": () if kind == "posture" else (point,),
         "axis": axis / np.linalg.norm(axis),
+        "joints": (joint,) if kind == "posture" else (),
     }
     has = {each.name for each in fields(KINDS[kind])}
     own = {key: value for key, value in whole.items() if key in has}

@@ -11,7 +11,7 @@ from motionedit.core.body.center_of_mass import find_masses
 from motionedit.core.body.hinges import Hinge
 from motionedit.core.kinematics import Effector
 from motionedit.core.priorities.edit import RecruitingError, edit_by_priorities
-from motionedit.core.priorities.kinds import Aim, CenterOfMass, Orientation, Pose, Position
+from motionedit.core.priorities.kinds import Aim, CenterOfMass, Orientation, Pose, Position, Posture
 from motionedit.core.priorities.recruiting import RecruitRule
 from motionedit.core.priorities.settings import Body, LayeredSettings, PaperFilter, Passes
 from motionedit.core.priorities.trajectories import ControlPoint
@@ -232,7 +232,7 @@ def test_without_the_recruiting_rule_a_lower_layer_drags_a_higher_one(motion, bo
         run(motion, [ankle, hand], body, LayeredSettings(recruiting_rule="error"))
 
 
-def test_orientation_pose_and_aim_are_met(motion, body):
+def test_orientation_pose_aim_and_posture_are_met(motion, body):
     turned = rot.exp(np.array([0.0, 0.4, 0.0]))
     whole = ControlPoint("hold", 0, FRAMES - 1, None, None, turned, 0.0, 0.0, 0.0)
     still = ControlPoint("hold", 0, FRAMES - 1, None, None, None, 0.0, 0.0, 0.0)
@@ -242,11 +242,12 @@ def test_orientation_pose_and_aim_are_met(motion, body):
         Pose(name="foot", priority=9, effector=Effector(joint("LeftFoot"), zero), points=(still,)),
         Orientation(name="hand", priority=5, effector=Effector(joint("RightHand"), zero), points=(whole,)),
         Aim(name="eyes", priority=4, effector=Effector(joint("Head"), zero), points=(ahead,)),
+        Posture(name="neck", priority=1, joints=(joint("LeftArm"),)),
     ]
     edit = run(motion, constraints, body)
-    foot, hand, eyes = edit.errors
+    foot, hand, eyes, neck = edit.errors
     assert foot.positions.max() / MM < 0.01
-    for each in (foot, hand, eyes):
+    for each in (foot, hand, eyes, neck):
         assert np.degrees(each.angles.max()) < 0.01
 
 
