@@ -52,7 +52,7 @@ class RunOptions:
     dry_run : bool
         Write nothing.
     verbosity : int
-        0 as usual, below it less, above it more.
+        0 as usual, below it less, above it more; from 2 on an error that is no user's is raised as it is.
     report : Path or None
         The JSON report, a file that is to be neither a clip nor an output.
     progress : callable
