@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from arms import arms_of
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -14,7 +15,7 @@ from motionedit.core.arrays import frozen
 from motionedit.core.body.center_of_mass import Masses
 from motionedit.core.body.hinges import Hinge
 from motionedit.core.compiled import CHOICE, compiled, solver_name
-from motionedit.core.kinematics import Effector, effector_positions, forward
+from motionedit.core.kinematics import Effector, forward
 from motionedit.core.measure import Measure
 from motionedit.core.motion import Motion
 from motionedit.core.priorities import compiled_solver
@@ -22,8 +23,7 @@ from motionedit.core.priorities.continuity import smoothed_displacement
 from motionedit.core.priorities.edit import edit_by_priorities
 from motionedit.core.priorities.kinds import KINDS, Position
 from motionedit.core.priorities.kinds.position import PositionTask
-from motionedit.core.priorities.points import Columns, Point, Recruited
-from motionedit.core.priorities.problem import HingeColumns, Problem, Reference, WeightedTask
+from motionedit.core.priorities.problem import Reference
 from motionedit.core.priorities.recruiting import RecruitRule
 from motionedit.core.priorities.settings import Body, LayeredSettings, PaperFilter, Passes
 from motionedit.core.priorities.solver import prepare_problem, solve_layers
@@ -176,37 +176,6 @@ def test_neither_the_width_of_vectors_nor_the_neighbours_change_a_bit(patch, see
         same_bits(edit_by_priorities(motion, constraints, body, replace(setting, threads=FRAMES)), wide)
 
 
-def arms_of(seed, frames=8):
-    """Return a problem whose rows depend on each other in some frames alone: many points on one arm, between them one
-    on another arm, whose hinge is on its limit here and there."""
-    rng = np.random.default_rng(seed)
-    rotation = ("Zrotation", "Xrotation", "Yrotation")
-    channels = (("Xposition", "Yposition", "Zposition", *rotation), *(rotation for _ in range(6)))
-    parents = frozen(np.array([-1, 0, 1, 2, 0, 4, 5]))
-    skeleton = Skeleton(tuple("OABCXYZ"), parents, frozen(rng.normal(scale=0.3, size=(7, 3))), channels)
-    turns = rng.normal(scale=0.6, size=(1, 7, 3)) + rng.normal(scale=0.05, size=(frames, 7, 3))
-    motion = Motion(skeleton, rot.exp(turns), np.zeros((frames, 1, 3)), 0.01)
-    columns = Columns(skeleton, np.arange(1, 7), 0)
-    first, second = (Recruited(np.arange(6) // 3 == arm, root=False) for arm in (0, 1))
-
-    def point(effector, recruited, shift):
-        targets = effector_positions(forward(motion), effector) + shift
-        task = PositionTask(Point(columns, effector, recruited), targets)
-        return WeightedTask(task, float(rng.uniform(0.7, 1.3)))
-
-    shift = rng.normal(scale=0.1, size=(frames, 3))
-    tasks = [point(Effector(3, rng.normal(scale=0.1, size=3)), first, shift) for _ in range(4)]
-    tasks.insert(2, point(Effector(5, np.zeros(3)), second, rng.normal(scale=0.05, size=(frames, 3))))
-    axis = rng.normal(size=3)
-    axis /= np.linalg.norm(axis)
-    angles = rot.log(motion.rotations[:, 4]) @ axis
-    limits = np.array([[angles.min() - 0.05, angles.max() + 0.05], [-3.0, 3.0]])
-    hinges = HingeColumns(np.array([3, 4]), np.stack([axis, axis]), limits)
-    return Problem(
-        columns, moves_root=False, layers=(tuple(tasks),), hinges=hinges, attraction=1.0, max_iterations=12
-    ), motion
-
-
 def solved(problem, motion, frames, **how):
     """Return a copy of a motion, solved at some frames, and how that went."""
     own = Motion(motion.skeleton, motion.rotations.copy(), motion.translations.copy(), motion.frame_time)
@@ -286,18 +255,6 @@ def test_smoothing_is_the_same(patch, first, sigma):
     np.testing.assert_array_equal(mine.rotations[:, still], before.rotations[:, still])
 
 
-def test_buffers_of_a_wrong_size_are_an_error_and_no_crash():
-    empty = np.zeros(0)
-    with pytest.raises(ValueError, match="settings has 0 bytes"):
-        compiled().solve({"settings": empty}, 0, 0, False)
-    with pytest.raises(ValueError, match="settings is missing"):
-        compiled().solve({}, 0, 0, False)
-    with pytest.raises(ValueError, match="places has 0 bytes"):
-        compiled().forward(np.array([-1]), empty, empty, empty, empty, empty, empty, 1)
-    with pytest.raises(ValueError, match="rotations after"):
-        compiled().smooth(np.zeros(4), empty, np.ones(1), np.zeros(4), 1, 0, 0.0)
-
-
 def test_a_variable_of_the_environment_keeps_the_compiled_part_out(patch):
     assert solver_name() == "compiled"
     patch.setenv(CHOICE, "numpy")
@@ -330,69 +287,3 @@ def test_a_task_that_the_compiled_solver_does_not_know_is_solved_by_numpy(patch)
     assert difference(mine, theirs) < FEASIBLE
     np.testing.assert_array_equal(mine.iterations, theirs.iterations)
     assert mine.iterations.max() > 0
-
-
-def slips():
-    """Yield what may be wrong in the buffers of `arms_of`: a buffer, a field, the record, the value, what is said."""
-    far = 10**6
-    for field, value in (("joint", far), ("parent", far), ("parent", 3), ("translation", far), ("column", far)):
-        yield "nodes", field, 3, value, "nodes or columns"
-    yield "nodes", "translation", 0, -1, "nodes or columns"  # the root's
-    yield "nodes", "column", 1, 3, "nodes or columns"
-    for field, value in (("node", -1), ("node", far), ("base", far), ("kind", far), ("kind", -1)):
-        yield "tasks", field, 0, value, "tasks"
-    for field, value in (("rows", 0), ("rows", 4), ("axes", (7, 0, 0)), ("axes", (-3, 0, 0)), ("width", 4)):
-        yield "tasks", field, 0, value, "tasks"
-    for field, value in (("targets", far), ("targets", -1), ("layer", 1), ("layer", -1)):
-        yield "tasks", field, 0, value, "tasks"
-    yield "hinges", "column", 0, far, "hinges"
-    yield "hinges", "column", 0, 4, "hinges"  # twice
-    for field, value in (("nodes", 2**61), ("joints", -1), ("columns", 2**40), ("root", far)):
-        yield "settings", field, 0, value, "sizes"
-
-
-@pytest.mark.parametrize(("buffer", "field", "at", "value", "said"), list(slips()))
-def test_an_index_that_is_none_is_an_error_and_no_crash(buffer, field, at, value, said):
-    problem, motion = arms_of(0)
-    with pytest.raises(ValueError, match=f"{said}.* that are none"):
-        raw_solve(problem, motion, **{buffer: (field, at, value)})
-
-
-def raw_solve(problem, motion, *, frames=tuple(range(8)), in_order=False, **slip):
-    """Solve a problem by its buffers, one field of which is another."""
-    count = len(frames)
-    buffers = {name: array.copy() for name, array in prepare_problem(problem).layout.buffers.items()}
-    for buffer, (field, at, value) in slip.items():
-        buffers[buffer][field][at] = value
-    how = {
-        "iterations": np.zeros(count, int),
-        "converged": np.zeros(count, bool),
-        "ranks": np.zeros((count, len(problem.layers)), int),
-    }
-    own = {"rotations": motion.rotations.copy(), "translations": motion.translations.copy()}
-    pull = {"reference_rotations": motion.rotations, "reference_root": np.zeros(0)}
-    compiled().solve({**buffers, **how, **own, **pull, "frames": np.array(frames)}, 0, count, in_order)
-
-
-def test_frames_in_order_follow_each_other():
-    problem, motion = arms_of(0)
-    raw_solve(problem, motion, in_order=True)
-    with pytest.raises(ValueError, match="frames that are none"):
-        raw_solve(problem, motion, in_order=True, frames=range(8)[::-1])
-    with pytest.raises(ValueError, match="frames that are none"):
-        raw_solve(problem, motion, frames=range(1, 9))
-
-
-def test_layers_come_one_after_the_other():
-    problem, motion = arms_of(0)
-    (tasks,) = problem.layers
-    two = replace(problem, layers=(tasks[:2], tasks[2:]))
-    with pytest.raises(ValueError, match="tasks that are none"):
-        raw_solve(two, motion, tasks=("layer", 0, 1))
-
-
-@pytest.mark.parametrize(("parents", "places"), [((-1, 1), (0, -1)), ((-1, 0), (1, -1)), ((-2, 0), (0, -1))])
-def test_a_skeleton_that_is_no_tree_is_an_error_and_no_crash(parents, places):
-    buffers = [np.zeros(n) for n in (6, 8, 3, 6, 8)]
-    with pytest.raises(ValueError, match="has no parent before it, or no translations"):
-        compiled().forward(np.array(parents), np.array(places), *buffers, 1)

@@ -1,0 +1,43 @@
+"""A problem on two arms, for what the compiled solver does with its frames and its buffers."""
+
+import numpy as np
+
+from motionedit.core import rotations as rot
+from motionedit.core.arrays import frozen
+from motionedit.core.kinematics import Effector, effector_positions, forward
+from motionedit.core.motion import Motion
+from motionedit.core.priorities.kinds.position import PositionTask
+from motionedit.core.priorities.points import Columns, Point, Recruited
+from motionedit.core.priorities.problem import HingeColumns, Problem, WeightedTask
+from motionedit.core.skeleton import Skeleton
+
+
+def arms_of(seed, frames=8):
+    """Return a problem whose rows depend on each other in some frames alone: many points on one arm, between them one
+    on another arm, whose hinge is on its limit here and there."""
+    rng = np.random.default_rng(seed)
+    rotation = ("Zrotation", "Xrotation", "Yrotation")
+    channels = (("Xposition", "Yposition", "Zposition", *rotation), *(rotation for _ in range(6)))
+    parents = frozen(np.array([-1, 0, 1, 2, 0, 4, 5]))
+    skeleton = Skeleton(tuple("OABCXYZ"), parents, frozen(rng.normal(scale=0.3, size=(7, 3))), channels)
+    turns = rng.normal(scale=0.6, size=(1, 7, 3)) + rng.normal(scale=0.05, size=(frames, 7, 3))
+    motion = Motion(skeleton, rot.exp(turns), np.zeros((frames, 1, 3)), 0.01)
+    columns = Columns(skeleton, np.arange(1, 7), 0)
+    first, second = (Recruited(np.arange(6) // 3 == arm, root=False) for arm in (0, 1))
+
+    def point(effector, recruited, shift):
+        targets = effector_positions(forward(motion), effector) + shift
+        task = PositionTask(Point(columns, effector, recruited), targets)
+        return WeightedTask(task, float(rng.uniform(0.7, 1.3)))
+
+    shift = rng.normal(scale=0.1, size=(frames, 3))
+    tasks = [point(Effector(3, rng.normal(scale=0.1, size=3)), first, shift) for _ in range(4)]
+    tasks.insert(2, point(Effector(5, np.zeros(3)), second, rng.normal(scale=0.05, size=(frames, 3))))
+    axis = rng.normal(size=3)
+    axis /= np.linalg.norm(axis)
+    angles = rot.log(motion.rotations[:, 4]) @ axis
+    limits = np.array([[angles.min() - 0.05, angles.max() + 0.05], [-3.0, 3.0]])
+    hinges = HingeColumns(np.array([3, 4]), np.stack([axis, axis]), limits)
+    return Problem(
+        columns, moves_root=False, layers=(tuple(tasks),), hinges=hinges, attraction=1.0, max_iterations=12
+    ), motion
