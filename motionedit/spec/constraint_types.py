@@ -141,7 +141,7 @@ def _with_known_type(value: object) -> object:
     names = tuple(TYPES)
     if "type" not in value:
         raise faulty(f"is missing; it is {one_of(names)}", "type")
-    if value["type"] in LATER_TYPES:
+    if value["type"] in LATER_TYPES and value["type"] not in TYPES:
         raise faulty(f"{value['type']} is not supported yet", "type")
     try:
         word(value["type"], names)

@@ -127,10 +127,10 @@ class SpecModel(BaseModel):
         for key in data:
             if key in names:
                 continue
-            if key in LATER_KEYS:
-                yield Fault("not supported yet", (key,))
-            elif key in cls.foreign_keys:
+            if key in cls.foreign_keys:
                 yield Fault(cls.foreign_keys[key], (key,))
+            elif key in LATER_KEYS:
+                yield Fault("not supported yet", (key,))
             else:
                 yield Fault(unknown_key(key, names), (key,))
 

@@ -10,7 +10,8 @@ The damping lambda is in the step, never in the projector, so a layer cannot dis
 what it does to second order is annealed away: in the last iterations the steps of lower layers shrink to nothing.
 
 Two solvers do this: `numpy_solver`, the readable reference, with all frames at once, and the compiled one of `csrc`, a
-few frames side by side. They agree to rounding. A task that the compiled one does not know is solved by numpy.
+few frames side by side. They agree to rounding. Where a task is one that the compiled one does not know, numpy solves
+the whole problem.
 """
 
 from __future__ import annotations

@@ -74,7 +74,10 @@ class EffectorConstraint(Constraint):
             # What moves both alike moves neither against the other.
             both = moved_by(skeleton, joint, itself=False) & moved_by(skeleton, self.base, itself=False)
             moved = (moved | moved_by(skeleton, self.base, itself=self.base_turns_it)) & ~both
-        return Recruits(frozenset(map(int, np.flatnonzero(moved))), self.shifts and self.base is None)
+        ends = [end for end in (joint, self.base) if end is not None]
+        # The root's translation moves it where it moves one end alone.
+        shifted = [movable.travel in skeleton.chain(end) for end in ends].count(True) == 1
+        return Recruits(frozenset(map(int, np.flatnonzero(moved))), self.shifts and shifted)
 
     def looked_at(self) -> frozenset[int]:
         """Return the effector's joint and its base."""

@@ -1,8 +1,13 @@
 """Which joints a constraint may move, and the rule that keeps layers strict ([PRIO] 4.1)."""
 
+import numpy as np
 import pytest
 from human import BONES, above, skeleton_of
 
+from motionedit.core.kinematics import Effector
+from motionedit.core.measure import Measure
+from motionedit.core.priorities.kinds import Position
+from motionedit.core.priorities.kinds.constraint import Movable
 from motionedit.core.priorities.recruiting import (
     Breach,
     Reach,
@@ -50,6 +55,24 @@ def test_a_static_root_above_the_travel_is_never_recruited():
     skeleton = skeleton_of(above(BONES, "World"))
     found = recruit_chain(skeleton, RecruitRule(), start=skeleton.names.index("Spine"), travel=1)
     assert named(found, skeleton.names) == {"Spine", "Hips"}
+
+
+@pytest.mark.parametrize(
+    ("joint", "base", "root"),
+    [
+        ("RightHand", None, True),
+        ("RightHand", "Spine", False),
+        ("RightHand", "World", True),
+        ("World", "RightHand", True),
+        ("World", None, False),
+    ],
+)
+def test_the_roots_translation_moves_what_it_does_not_move_at_both_ends(joint, base, root):
+    skeleton = skeleton_of(above(BONES, "World"))
+    index = skeleton.names.index
+    seen_from = Measure(base=None if base is None else index(base))
+    constraint = Position(name="p", effector=Effector(index(joint), np.zeros(3)), measure=seen_from)
+    assert constraint.moved_by(Movable(skeleton, index("Hips"), frozenset())).root == root
 
 
 def test_what_moves_a_higher_task_must_be_recruited_by_it():
