@@ -100,6 +100,6 @@ def edited(
     clip = before
     if content is not before.text.data:
         # Lenient, as the input may have been: an edit that changes nothing keeps its bytes.
-        clip = replace(parse_clip(content, label=task.label, lenient=True), source=task.source)
+        clip = parse_clip(content, label=task.label, lenient=True, source=task.source)
     inputs = inputs_of([task], (*loaded.files, *files))
     return Edited(clip, before, plain(result.records[0]), tuple(result.warnings), inputs, loaded.data)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Any, SupportsIndex
 
@@ -106,7 +105,7 @@ def normalize(clips: AnyClips, spec: AnySpec, *, lenient: bool = False, jobs: Su
         raise AssertionError("a run without failures has a normalization")
     return Normalized(
         clips=tuple(
-            replace(parse_clip(content, label=task.relative), source=task.source)
+            parse_clip(content, label=task.relative, source=task.source)
             for task, content in zip(tasks, contents, strict=True)
         ),
         normalization=done.normalization,

@@ -95,9 +95,13 @@ class Shown:
         return outside(self.com[frame], self.support(frame))
 
 
-def stand(stage: Stage, clip: Shown, frame: int, color: str, *, anchor: FloatArray, at: float) -> None:
-    """Draw a pose with its support on the ground and its center of mass plumbed to it."""
+def stand_over(
+    source: Shown, stage: Stage, clip: Shown, frame: int, color: str, *, anchor: FloatArray, at: float
+) -> None:
+    """Draw a pose with its support on the ground and its center of mass plumbed to it, over the source's in grey."""
     size = clip.size
+    if clip is not source:
+        stage.pose(source.body, frame, GREY, anchor=anchor, at=at, alpha=0.3)
     stage.floor(anchor, at, half=(0.9 * size, 0.9 * size), step=0.3 * size)
     stage.area(clip.support(frame), GREY, anchor=anchor, at=at)
     stage.pose(clip.body, frame, color, anchor=anchor, at=at)

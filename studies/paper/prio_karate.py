@@ -9,7 +9,7 @@ import numpy as np
 from studies.demonstrations import config, karate
 from studies.paper.comparison import SECONDS, timed
 from studies.paper.drawing import BLUE, GREY, ORANGE, PURPLE, Camera, Stage, new_figure
-from studies.paper.prio_clips import Shown, stand
+from studies.paper.prio_clips import Shown, stand_over
 from studies.paper.study import ROOT, Findings, Table
 
 if TYPE_CHECKING:
@@ -125,9 +125,7 @@ def _picture(clips: dict[str, Shown], goal: FloatArray) -> Figure:
         anchor = source.point("LeftFoot")[frame] * np.array([1.0, 0.0, 1.0])
         for place, (name, clip) in enumerate(clips.items()):
             at = apart * place
-            if name != INPUT:
-                stage.pose(source.body, frame, GREY, anchor=anchor, at=at, alpha=0.3)
-            stand(stage, clip, frame, COLORS[name], anchor=anchor, at=at)
+            stand_over(source, stage, clip, frame, COLORS[name], anchor=anchor, at=at)
             stage.mark(goal, "+", "#c01f2e", anchor=anchor, at=at, size=10.0)
         for place, name in enumerate(clips):
             stage.text(name, apart * place)
@@ -142,8 +140,7 @@ def _heights_picture(heights: dict[float, Shown], source: Shown) -> Figure:
     anchor = source.point("LeftFoot")[AT] * np.array([1.0, 0.0, 1.0])
     for place, (rise, clip) in enumerate(heights.items()):
         at = apart * place
-        stage.pose(source.body, AT, GREY, anchor=anchor, at=at, alpha=0.3)
-        stand(stage, clip, AT, ORANGE, anchor=anchor, at=at)
+        stand_over(source, stage, clip, AT, ORANGE, anchor=anchor, at=at)
         goal = source.point("RightFoot")[AT] + np.array([0.0, rise, 0.0])
         stage.mark(goal, "+", "#c01f2e", anchor=anchor, at=at, size=9.0)
     for place, rise in enumerate(heights):

@@ -9,7 +9,7 @@ import numpy as np
 from studies.demonstrations import config, foot_plants, reach, step
 from studies.paper.comparison import SECONDS, timed
 from studies.paper.drawing import BLUE, GREY, ORANGE, Camera, Stage, new_figure
-from studies.paper.prio_clips import Shown, stand
+from studies.paper.prio_clips import Shown, stand_over
 from studies.paper.study import ROOT, Findings, Table
 
 if TYPE_CHECKING:
@@ -121,9 +121,7 @@ def _picture(clips: dict[str, Shown], frame: int, *, goal: FloatArray, camera: C
     colors = _colors(clips)
     for place, (name, clip) in enumerate(clips.items()):
         at = apart * place
-        if name != INPUT:
-            stage.pose(source.body, frame, GREY, anchor=anchor, at=at, alpha=0.3)
-        stand(stage, clip, frame, colors[name], anchor=anchor, at=at)
+        stand_over(source, stage, clip, frame, colors[name], anchor=anchor, at=at)
         stage.mark(goal, "+", "#c01f2e", anchor=anchor, at=at, size=11.0)
     for place, name in enumerate(clips):
         stage.text(name, apart * place)

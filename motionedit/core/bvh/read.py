@@ -102,7 +102,7 @@ class Clip:
 
     def _read_again(self, data: bytes) -> Clip:
         """Return the clip of other bytes; lenient, as the input may have been."""
-        return replace(parse_clip(data, label=self.label, lenient=True), source=self.source)
+        return parse_clip(data, label=self.label, lenient=True, source=self.source)
 
     @cached_property
     def sha256(self) -> str:
@@ -134,11 +134,11 @@ def read_clip(path: Path, *, label: str | None = None, lenient: bool = False) ->
         data = path.read_bytes()
     except OSError as error:
         raise BvhError(f"cannot be read: {error.strerror or error}", file=name) from error
-    return replace(parse_clip(data, label=name, lenient=lenient), source=path)
+    return parse_clip(data, label=name, lenient=lenient, source=path)
 
 
-def parse_clip(data: bytes, *, label: str, lenient: bool = False) -> Clip:
-    """Return the clip that a BVH file's bytes hold; see `read_clip`."""
+def parse_clip(data: bytes, *, label: str, lenient: bool = False, source: Path | None = None) -> Clip:
+    """Return the clip that a BVH file's bytes hold, and the file they are from, if any; see `read_clip`."""
     header = read_header(data, label=label)
     skeleton, start = header.skeleton, header.rows_start
     columns = skeleton.channel_count
@@ -155,7 +155,7 @@ def parse_clip(data: bytes, *, label: str, lenient: bool = False) -> Clip:
     warnings = _row_count_warnings(data, header, rows, label=label, lenient=lenient)
     frames = len(rows.starts)
     motion = Motion(skeleton, frozen(rotations[:frames]), frozen(translations[:frames]), header.frame_time)
-    return Clip(label, motion, BvhText(data, header, rows, motion), warnings)
+    return Clip(label, motion, BvhText(data, header, rows, motion), warnings, source)
 
 
 def _row_count_warnings(data: bytes, header: Header, rows: Rows, *, label: str, lenient: bool) -> tuple[str, ...]:

@@ -180,12 +180,16 @@ def _collect(waiting: Sequence[ClipTask], done: Sequence[Done], total: int, opti
 
 
 def _record(task: ClipTask, done: Done) -> dict[str, Any]:
-    output = None if task.output is None else str(task.output)
-    head = {"clip": task.label, "output": output}
     if done.errors:
         message = "; ".join(str(_named(error, task)) for error in done.errors)
-        return {**head, "output": None, "status": "failed", "message": message}
-    return {**head, "status": done.outcome.status, "message": None, **done.outcome.record}
+        return failed_record(task, message)
+    output = None if task.output is None else str(task.output)
+    return {"clip": task.label, "output": output, "status": done.outcome.status, "message": None, **done.outcome.record}
+
+
+def failed_record(task: ClipTask, message: str) -> dict[str, Any]:
+    """Return the entry of a clip that failed."""
+    return {"clip": task.label, "output": None, "status": "failed", "message": message}
 
 
 def _named(error: MotionEditError, task: ClipTask) -> MotionEditError:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from motionedit.spec.load import LoadedSpec
 
 
-def explicit_events(loaded: LoadedSpec[Document], relative: str, *, others: Collection[str] = ()) -> dict[str, int]:
+def explicit_events(loaded: LoadedSpec[Document], relative: str, *, others: Collection[str] = ()) -> dict[str, float]:
     """Return the frames that the spec itself gives for a clip's events.
 
     Parameters
@@ -36,7 +36,7 @@ def explicit_events(loaded: LoadedSpec[Document], relative: str, *, others: Coll
     SpecError
         Where a stem is not unique.
     """
-    found: dict[str, int] = {}
+    found: dict[str, float] = {}
     for name, event in loaded.model.events.items():
         if event.frames is None:
             continue
@@ -47,7 +47,7 @@ def explicit_events(loaded: LoadedSpec[Document], relative: str, *, others: Coll
             if key is None:
                 continue
             value = event.frames.by_clip[key]
-        found[name] = value
+        found[name] = float(value)
     return found
 
 

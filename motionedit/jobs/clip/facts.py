@@ -11,6 +11,7 @@ from motionedit.core.body import ground
 from motionedit.core.body.anatomy import Anatomy, find_anatomy
 from motionedit.core.body.contacts import find_plants
 from motionedit.dataclass import dataclass
+from motionedit.errors import ClipError
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
@@ -80,8 +81,7 @@ class ClipFacts:
 
     def stands(self, at: float | None = None) -> bool:
         """Return whether both feet are planted at a frame, side by side rather than one before the other."""
-        poses, frame = self._at(at)
-        stance = ground.stance_frame(poses, self.anatomy, up=self.up, frame=frame)
+        stance = self._stance_frame(at)
         if stance is None:
             return False
         plants = find_plants(self.clip.motion, self.poses, self.anatomy, up=self.up, first=self.first)
@@ -93,9 +93,17 @@ class ClipFacts:
         """Return the alignment of a clip on the ground at a frame (None: the first), by the line of hips or feet."""
         from motionedit.core.timeline.alignment import align_to
 
-        poses, frame = self._at(at)
-        found = ground.stance_frame(poses, self.anatomy, up=self.up, frame=frame) if by == "feet" else None
+        found = self._stance_frame(at) if by == "feet" else None
         return align_to(found or self.heading_frame(at), heading=heading, position=position)
+
+    def refuse_one_frame(self) -> None:
+        """Raise a ClipError where one frame is left after the rest pose."""
+        if self.last - self.first < 1:
+            raise ClipError("has one frame; a motion needs two", file=self.clip.label)
+
+    def _stance_frame(self, at: float | None) -> ground.Frame | None:
+        poses, frame = self._at(at)
+        return ground.stance_frame(poses, self.anatomy, up=self.up, frame=frame)
 
     def _at(self, at: float | None) -> tuple[WorldPoses, int]:
         """Return poses and a frame of them: the clip's own, or those of one resampled frame."""

@@ -16,7 +16,6 @@ from motionedit.core.pca.model_file import read_model
 from motionedit.core.skeleton_match import match_joints
 from motionedit.core.timeline.warp import make_warp
 from motionedit.dataclass import dataclass
-from motionedit.errors import ClipError
 from motionedit.jobs.batch.one_clip import Outcome
 from motionedit.jobs.batch.plan import plan
 from motionedit.jobs.batch.run import run_batch
@@ -26,7 +25,7 @@ from motionedit.jobs.edit_pc.goals import clip_goals
 from motionedit.jobs.edit_pc.model_events import events_for_model, refuse_unknown_events
 from motionedit.jobs.edit_pc.record import edit_record, goal_line
 from motionedit.jobs.edit_pc.solver import chosen_solver, plausibility_bound
-from motionedit.jobs.preview.with_page import WithPage
+from motionedit.jobs.preview.with_page import with_page
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -76,7 +75,7 @@ def edit(
     refuse_unknown_events(loaded, model)
     cut = model.truncated(_component_count(loaded, model))
     work = _Edit(loaded, cut, label, tuple(task.relative for task in tasks))
-    return run_batch(tasks, WithPage(work, loaded.data) if options.preview and not options.dry_run else work, options)
+    return run_batch(tasks, with_page(work, loaded.data, options), options)
 
 
 def _component_count(loaded: LoadedSpec[EditPcSpec], model: MotionModel) -> int:
@@ -101,8 +100,7 @@ class _Edit:
     def __call__(self, clip: Clip, task: ClipTask) -> Outcome:
         spec, model = self.loaded.model, self.model
         facts = facts_of(clip, up=axis_name(model.up), keep_rest_pose=model.rules["rest_pose"] == "keep")
-        if facts.last - facts.first < 1:
-            raise ClipError("has one frame; a motion needs two", file=task.label)
+        facts.refuse_one_frame()
         projection, events = self._projection(facts, task)
         poses = kinematics.forward(projection.motion) if spec.timing == "normalized" else facts.poses
         goals = clip_goals(self.loaded, model, facts, events=events, poses=poses)

@@ -51,9 +51,8 @@ def events_for_model(
     SpecError
         As `event_frames`.
     """
-    explicit = explicit_events(loaded, task.relative, others=others)
+    known = explicit_events(loaded, task.relative, others=others)
     place = resolve.Place(loaded, ("events",), task.label)
-    known = {name: float(frame) for name, frame in explicit.items()}
     rules = dict(loaded.model.events)
     database = _database_events(model, facts, task)
     for name in dict(model.timeline.events):

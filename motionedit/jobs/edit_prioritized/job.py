@@ -26,7 +26,7 @@ from motionedit.jobs.edit_prioritized.body import sized_clip
 from motionedit.jobs.edit_prioritized.constraints import clip_constraints
 from motionedit.jobs.edit_prioritized.record import edit_record
 from motionedit.jobs.edit_prioritized.recruits import breach_error, breach_warnings, layer_lines
-from motionedit.jobs.preview.with_page import WithPage
+from motionedit.jobs.preview.with_page import with_page
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -65,7 +65,7 @@ def edit(loaded: LoadedSpec[EditPrioritizedSpec], tasks: Sequence[ClipTask], *, 
     """Edit the clips of tasks, and write those that have an output."""
     others = tuple(task.relative for task in tasks)
     work = EditByPriorities(loaded, others, threads_within(len(tasks), options), options.verify)
-    return run_batch(tasks, WithPage(work, loaded.data) if options.preview and not options.dry_run else work, options)
+    return run_batch(tasks, with_page(work, loaded.data, options), options)
 
 
 @dataclass(frozen=True)
@@ -117,8 +117,7 @@ class EditByPriorities:
         none: dict[str, float] = {}
 
         def frames() -> dict[str, float]:
-            explicit = explicit_events(self.loaded, task.relative, others=self.others)
-            known = {name: float(frame) for name, frame in explicit.items()}
+            known = explicit_events(self.loaded, task.relative, others=self.others)
             return event_frames(spec.events, sized.facts, place, known=known)
 
         events = faults.get(frames, otherwise=none)

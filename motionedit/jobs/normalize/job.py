@@ -12,7 +12,7 @@ from motionedit.dataclass import dataclass
 from motionedit.errors import EXIT_CLIP_FAILED, EXIT_DONE, EXIT_USAGE, MotionEditError, UsageError
 from motionedit.jobs.batch.files import atomic_write
 from motionedit.jobs.batch.plan import plan
-from motionedit.jobs.batch.run import BatchResult, map_tasks, run_each
+from motionedit.jobs.batch.run import BatchResult, failed_record, map_tasks, run_each
 from motionedit.jobs.normalize.common_timeline import common_timeline, events_out_of_order
 from motionedit.jobs.normalize.measures import ClipMeasure, MeasureClip, sound_measures
 from motionedit.jobs.normalize.normalization_file import NAME, Normalization, NormalizedClip, normalization_bytes
@@ -135,17 +135,13 @@ def _nothing(exit_code: int) -> BatchResult:
 def _failed(tasks: Sequence[ClipTask], failures: dict[str, MotionEditError]) -> BatchResult:
     """Return the result of a run that wrote nothing."""
     spec_alone = len(failures) == len(tasks) and all(e.exit_code == EXIT_USAGE for e in failures.values())
-    records = [_failure_record(task, failures[task.label]) for task in tasks if task.label in failures]
+    records = [failed_record(task, str(failures[task.label])) for task in tasks if task.label in failures]
     return replace(
         _nothing(EXIT_USAGE if spec_alone else EXIT_CLIP_FAILED),
         records=records,
         failures=list(failures.values()),
         seconds=[0.0] * len(records),
     )
-
-
-def _failure_record(task: ClipTask, error: MotionEditError) -> dict[str, Any]:
-    return {"clip": task.label, "output": None, "status": "failed", "message": str(error)}
 
 
 def _with_failures(
@@ -157,7 +153,7 @@ def _with_failures(
     }
     for task in tasks:
         if task.label in failures:
-            entries[task.label] = (_failure_record(task, failures[task.label]), 0.0)
+            entries[task.label] = (failed_record(task, str(failures[task.label])), 0.0)
     ordered = [entries[task.label] for task in tasks if task.label in entries]
     return replace(
         result,

@@ -65,8 +65,7 @@ class MeasureClip:
         spec = self.loaded.model
         clip = read_task(task, lenient=self.lenient)
         facts = facts_of(clip, up=spec.up, keep_rest_pose=spec.rest_pose == "keep")
-        if facts.last - facts.first < 1:
-            raise ClipError("has one frame; a motion needs two", file=task.label)
+        facts.refuse_one_frame()
         events = _events(self.loaded, task, facts, self.others)
         align = spec.align
         at = None if spec.align_event is None else events[spec.align_event]
@@ -98,7 +97,7 @@ def _events(
 ) -> dict[str, float]:
     known = explicit_events(loaded, task.relative, others=others)
     place = resolve.Place(loaded, ("events",), task.label)
-    frames = event_frames(loaded.model.events, facts, place, known={name: float(f) for name, f in known.items()})
+    frames = event_frames(loaded.model.events, facts, place, known=known)
     for name in loaded.model.events:
         if name not in frames:
             raise place.at(name).error(f"no frame for {task.label}; add it to frames, or give detect")

@@ -13,7 +13,12 @@ if TYPE_CHECKING:
 
     from motionedit.core.bvh import Clip
     from motionedit.jobs.batch.one_clip import Outcome, Work
-    from motionedit.jobs.batch.plan import ClipTask
+    from motionedit.jobs.batch.plan import ClipTask, RunOptions
+
+
+def with_page(work: Work, spec: Mapping[str, Any], options: RunOptions) -> Work:
+    """Return the work with a page next to each clip that is written, where the run is to have pages."""
+    return WithPage(work, spec) if options.preview and not options.dry_run else work
 
 
 @dataclass(frozen=True)
