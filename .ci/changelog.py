@@ -70,7 +70,7 @@ def base_commit(named: str) -> str:
     NothingToCompareError
         This is no repository with commits; the base is unknown here, or too far back for a shallow clone.
     """
-    head = git("rev-parse", "--verify", "--quiet", "HEAD^{commit}")
+    head = _commit("HEAD")
     if head is None:
         raise NothingToCompareError("no git, or no commit here")
     tips = [(name, tip) for name in ([named] if named else DEFAULT_BRANCHES) if (tip := _commit(name))]

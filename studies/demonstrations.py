@@ -10,9 +10,8 @@ import numpy as np
 
 from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.contacts import find_plants
-from motionedit.core.body.ground import find_up, rest_pose_frames
 from motionedit.core.bvh import read_clip
-from motionedit.core.kinematics import forward
+from motionedit.jobs.clip.facts import facts_of
 from motionedit.spec.load import load_spec
 
 if TYPE_CHECKING:
@@ -34,10 +33,10 @@ def reach(clip: Path, *, axes: Sequence[str] = ("x", "z")) -> list[dict[str, Any
 
     Feet that may not roll make the legs lift and lower the body: its height cannot stay as it was for nothing.
     """
-    skeleton = read_clip(clip).motion.skeleton
-    arms = find_anatomy(skeleton).arms
-    hand = skeleton.names[arms[0].wrist] if arms else ""
-    at, size = middle(clip), leg(clip)
+    motion = read_clip(clip).motion
+    skeleton, anatomy = motion.skeleton, find_anatomy(motion.skeleton)
+    hand = skeleton.names[anatomy.arms[0].wrist] if anatomy.arms else ""
+    at, size = len(motion) // 2, anatomy.leg_length
     shift = [0.2 * size, 0.5 * size, 0.2 * size]
     return [
         {"type": "position", "effector": hand, "priority": 4, "points": [{"at": at, "shift": shift}]},
@@ -47,27 +46,25 @@ def reach(clip: Path, *, axes: Sequence[str] = ("x", "z")) -> list[dict[str, Any
 
 def step(clip: Path) -> list[dict[str, Any]]:
     """Return a high-priority ankle over low-priority feet."""
-    skeleton = read_clip(clip).motion.skeleton
-    anatomy = find_anatomy(skeleton)
+    motion = read_clip(clip).motion
+    skeleton, anatomy = motion.skeleton, find_anatomy(motion.skeleton)
     feet = [skeleton.names[j] for _, j in anatomy.foot_points]
-    lift = [0, 0.3 * leg(clip), 0]
+    at, lift = len(motion) // 2, [0, 0.3 * anatomy.leg_length, 0]
     ankle = skeleton.names[anatomy.legs[1].ankle] if anatomy.legs else feet[0]
     return [
-        {"type": "position", "effector": ankle, "priority": 10, "points": [{"at": middle(clip), "shift": lift}]},
+        {"type": "position", "effector": ankle, "priority": 10, "points": [{"at": at, "shift": lift}]},
         {"type": "position", "effector": feet, "priority": 2, "tolerance": "off"},
     ]
 
 
 def karate(clip: Path) -> list[dict[str, Any]]:
     """Return a kick that goes higher while the support foot rides its own path."""
-    motion = read_clip(clip).motion
-    poses = forward(motion)
-    anatomy = find_anatomy(motion.skeleton, poses=poses)
-    up = find_up(motion, poses, anatomy)
+    facts = facts_of(read_clip(clip))
+    anatomy, up = facts.anatomy, facts.up
     left, right = (foot.ankle for foot in anatomy.legs or ())
-    heights = {j: poses.positions[:, j] @ up for j in (left, right)}
+    heights = {j: facts.poses.positions[:, j] @ up for j in (left, right)}
     kick, support = (left, right) if heights[left].max() > heights[right].max() else (right, left)
-    names, rise = motion.skeleton.names, [float(x) for x in 0.12 * anatomy.leg_length * up]
+    names, rise = facts.clip.motion.skeleton.names, [float(x) for x in 0.12 * anatomy.leg_length * up]
     at = int(np.argmax(heights[kick]))
     eases = {"ease_in": "0.35s", "ease_out": "0.35s"}
     return [
@@ -105,21 +102,13 @@ def foot_plants(clip: Path, *, rise: float = 0.0) -> list[dict[str, Any]]:
 
 def plants_of(clip: Path) -> list[Plant]:
     """Return the plants of a clip's feet."""
-    motion = read_clip(clip).motion
-    poses = forward(motion)
-    anatomy = find_anatomy(motion.skeleton, poses=poses)
-    up = find_up(motion, poses, anatomy)
-    return find_plants(motion, poses, anatomy, up=up, first=rest_pose_frames(motion, anatomy))
+    facts = facts_of(read_clip(clip))
+    return find_plants(facts.clip.motion, facts.poses, facts.anatomy, up=facts.up, first=facts.first)
 
 
 def level(start: int, starts: Sequence[int]) -> int:
     """Return how many steps have been taken before a plant."""
     return sum(b > a for a, b in pairwise(starts) if b <= start)
-
-
-def middle(clip: Path) -> int:
-    """Return the clip's middle frame."""
-    return len(read_clip(clip).motion) // 2
 
 
 def leg(clip: Path) -> float:

@@ -17,29 +17,22 @@ from report_schema.forms import (
     count,
     flag,
     list_of,
+    measures,
     number,
     number_or_null,
     numbers_or_null,
     obj,
     or_null,
     part,
+    point,
     text,
     word,
 )
 
 
-def _measures(about: str) -> Schema:
-    return obj(
-        about,
-        {
-            "foot_slide_max": number_or_null("the fastest horizontal speed of a planted ankle or toe, per second"),
-            "jerk_rms": number_or_null("root mean square third difference of all joints over time, per second cubed"),
-        },
-    )
-
-
 def _metrics(more: Schema) -> Schema:
-    sides = {side: _measures(f"{side} the edit; null where it has another timing") for side in ("before", "after")}
+    about = "{} the edit; null where it has another timing"
+    sides = {side: measures(about.format(side), number_or_null) for side in ("before", "after")}
     drift = {"foot_drift_max": number_or_null("how far a planted point of the input moved")}
     return obj("side effects of the edit", {**sides, **drift, **more})
 
@@ -151,7 +144,7 @@ EDIT_PARTS: Schema = {
     "goal_status": word("met, missed, or out of reach", "ok", "out_of_tolerance", "unreachable"),
     "effector": obj(
         "A point fixed in a joint's frame.",
-        {"joint": text("the joint's name"), "offset": {**POINT, "description": "the point in the joint's frame"}},
+        {"joint": text("the joint's name"), "offset": point("the point in the joint's frame")},
     ),
     "span": obj(
         "A point of a constraint.",

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 Schema = dict[str, Any]
 
@@ -27,6 +30,11 @@ def obj(about: str, keys: Schema, optional: tuple[str, ...] = ()) -> Schema:
 def number(about: str) -> Schema:
     """Return a number."""
     return {"type": "number", "description": about}
+
+
+def point(about: str) -> Schema:
+    """Return three numbers."""
+    return {**POINT, "description": about}
 
 
 def count(about: str) -> Schema:
@@ -83,6 +91,17 @@ def text_or_null(about: str) -> Schema:
 def numbers_or_null(about: str) -> Schema:
     """Return a list of numbers (null: not finite), or null."""
     return or_null({"type": "array", "items": {"type": ["number", "null"]}}, about)
+
+
+def measures(about: str, form: Callable[[str], Schema]) -> Schema:
+    """Return how a motion's feet slide and how smooth it is, each a number of this form."""
+    return obj(
+        about,
+        {
+            "foot_slide_max": form("the fastest horizontal speed of a planted ankle or toe, per second"),
+            "jerk_rms": form("root mean square third difference of all joints over time, per second cubed"),
+        },
+    )
 
 
 CLIP = {"clip": text("the clip as it was named on the command line, or found in a folder")}

@@ -17,10 +17,12 @@ from report_schema.forms import (
     flag,
     list_of,
     map_of,
+    measures,
     number,
     obj,
     or_null,
     part,
+    point,
     text,
     text_or_null,
     word,
@@ -55,7 +57,7 @@ _HINGE = obj(
     "A joint that bends about one axis.",
     {
         "joint": text("its name"),
-        "axis": {**POINT, "description": "about which it bends"},
+        "axis": point("about which it bends"),
         "limits": list_of(NUMBER, "between which angles it bends in the clip", 2),
     },
 )
@@ -78,14 +80,6 @@ _CONTACT = obj(
         "seconds": number("how long"),
     },
 )
-_MEASURES = obj(
-    "of the clip as it is",
-    {
-        "foot_slide_max": number("the fastest horizontal speed of a planted ankle or toe, per second"),
-        "jerk_rms": number("root mean square third difference of all joints over time, per second cubed"),
-    },
-)
-
 _SHOWN_CLIP = {
     **CLIP,
     "status": word("failed where it lacks a time or a joint that was asked for", "ok", "failed"),
@@ -109,7 +103,7 @@ _SHOWN_CLIP = {
     "channels": count("values in a row"),
     "hinges": list_of(_HINGE, "joints that bend about one axis"),
     "defects": list_of(_DEFECT, "what looks like a fault of the capture"),
-    "metrics": _MEASURES,
+    "metrics": measures("of the clip as it is", number),
     "warnings": list_of(STRING, "one line each"),
     "contacts": list_of(_CONTACT, "with --contacts"),
     "poses": list_of(part("pose"), "with --at and --joint"),
@@ -120,8 +114,8 @@ def _transform(about: str) -> Schema:
     return obj(
         about,
         {
-            "position": {**POINT, "description": "of the effector"},
-            "euler": {**POINT, "description": "about x, y, z"},
+            "position": point("of the effector"),
+            "euler": point("about x, y, z"),
             "order": text("of the angles, as BVH channels"),
             "quaternion": list_of(NUMBER, "w, x, y, z", 4),
         },
@@ -159,7 +153,7 @@ OTHER_PARTS: Schema = {
             "parent": text_or_null("null for a root"),
             "depth": count("joints above it"),
             "channels": list_of(STRING, "in the file's order"),
-            "offset": {**POINT, "description": "from its parent"},
+            "offset": point("from its parent"),
             "end_sites": list_of(POINT, "offsets of its end sites"),
         },
     ),

@@ -13,7 +13,6 @@ from studies.paper.prio_clips import Shown, stand_over
 from studies.paper.study import ROOT, Findings, Table
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
     from pathlib import Path
 
     from matplotlib.figure import Figure
@@ -118,19 +117,15 @@ def _picture(clips: dict[str, Shown], frame: int, *, goal: FloatArray, camera: C
     source = clips[INPUT]
     anchor = source.barycenter[frame] * np.array([1.0, 0.0, 1.0])
     apart = 2.3 * source.size
-    colors = _colors(clips)
-    for place, (name, clip) in enumerate(clips.items()):
+    for place, clip in enumerate(clips.values()):
         at = apart * place
-        stand_over(source, stage, clip, frame, colors[name], anchor=anchor, at=at)
+        color = GREY if clip is source else (ORANGE, BLUE)[place]
+        stand_over(source, stage, clip, frame, color, anchor=anchor, at=at)
         stage.mark(goal, "+", "#c01f2e", anchor=anchor, at=at, size=11.0)
     for place, name in enumerate(clips):
         stage.text(name, apart * place)
     stage.close(margin=0.08 * source.size)
     return figure
-
-
-def _colors(clips: Sequence[str] | dict[str, Shown]) -> dict[str, str]:
-    return {name: GREY if name == INPUT else (ORANGE, BLUE)[k] for k, name in enumerate(clips)}
 
 
 def _real(lab: Study) -> list[Table]:

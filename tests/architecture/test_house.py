@@ -6,6 +6,7 @@ from dataclasses import fields
 from pathlib import Path
 
 import pytest
+from import_graph import arrows, circles, sources_of
 
 import motionedit
 from motionedit.core.priorities.kinds import KINDS
@@ -23,53 +24,18 @@ def place_of(path):
     return path.relative_to(PACKAGE).as_posix()
 
 
-def module_of(path):
-    parts = path.relative_to(ROOT).with_suffix("").parts
-    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
-
-
-MODULES = {module_of(path): path for path in FILES}
-
-
-def imported_modules(tree):
-    """Yield the modules of the package that a file imports, for types alone as well."""
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names if alias.name in MODULES)
-        elif isinstance(node, ast.ImportFrom) and node.module in MODULES:
-            for alias in node.names:
-                inner = f"{node.module}.{alias.name}"
-                yield inner if inner in MODULES else node.module
-
-
-def arrows(sources):
-    """Return which modules each module imports; sources are texts by modules."""
-    return {name: set(imported_modules(ast.parse(text))) - {name} for name, text in sources.items()}
-
-
-def circles(graph):
-    """Return the modules that are left when again and again those are taken away that import none of the others."""
-    left = {name: set(others) for name, others in graph.items()}
-    while ends := [name for name, others in left.items() if not others & left.keys()]:
-        for name in ends:
-            del left[name]
-    return sorted(left)
-
-
-def sources():
-    return {name: path.read_text(encoding="utf-8") for name, path in MODULES.items()}
+GRAPH = arrows(sources_of(FILES, ROOT))
 
 
 def test_no_modules_import_each_other_in_a_circle():
-    assert circles(arrows(sources())) == []
+    assert circles(GRAPH) == []
 
 
 def test_the_two_papers_do_not_know_each_other():
-    graph = arrows(sources())
     for one, other in (("coefficients", "priorities"), ("priorities", "coefficients"), ("priorities", "pca")):
         room, stranger = f"motionedit.core.{one}", f"motionedit.core.{other}"
-        for name in (name for name in graph if name.startswith(room)):
-            assert not [each for each in graph[name] if each.startswith(stranger)], name
+        for name in (name for name in GRAPH if name.startswith(room)):
+            assert not [each for each in GRAPH[name] if each.startswith(stranger)], name
 
 
 def test_the_compiled_part_is_reached_from_one_file():
