@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.body.anatomy import find_anatomy
+from motionedit.core.body.anatomy import anatomy_of
 from motionedit.core.kinematics import forward
 from motionedit.core.skeleton_match import match_joints
 from motionedit.dataclass import dataclass
@@ -34,8 +34,9 @@ Status = Literal["same", "different", "missing", "not_comparable"]
 # The default position tolerance, in heights of the skeleton: below any noise of a capture, above that of text.
 POSITION_TOLERANCE = 1e-5
 ANGLE_TOLERANCE = 0.01
-# Frame times are written with few digits: 0.00833 and 1/120 are one rate, 29.97 and 30 Hz are two.
+# Frame times are written with few digits: 0.00833 and 1/120 are one rate, 0.0333 and 1/30 too; 29.97 and 30 Hz are two.
 _RATE_TOLERANCE = 5e-4
+_ROUNDED_RATE_TOLERANCE = 2e-3  # where one is the other, rounded to fewer decimals
 
 
 @dataclass(frozen=True)
@@ -154,11 +155,11 @@ def compare(
     ClipError
         Another skeleton, frame count or frame rate: what differs, with B's name.
     """
-    height = find_anatomy(a.motion.skeleton).height
+    height = anatomy_of(a.motion).height
     joint_map = match_joints(a.motion.skeleton, b.motion.skeleton, height=height, label=b.label, against=a.label)
     if len(a.motion) != len(b.motion):
         raise ClipError(f"{len(b.motion)} frames, {a.label} has {len(a.motion)}", file=b.label)
-    if abs(b.motion.frame_time / a.motion.frame_time - 1.0) > _RATE_TOLERANCE:
+    if not _same_rate(a, b):
         message = f"{b.motion.frame_rate:.6g} frames per second, {a.label} has {a.motion.frame_rate:.6g}"
         raise ClipError(message, file=b.label)
     names = a.motion.skeleton.names
@@ -169,6 +170,15 @@ def compare(
         _worst(np.linalg.norm(apart, axis=-1), names, tolerance),
         _worst(angles, names, tolerance_angle),
     )
+
+
+def _same_rate(a: Clip, b: Clip) -> bool:
+    apart = abs(b.motion.frame_time / a.motion.frame_time - 1.0)
+    if apart <= _RATE_TOLERANCE:
+        return True
+    places = min(clip.text.frame_time_decimals for clip in (a, b))
+    rounded = round(a.motion.frame_time, places) == round(b.motion.frame_time, places)
+    return rounded and apart <= _ROUNDED_RATE_TOLERANCE
 
 
 def _worst(differences: FloatArray, names: tuple[str, ...], tolerance: float) -> Worst:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from small_clip import HIERARCHY, MOTION, ROWS, TEXT, with_text
 
-from motionedit.core.bvh import parse_clip, read_clip, unedited_bytes
+from motionedit.core.bvh import edited_bytes, parse_clip, read_clip, unedited_bytes
 
 VALUES = np.array([[float(word) for word in line.split()] for line in ROWS.splitlines()])
 
@@ -63,6 +63,14 @@ SAME = {
     "exponents": with_text("10.5 -20.25 30 4", "1.05e1 -2025E-2 3e+1 0.04e2"),
     "many digits": with_text("10.5 -20.25", "10.500000000000000000000000 -20.24999999999999999999"),
     "leading zeros": with_text("10.5", "0" * 40 + "10.5"),
+    "a numbered End": with_text("End Site", "End Site4"),
+    "a named End": with_text("End Site", "End l_toes_End"),
+    "a bare End": with_text("End Site", "End"),
+    "a bare End and its brace": with_text("End Site\n\t\t{", "END{"),
+    "a final Ctrl-Z": TEXT.encode() + b"\x1a",
+    "a final Ctrl-Z after the last number": TEXT[:-1].encode() + b"\x1a",
+    "a final Ctrl-Z and a newline": TEXT.encode() + b"\x1a\r\n",
+    "a final Ctrl-Z and blank lines": TEXT[:-1].encode() + b"\r\n\r\n \x1a\n\t\n",
 }
 
 
@@ -72,8 +80,18 @@ def test_another_way_of_writing_gives_the_same_clip(name):
     np.testing.assert_array_equal(clip.values, VALUES)
     assert clip.motion.skeleton.names == ("Hips", "Spine")
     assert clip.motion.skeleton.channels == read(TEXT.encode()).motion.skeleton.channels
-    assert len(clip.motion.skeleton.end_sites) == 1
+    assert [(site.joint, site.offset.tolist()) for site in clip.motion.skeleton.end_sites] == [(1, [0.0, 5.0, 0.0])]
     assert clip.motion.frame_time == 0.04
+
+
+@pytest.mark.parametrize("end", [b"\x1a", b"\n\x1a", b"\x1a\n", b"\n\x1a\r\n \n"])
+def test_a_final_ctrl_z_stays_where_it_is_in_an_edit(end):
+    data = TEXT[:-1].encode() + end
+    clip = parse_clip(data, label="walk.bvh")
+    touched = np.zeros((3, 2), dtype=bool)
+    touched[2, 1] = True
+    written = edited_bytes(clip, clip.motion, touched=touched)
+    assert written == data.replace(b"32 4 5 6", b"32 4.000000 5.000000 6.000000")
 
 
 @pytest.mark.parametrize("name", ["mixamorig:Hips", "Left Up Leg", "MOTION", "JOINT", "ROOT OFFSET", "Hüfte", "腰"])
@@ -122,7 +140,7 @@ def test_more_or_fewer_rows_than_declared_are_used_leniently_with_a_warning():
         assert clip.warnings == (f"walk.bvh:17: Frames: says {declared}, the file has 3 rows, which are used",)
 
 
-@pytest.mark.parametrize("end", ["12 -22.125 32 4 5", "12 -", "12 1e", "12 ."])
+@pytest.mark.parametrize("end", ["12 -22.125 32 4 5", "12 -", "12 1e", "12 .", "12 -22.125 32\x1a", "12 -\n\x1a\n"])
 def test_a_last_row_that_is_cut_short_is_left_out_leniently_with_a_warning(end):
     data = TEXT[: TEXT.index("12 -22.125")].encode() + end.encode()
     clip = read(data, lenient=True)

@@ -94,7 +94,6 @@ HEADERS = [
         "12: JOINT inside an End Site; an End Site holds only its OFFSET",
     ),
     ("an empty End Site", with_text("\t\t\tOFFSET 0.0 5.0 0.0\n", ""), "12: End Site has no OFFSET"),
-    ("End without Site", with_text("End Site", "End"), "10: expected End Site, found 'End'"),
     (
         "a strange word in a joint",
         with_text("JOINT", "JOIN"),
@@ -188,6 +187,18 @@ def test_text_after_the_rows_is_refused(lenient):
 def test_control_characters_among_the_values_are_named():
     assert refusal(with_text("-21", "-2\x001")) == "walk.bvh:20: a NUL byte among the values: not a text file"
     assert refusal(with_text("-21", "-2\x1f1")).endswith("20: control character 0x1f among the values: not a text file")
+
+
+@pytest.mark.parametrize("lenient", [False, True])
+def test_a_ctrl_z_anywhere_but_at_the_end_is_refused(lenient):
+    says = ": control character 0x1a among the values: not a text file"
+    assert refusal(with_text("-21", "-2\x1a1"), lenient=lenient) == f"walk.bvh:20{says}"
+    assert refusal(with_text("1.5 2", "\x1a\n1.5 2"), lenient=lenient) == f"walk.bvh:20{says}"
+    assert refusal(with_text("0.04\n", "0.04\n\x1a\n"), lenient=lenient) == f"walk.bvh:19{says}"
+    assert refusal(TEXT.encode() + b"\x1a\n1 2 3 4 5 6 7 8 9\n", lenient=lenient) == f"walk.bvh:22{says}"
+    assert refusal(TEXT.encode() + b"\x1a\n\x1a", lenient=lenient) == f"walk.bvh:22{says}"
+    assert refusal(TEXT.encode() + b"\x1b", lenient=lenient).startswith("walk.bvh:22: control character 0x1b")
+    assert refusal(with_text("MOTION", "\x1a\nMOTION")).startswith("walk.bvh:16: expected MOTION after the hierarchy")
 
 
 @pytest.mark.parametrize("ending", ["\n", "\r\n", "\r"])

@@ -124,10 +124,32 @@ def test_what_cannot_be_compared_says_why(run, write, other, says):
     assert result.stderr.count("\n") == 1
 
 
-def test_a_rate_written_with_few_digits_is_the_same_rate(run, write):
-    write("a.bvh", make_motion(frame_time=1 / 120))
-    write("b.bvh", make_motion(frame_time=0.00833))
-    assert run("diff", "a.bvh", "b.bvh").exit_code == 0
+def with_frame_time(text):
+    """Return the bytes of a clip whose frame time is written so."""
+    head, rows = new_bytes(make_motion()).split(b"Frame Time: ")
+    return head + b"Frame Time: " + text.encode() + rows[rows.index(b"\n") :]
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "same"),
+    [
+        ("0.008333333333333333", "0.00833", True),
+        ("0.0333333", "0.0333", True),
+        ("0.0333", "0.03", False),
+        ("0.0417", "0.04", False),
+        ("0.033367", "0.0333", False),
+        ("0.033367", "0.033333", False),
+        ("0.0166667", "0.0167", True),
+        ("0.0166667", "0.016", False),
+    ],
+)
+def test_a_rate_written_with_few_digits_is_the_same_rate_and_a_near_one_is_not(run, tmp_path, one, other, same):
+    (tmp_path / "a.bvh").write_bytes(with_frame_time(one))
+    (tmp_path / "b.bvh").write_bytes(with_frame_time(other))
+    for pair in (("a.bvh", "b.bvh"), ("b.bvh", "a.bvh")):
+        result = run("diff", *pair)
+        assert result.exit_code == (0 if same else 2), pair
+        assert ("frames per second" in result.stderr) is not same
 
 
 def test_folders_are_paired_by_path(run, write):

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 # A block and its arrays stay in the processor's cache.
 BLOCK_BYTES = 1 << 17
+_CTRL_Z = b"\x1a"
+_BLANK = b" \t\n\r\v\f" + _CTRL_Z
 _CUT_NUMBER = re.compile(rb"[+-]?[0-9]*\.?[0-9]*(?:[eE][+-]?)?[0-9]*")
 
 
@@ -121,6 +123,11 @@ def values_between(data: bytes, rows: Rows, start: int, stop: int) -> FloatArray
     return np.concatenate(blocks)
 
 
+def _ends_text(data: bytes, at: int) -> bool:
+    """Tell whether a byte is the Ctrl-Z with which old programs end a text: nothing but blanks follows it."""
+    return data[at : at + 1] == _CTRL_Z and not data[at + 1 :].strip()
+
+
 def _rows_within(data: bytes, begin: int, end: int) -> int:
     """Return how many lines of a block are not blank."""
     chars = np.frombuffer(data, np.uint8, count=end - begin, offset=begin)
@@ -133,8 +140,8 @@ def _words(data: bytes, begin: int, end: int, columns: int, label: str, *, frame
     chars = np.frombuffer(data, np.uint8, count=end - begin, offset=begin)
     # Control characters other than tab, line feed, vertical tab, form feed and carriage return.
     odd = (chars < 32) & (chars - np.uint8(9) > 4)
-    if odd.any():
-        at = begin + int(np.argmax(odd))
+    at = begin + int(np.argmax(odd))
+    if odd.any() and not _ends_text(data, at):
         what = "a NUL byte" if data[at] == 0 else f"control character 0x{data[at]:02x}"
         raise refusal(data, f"{what} among the values: not a text file", label=label, at=at)
     if len(chars) > 2 * BLOCK_BYTES:
@@ -173,7 +180,7 @@ def _read_block(
     cut_off = None
     if rows < len(counts):
         first, found = rows * columns, int(counts[rows])
-        at_end = rows == len(counts) - 1 and not data[int(stops[-1]) :].strip()
+        at_end = rows == len(counts) - 1 and not data[int(stops[-1]) :].strip(_BLANK)
         # A file that was cut short may end inside a number.
         may_be_cut = at_end and _CUT_NUMBER.fullmatch(data, int(starts[-1]), int(stops[-1]))
         if faulty >= len(starts) - bool(may_be_cut) or faulty >= first + found:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Protocol
 
 from motionedit.core.bvh.rows import values_between
+from motionedit.core.bvh.scan import decimals
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -22,6 +23,11 @@ class BvhText:
     header: Header
     rows: Rows
     motion: Motion
+
+    @property
+    def frame_time_decimals(self) -> int:
+        """How many decimals the file's frame time carries."""
+        return decimals(self.data[slice(*self.header.frame_time_span)])
 
     def values_between(self, start: int, stop: int) -> FloatArray:
         """Return the channel values of the frames from start up to stop, shape (stop - start, C)."""
