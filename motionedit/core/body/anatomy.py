@@ -1,36 +1,60 @@
-"""The anatomy of a skeleton: legs, arms, head, leg length and height, found by the tree and not by names."""
+"""The anatomy of a skeleton: legs, arms, head, leg length and height, by lengths and names together."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from functools import lru_cache
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from motionedit.core.arrays import median
-from motionedit.core.body.limbs import LimbPair, Tree, find_limb_pairs
-from motionedit.core.body.sides import leg_or_arm, side_of_chains, side_of_toes
+from motionedit.core.body.bones import bones_of, travel_joint
+from motionedit.core.body.head import SAME_PLACE, find_head
+from motionedit.core.body.limbs import LimbPair, Tree, Triple, find_limb_pairs
+from motionedit.core.body.sides import side_of_chains, side_of_toes
+from motionedit.core.body.words import is_end, is_toe
+from motionedit.core.kinematics import Effector
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
     from motionedit.core.kinematics import WorldPoses
+    from motionedit.core.motion import Motion
     from motionedit.core.skeleton import Skeleton
 
-# A joint as near to its parent as this, in heights, is at the same place.
-_SAME_PLACE = 1e-3
+Part = Literal["heel", "toe"]
+
 # The share of the way from ankle to tip at which the toe bends, at the least (a metatarsal ends before it).
-_BALL_OF_FOOT = 0.5
-_END_WORDS = ("end", "top", "nub", "site", "tip")
+_BALL_OF_FOOT = 0.42
 
 
 @dataclass(frozen=True)
 class Leg:
-    """The joints of a leg; `toe` is None where the ankle has no joint below it."""
+    """The joints of a leg; `toe` is None where the ankle has no joint below it.
+
+    `tip` is then where the ankle's end site is in its frame, clip units, None where it has none.
+    """
 
     thigh: int
     knee: int
     ankle: int
     toe: int | None
+    tip: tuple[float, float, float] | None = None
+
+
+@dataclass(frozen=True)
+class SolePoint:
+    """A point on which a foot stands: which `foot` (left, right) and `part` of it, and where it is fixed."""
+
+    foot: str
+    part: Part
+    joint: int
+    offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    @property
+    def effector(self) -> Effector:
+        """The point in its joint's frame."""
+        return Effector(self.joint, np.array(self.offset))
 
 
 @dataclass(frozen=True)
@@ -47,6 +71,8 @@ class Arm:
 class Anatomy:
     """What a skeleton's joints are; None where it has no such thing.
 
+    The skeleton is the one of `bones_of`, whose offsets are bones.
+
     Attributes
     ----------
     legs, arms : left, right
@@ -57,11 +83,11 @@ class Anatomy:
     digits : frozenset of int
         Wrists, hands, fingers, toes, and what hangs on the head: joints whose jumps do not make a rest pose.
     leg_length : float
-        Thigh to ankle, the sum of |OFFSET|, mean of both sides, clip units; half the height where there are no legs.
+        Thigh to ankle, the sum of bones, mean of both sides, clip units; half the height where there are no legs.
     height : float
-        The longest path between two ends, by |OFFSET|, clip units.
+        The longest path between two ends, along the bones, clip units.
     warnings : tuple of str
-        What was not found, each a line for the user.
+        What no edit can do well without, and was not found, each a line for the user.
     """
 
     legs: tuple[Leg, Leg] | None
@@ -73,6 +99,31 @@ class Anatomy:
     leg_length: float
     height: float
     warnings: tuple[str, ...]
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        """What else was not found, each a line for the user with its consequence."""
+        lines = []
+        if self.arms is None:
+            lines.append(
+                "no arms found: elbows are no hinges, and masses for the center of mass go by the lengths of bones; "
+                "body: in a spec says which joints they are"
+            )
+        if self.head is None:
+            lines.append("no head found: it has no say in which way is up; body: in a spec says which joint it is")
+        return tuple(lines)
+
+    @property
+    def sole_points(self) -> tuple[SolePoint, ...]:
+        """The heel and toe of each foot, left before right; a leaf ankle's end site serves as its toe."""
+        points = []
+        for foot, leg in zip(("left", "right"), self.legs or (), strict=False):
+            points.append(SolePoint(foot, "heel", leg.ankle))
+            if leg.toe is not None:
+                points.append(SolePoint(foot, "toe", leg.toe))
+            elif leg.tip is not None:
+                points.append(SolePoint(foot, "toe", leg.ankle, leg.tip))
+        return tuple(points)
 
     @property
     def foot_points(self) -> tuple[tuple[str, int], ...]:
@@ -87,61 +138,139 @@ class Anatomy:
         )
 
 
-def find_anatomy(skeleton: Skeleton, *, poses: WorldPoses | None = None) -> Anatomy:
+@dataclass(frozen=True)
+class GivenBody:
+    """What a user says that joints are: `head`, and the joints of `legs` and `arms`, left and right.
+
+    None is what is not said, -1 and () what the body does not have. Legs are thigh, knee, ankle and perhaps toe; arms
+    shoulder, elbow, wrist, and perhaps the clavicle before them. A limb's joints hang on one another in that order.
+    """
+
+    head: int | None = None
+    legs: tuple[tuple[int, ...], ...] | None = None
+    arms: tuple[tuple[int, ...], ...] | None = None
+
+
+NOTHING_GIVEN = GivenBody()
+
+
+def find_anatomy(skeleton: Skeleton, *, poses: WorldPoses | None = None, given: GivenBody = NOTHING_GIVEN) -> Anatomy:
     """Return the anatomy of a skeleton; what it lacks is None and a warning, never an error.
 
-    Legs and arms are the two longest pairs of branches with two like bones each. Names say which side is left; where
-    they do not, the toes do, in `poses` if given, else in the skeleton's zero pose.
+    Legs and arms are pairs of branches with two bones each, left and right of each other by name or alike in length;
+    of several, those that are called so, else the two longest. Names say which side is left; where they do not, the
+    toes do, in `poses` if given, else in the skeleton's zero pose.
     """
+    known = _by_names(skeleton, given)
+    return _anatomy(_parts(skeleton, given), poses) if known is None else known
+
+
+@dataclass(frozen=True, eq=False)
+class _Parts:
+    """What the tree and the names of a skeleton tell; its legs and arms are not yet left and right."""
+
+    tree: Tree
+    given: GivenBody
+    legs: LimbPair | None
+    arms: LimbPair | None
+    head: int | None
+    head_way: list[int]
+
+    def side(self, pair: LimbPair) -> int:
+        """Return +1 where the first limb of a pair is known to be the left one, -1 the right, 0 where it is not."""
+        is_given = bool(self.given.legs if pair is self.legs else self.given.arms)
+        return 1 if is_given else side_of_chains(self.tree.skeleton.names, pair.chains)
+
+
+@lru_cache(maxsize=4)
+def _parts(skeleton: Skeleton, given: GivenBody) -> _Parts:
     tree = Tree(skeleton)
-    warnings: list[str] = []
-    legs_pair, arms_pair = _legs_and_arms(tree, find_limb_pairs(skeleton)[:2])
-    head, head_way = _find_head(tree, legs_pair, arms_pair)
-    if legs_pair is not None or arms_pair is not None:
-        places = tree.places[None] if poses is None else poses.positions
-        legs_pair, arms_pair, sure = _left_first(tree, legs_pair, arms_pair, head, places)
-        if not sure:
-            warnings.append("neither names nor toes tell left from right; the order in the file is taken")
+    legs, arms = _legs_and_arms(tree, find_limb_pairs(skeleton))
+    legs = legs if given.legs is None else _given_pair(tree, given.legs, top=0)
+    arms = arms if given.arms is None else _given_pair(tree, given.arms, top=-3)
+    head, head_way = find_head(tree, legs, arms)
+    if given.head is not None:
+        head, head_way = (given.head, tree.longest_way(given.head)) if given.head >= 0 else (None, [])
+    return _Parts(tree, given, legs, arms, head, head_way)
+
+
+@lru_cache(maxsize=4)
+def _by_names(skeleton: Skeleton, given: GivenBody) -> Anatomy | None:
+    """Return the anatomy where names alone tell left from right, as in most files; None where poses must."""
+    parts = _parts(skeleton, given)
+    if all(parts.side(pair) for pair in (parts.legs, parts.arms) if pair is not None):
+        return _anatomy(parts, None)
+    return None
+
+
+def _anatomy(parts: _Parts, poses: WorldPoses | None) -> Anatomy:
+    tree, given, warnings = parts.tree, parts.given, []
+    places = tree.places[None] if poses is None else poses.positions
+    legs_pair, arms_pair, sure = _left_first(parts, places)
+    if not sure:
+        warnings.append("neither names nor toes tell left from right; the order in the file is taken")
     if legs_pair is None:
         warnings.append("no legs found: half the height stands for the leg length")
-    legs = None if legs_pair is None else _legs(tree, legs_pair)
-    arms = None if arms_pair is None else _arms(arms_pair)
+    legs = None if legs_pair is None else _legs(tree, legs_pair, given.legs)
+    arms = None if arms_pair is None else _arms(tree, arms_pair, given.arms)
     return Anatomy(
         legs=legs,
         arms=arms,
-        head=head,
+        head=parts.head,
         pelvis=None if legs_pair is None else legs_pair.base,
         chest=None if arms_pair is None else arms_pair.base,
-        digits=_digits(tree, legs, arms, head_way),
+        digits=_digits(tree, legs, arms, parts.head_way),
         leg_length=0.5 * tree.height if legs_pair is None else legs_pair.length,
         height=tree.height,
         warnings=tuple(warnings),
     )
 
 
+def anatomy_of(motion: Motion, *, given: GivenBody = NOTHING_GIVEN) -> Anatomy:
+    """Return the anatomy of a motion's bones, which side is left by names and the zero pose."""
+    return find_anatomy(bones_of(motion, travel_joint(motion)), given=given)
+
+
+def _given_pair(tree: Tree, limbs: tuple[tuple[int, ...], ...], *, top: int) -> LimbPair | None:
+    """Return the pair of given limbs, whose three joints that bend begin at place `top`; None where there are none."""
+    if not limbs:
+        return None
+    ways = [tree.skeleton.chain(limb[-1]).tolist() for limb in limbs]
+    base = max(set(ways[0]) & set(ways[1]))
+    left, right = (tuple(way[way.index(base) + 1 :]) for way in ways)
+    triples = tuple(Triple(*limb[top:][:3]) for limb in limbs)
+    lengths = [_way(tree, triple.top, triple.end) for triple in triples]
+    return LimbPair(base, (left, right), (triples[0], triples[1]), 0.5 * sum(lengths))
+
+
 def _legs_and_arms(tree: Tree, pairs: tuple[LimbPair, ...]) -> tuple[LimbPair | None, LimbPair | None]:
+    """Tell legs from arms by what they are called, and by the tree where that does not tell two apart."""
+    called_legs = next((pair for pair in pairs if pair.names > 0), None)
+    called_arms = next((pair for pair in pairs if pair.names < 0), None)
+    if called_legs is not None and called_arms is not None:
+        return called_legs, called_arms
+    if len(pairs) < 2:
+        return (None, pairs[0]) if called_arms is not None else (pairs[0] if pairs else None, None)
+    if called_arms is not None:
+        return next(pair for pair in pairs if pair is not called_arms), called_arms
+    return _by_the_tree(tree, *pairs[:2])
+
+
+def _by_the_tree(tree: Tree, first: LimbPair, second: LimbPair) -> tuple[LimbPair, LimbPair]:
     """Tell legs from arms: the head hangs where the arms do, the root is nearer to the legs.
 
-    Where these two contradict each other (a tail, a root in the chest) or there is one pair alone, names decide.
+    Where these two contradict each other (a tail, a root in the chest), names decide.
     """
-    if not pairs:
-        return None, None
-    names = tree.skeleton.names
-    if len(pairs) == 1:
-        is_arm = leg_or_arm(names, pairs[0].chains[0]) < 0
-        return (None, pairs[0]) if is_arm else (pairs[0], None)
-    first, second = pairs
     depth = len(tree.skeleton.chain(second.base)) - len(tree.skeleton.chain(first.base))
     by_head = _signed(_neck_length(tree, second, first) - _neck_length(tree, first, second), tree)
     vote = int(np.sign(depth)) + by_head
     if vote == 0:
-        words = leg_or_arm(names, first.chains[0]) - leg_or_arm(names, second.chains[0])
-        vote = words or depth or 1
+        vote = first.names - second.names or depth or 1
     return (first, second) if vote > 0 else (second, first)
 
 
 def _signed(length: float, tree: Tree) -> int:
-    return 0 if abs(length) < _SAME_PLACE * tree.height else int(np.sign(length))
+    return 0 if abs(length) < SAME_PLACE * tree.height else int(np.sign(length))
 
 
 def _neck_length(tree: Tree, pair: LimbPair, other: LimbPair | None) -> float:
@@ -156,45 +285,15 @@ def _neck_candidates(tree: Tree, pair: LimbPair, other: LimbPair | None) -> list
     return [c for c in children if c not in limbs and c not in way]
 
 
-def _find_head(tree: Tree, legs: LimbPair | None, arms: LimbPair | None) -> tuple[int | None, list[int]]:
-    """Return the head and the way from it to the farthest end: the chain beside the arms, else the longest one."""
-    carrier = arms or legs
-    if carrier is None:
-        return None, []
-    candidates = _neck_candidates(tree, carrier, legs if arms is not None else None)
-    candidates = [c for c in candidates if not _is_paired(tree, c, candidates)] or candidates
-    if not candidates:
-        return None, []
-    way = tree.longest_way(max(candidates, key=lambda c: (tree.lengths[c] + tree.reach[c], -c)))
-    children, names = tree.skeleton.children, tree.skeleton.names
-    at = next((i for i, j in enumerate(way) if len(children[j]) > 1), len(way) - 1)
-    while (
-        at > 0
-        and len(children[way[at - 1]]) == 1
-        and (
-            tree.lengths[way[at]] < _SAME_PLACE * tree.height
-            or (not children[way[at]] and names[way[at]].casefold().endswith(_END_WORDS))
-        )
-    ):
-        at -= 1
-    return way[at], way[at:]
-
-
-def _is_paired(tree: Tree, joint: int, joints: list[int]) -> bool:
-    """Tell whether a branch has a twin beside it by name: breasts and ribs are no necks."""
-    names = tree.skeleton.names
-    return any(side_of_chains(names, ((joint,), (other,))) for other in joints if other != joint)
-
-
-def _left_first(
-    tree: Tree, legs: LimbPair | None, arms: LimbPair | None, head: int | None, positions: FloatArray
-) -> tuple[LimbPair | None, LimbPair | None, bool]:
+def _left_first(parts: _Parts, positions: FloatArray) -> tuple[LimbPair | None, LimbPair | None, bool]:
     """Return legs and arms with the left one first, and whether anything said which it is."""
-    names = tree.skeleton.names
-    sides = {id(pair): side_of_chains(names, pair.chains) for pair in (legs, arms) if pair is not None}
+    legs, arms = parts.legs, parts.arms
+    if legs is None and arms is None:
+        return None, None, True
+    sides = {id(pair): parts.side(pair) for pair in (legs, arms) if pair is not None}
     known = next((pair for pair in (legs, arms) if pair is not None and sides[id(pair)]), None)
     if known is None and legs is not None:
-        sides[id(legs)] = _side_by_toes(tree, legs, head, positions)
+        sides[id(legs)] = _side_by_toes(parts.tree, legs, parts.head, positions)
         known = legs if sides[id(legs)] else None
     if known is None:
         return legs, arms, False
@@ -226,32 +325,56 @@ def _side_by_toes(tree: Tree, legs: LimbPair, head: int | None, positions: Float
 
 
 def _toe(tree: Tree, chain: tuple[int, ...], ankle: int) -> int | None:
-    """Return the joint at the ball of the foot: the first one half-way or more from the ankle to the tip."""
-    below = chain[chain.index(ankle) + 1 :]
+    """Return the joint at the ball of the foot: what is called toe, else the first one far enough to the tip."""
+    below = [j for j in chain[chain.index(ankle) + 1 :] if j not in tree.hanging]
     if not below:
-        children = tree.skeleton.children[ankle]
-        return tree.longest_way(ankle)[1] if children else None
+        below = [j for j in tree.longest_way(ankle)[1:] if j not in tree.hanging][:1]
+    names = tree.skeleton.names
+    below = [j for j in below if not is_end(names[j])] or below[:1]
+    below = [j for j in below if is_toe(names[j])] or below
     way = 0.0
     for joint in below:
-        way += float(tree.lengths[joint])
+        way = _way(tree, ankle, joint)
         if way >= _BALL_OF_FOOT * (way + float(tree.reach[joint])):
             return joint
-    return below[-1]
+    return below[-1] if below else None
 
 
-def _legs(tree: Tree, pair: LimbPair) -> tuple[Leg, Leg]:
-    left, right = (
-        Leg(*triple, _toe(tree, chain, triple.end)) for chain, triple in zip(pair.chains, pair.triples, strict=True)
-    )
+def _way(tree: Tree, top: int, joint: int) -> float:
+    way = tree.skeleton.chain(joint).tolist()
+    return float(tree.lengths[way[way.index(top) + 1 :]].sum())
+
+
+def _legs(tree: Tree, pair: LimbPair, given: tuple[tuple[int, ...], ...] | None) -> tuple[Leg, Leg]:
+    if given:
+        left, right = (_leg(tree, Triple(*limb[:3]), limb[3] if len(limb) > 3 else None) for limb in given)
+        return left, right
+    pieces = zip(pair.chains, pair.triples, strict=True)
+    left, right = (_leg(tree, triple, _toe(tree, chain, triple.end)) for chain, triple in pieces)
     return left, right
 
 
-def _arms(pair: LimbPair) -> tuple[Arm, Arm]:
-    left, right = (
-        Arm(chain[0] if chain[0] != triple.top else None, *triple)
-        for chain, triple in zip(pair.chains, pair.triples, strict=True)
-    )
+def _leg(tree: Tree, triple: Triple, toe: int | None) -> Leg:
+    sites = [site.offset for site in tree.skeleton.end_sites if site.joint == triple.end]
+    tip = max(sites, key=lambda offset: float(np.linalg.norm(offset)), default=np.zeros(3))
+    has_tip = toe is None and np.any(tip)
+    return Leg(*triple, toe, (float(tip[0]), float(tip[1]), float(tip[2])) if has_tip else None)
+
+
+def _arms(tree: Tree, pair: LimbPair, given: tuple[tuple[int, ...], ...] | None) -> tuple[Arm, Arm]:
+    if given:
+        left, right = (Arm(limb[0] if len(limb) > 3 else None, *limb[-3:]) for limb in given)
+        return left, right
+    pieces = zip(pair.chains, pair.triples, strict=True)
+    left, right = (Arm(_clavicle(tree, chain, triple.top), *triple) for chain, triple in pieces)
     return left, right
+
+
+def _clavicle(tree: Tree, chain: tuple[int, ...], shoulder: int) -> int | None:
+    """Return the first joint of a chain above the shoulder that does not only stand where the next one does."""
+    above = chain[: chain.index(shoulder)]
+    moving = (j for j, lower in zip(above, chain[1:], strict=False) if tree.lengths[lower] > SAME_PLACE * tree.height)
+    return next(moving, above[0] if above else None)
 
 
 def _digits(

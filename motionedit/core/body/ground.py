@@ -1,4 +1,4 @@
-"""Up, heading and travel: the axes of a clip read from its motion, and the frames of a rest pose in front of it."""
+"""The ground: axes by name, and the frames that a clip is seen in, by its heading or by its feet."""
 
 from __future__ import annotations
 
@@ -7,20 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.arrays import frozen, median
-from motionedit.core.body.limbs import zero_pose
+from motionedit.core.arrays import frozen
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
     from motionedit.core.body.anatomy import Anatomy
     from motionedit.core.kinematics import WorldPoses
-    from motionedit.core.motion import Motion
 
-_REST_POSE_STEP = 0.6  # rad between two frames: a body does not turn a joint of its trunk or limbs so fast
-_REST_POSE_FRAMES = 3
-_CLEAR_AXIS = 1.25  # head over feet: the largest part against the next, below it OFFSETs are asked too
-_TRAVEL_SHARE = 0.05  # of the widest way that any joint is moved: less is jitter of a static root
 _STANCE_SHARE = 0.15  # of the leg: feet nearer together give no line
 _LEVEL_SHARE = 0.1  # of the hips' width that must remain when it is laid on the ground
 
@@ -77,24 +71,6 @@ def axis_name(up: FloatArray) -> str:
     return ("-" if up[axis] < 0.0 else "") + "xyz"[axis]
 
 
-def find_up(motion: Motion, poses: WorldPoses, anatomy: Anatomy) -> FloatArray:
-    """Return the signed unit axis in which the head stands over the feet, shape (3,).
-
-    The median over the frames after the rest pose; where no axis is clear, the skeleton's OFFSETs have a say; y where
-    there is no body.
-    """
-    first = rest_pose_frames(motion, anatomy)
-    stand = _standing(anatomy, poses.positions[first:])
-    if stand is None:
-        return axis_vector("y")
-    size = np.sort(np.abs(stand))
-    if size[2] < _CLEAR_AXIS * size[1]:
-        zero = _standing(anatomy, zero_pose(motion.skeleton)[None])
-        stand = stand if zero is None else stand / np.linalg.norm(stand) + zero / np.linalg.norm(zero)
-    axis = int(np.argmax(np.abs(stand)))
-    return axis_vector(("-" if stand[axis] < 0.0 else "") + "xyz"[axis])
-
-
 def heading_frame(poses: WorldPoses, anatomy: Anatomy, *, up: FloatArray, frame: int, travel: int) -> Frame:
     """Return the heading frame at one frame: x to the character's left, y up, z forward.
 
@@ -132,44 +108,6 @@ def stance_frame(poses: WorldPoses, anatomy: Anatomy, *, up: FloatArray, frame: 
     middle = 0.5 * (left_ankle + right_ankle)
     axes = np.stack((left, up, np.cross(left, up)))
     return Frame(frozen(np.array(up)), frozen(axes), frozen(middle - (middle @ up) * up))
-
-
-def travel_joint(motion: Motion) -> int:
-    """Return the joint that carries the travel: the shallowest with position channels that move.
-
-    It may sit below a static root. Where none moves, the shallowest with position channels; the root where there
-    are none.
-    """
-    joints = motion.skeleton.translated
-    if not len(joints):
-        return 0
-    width = np.linalg.norm(np.ptp(motion.translations, axis=0), axis=-1)
-    moving = joints[width >= _TRAVEL_SHARE * width.max()]
-    return min((int(j) for j in moving), key=lambda j: (len(motion.skeleton.chain(j)), j))
-
-
-def rest_pose_frames(motion: Motion, anatomy: Anatomy) -> int:
-    """Return how many frames in front of the take (0 to 3) are a rest pose, such as a T-pose.
-
-    A true (geodesic) rotation step above 0.6 rad within the first frames, at a joint that is no wrist, hand, finger
-    or toe, ends it.
-    """
-    joints = [j for j in range(len(motion.skeleton)) if j not in anatomy.digits]
-    q = motion.rotations[: _REST_POSE_FRAMES + 1, joints]
-    steps = rot.angle_between(q[:-1], q[1:]).max(axis=1, initial=0.0)
-    jumps = np.flatnonzero(steps > _REST_POSE_STEP)
-    return int(jumps[-1]) + 1 if len(jumps) else 0
-
-
-def _standing(anatomy: Anatomy, positions: FloatArray) -> FloatArray | None:
-    """Return the median of head minus feet, shape (3,); of head minus chest and the like where one is missing."""
-    feet = [] if anatomy.legs is None else [leg.ankle for leg in anatomy.legs]
-    top = anatomy.head if anatomy.head is not None else anatomy.chest
-    low = feet or [j for j in (anatomy.chest,) if j is not None and j != top]
-    if top is None or not low:
-        return None
-    stand: FloatArray = median(positions[:, top] - positions[:, low].mean(axis=1))
-    return stand if np.any(stand) else None
 
 
 def _sideways(anatomy: Anatomy) -> list[tuple[int, int]]:

@@ -1,14 +1,19 @@
-"""Pairs of limbs found in a skeleton's tree: two branches of one joint whose bones are of like lengths."""
+"""Pairs of limbs found in a skeleton's tree: two branches of one joint, alike in length or in name.
+
+Lengths and the tree say what could be a limb, names decide where several could: names alone mislead (a thigh is called
+LeftHip, a toe LeftFoot), and so do lengths (hair, wings and skirts hang in pairs, too).
+"""
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from itertools import combinations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from motionedit.core.body.sides import side_of_names
+from motionedit.core.body.sides import side_of_chains, side_of_names
+from motionedit.core.body.words import hangs_on, is_hand_or_foot, is_twist, leg_or_arm
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -19,6 +24,7 @@ if TYPE_CHECKING:
 
 # Captured bones differ between left and right (CMU's hips by 11 %); a spine differs from a leg by far more.
 _LENGTH_TOLERANCE = 0.3
+_NAMED_TOLERANCE = 0.7  # where names are left and right of each other: bones read off one frame of a video are 1 to 2
 _LENGTH_FLOOR = 0.02  # of the height: below it any two bones are alike
 _LONGEST_CHAIN = 24  # joints: longer ones are ropes and tails, and every three joints of a chain are tried
 _SHORTEST_LIMB = 0.1  # of the height: fingers and faces come in pairs too
@@ -34,6 +40,8 @@ _COST_OF_ONE_PLACE = 1.0  # where both limbs would start at the same place, as C
 _APART = 0.25  # mean bones between the tops of two limbs in the zero pose; hips are 0.35 apart
 _LONGEST_ABOVE = 1.5  # mean bones: a collar may be in two pieces
 _LONGEST_BELOW = 1.2  # mean bones: a hand is 0.85 forearms
+_COST_OF_ANOTHER_END = 1.0  # where the limb would not end at the joint that is called hand or foot
+_COST_OF_A_TWIST = 1.0  # for each joint called twist or roll that would be a top, a bend or an end
 
 
 class Match(NamedTuple):
@@ -57,31 +65,40 @@ class Triple(NamedTuple):
 
 @dataclass(frozen=True)
 class LimbPair:
-    """Two limbs that hang on joint `base`: their chains of matched joints, and the three joints that bend."""
+    """Two limbs that hang on joint `base`: their chains of matched joints, and the three joints that bend.
+
+    `length` is the mean of both, top to end, clip units; `names` is above 0 where names speak of legs, below of arms.
+    """
 
     base: int
     chains: tuple[tuple[int, ...], tuple[int, ...]]
     triples: tuple[Triple, Triple]
     length: float
+    names: int = 0
 
     def swapped(self) -> LimbPair:
         """Return the same pair in the other order."""
-        return LimbPair(self.base, self.chains[::-1], self.triples[::-1], self.length)
+        return LimbPair(self.base, self.chains[::-1], self.triples[::-1], self.length, self.names)
 
 
 @lru_cache(maxsize=4)
 def find_limb_pairs(skeleton: Skeleton) -> tuple[LimbPair, ...]:
-    """Return the pairs of limbs, the longest first, none inside another; empty where there are none."""
-    tree = Tree(skeleton)
+    """Return the pairs of limbs, the likeliest first, none inside another; empty where there are none.
+
+    The likeliest are those whose names speak of legs or arms, then the longest. Where the names of some limbs are left
+    and right of each other, those whose names are not are none: a tail and a spine beside two legs.
+    """
+    tree, names = Tree(skeleton), skeleton.names
     found = [
         pair
         for base, children in enumerate(skeleton.children)
         for a, b in combinations(children, 2)
         if (pair := _limb_pair(tree, base, (a, b))) is not None
     ]
+    mirrored = [pair for pair in found if side_of_chains(names, pair.chains)]
     kept: list[LimbPair] = []
     taken: set[int] = set()
-    for pair in sorted(found, key=lambda pair: -pair.length):
+    for pair in sorted(mirrored or found, key=lambda pair: (pair.names == 0, -pair.length)):
         joints = tree.below(pair.chains[0][0]) | tree.below(pair.chains[1][0])
         if not joints & taken:
             kept.append(pair)
@@ -110,6 +127,15 @@ class Tree:
         self.reach = self._reaches()
         self.height = self._height()
         self._matches: dict[tuple[int, int], Match] = {}
+
+    @cached_property
+    def hanging(self) -> frozenset[int]:
+        """The joints that their names call hair, tail, prop or the like, and all that hang on them."""
+        found: set[int] = set()
+        for j, name in enumerate(self.skeleton.names):
+            if int(self.skeleton.parents[j]) in found or hangs_on(name):
+                found.add(j)
+        return frozenset(found)
 
     def below(self, joint: int) -> frozenset[int]:
         """Return a joint and all its descendants."""
@@ -142,12 +168,16 @@ class Tree:
     def spread(self, joints: tuple[int, ...]) -> FloatArray:
         """Return the distance from each joint to the farthest end below it in the zero pose, shape (N,).
 
-        Not along the bones: fingers that fan out from one point of the palm would make it longer than a forearm.
+        Not along the bones: fingers that fan out from one point of the palm would make it longer than a forearm. What
+        is called a prop, and what hangs on that, is left out.
         """
-        below = [sorted(self.below(j)) for j in joints]
+        below = [sorted(self.below(j) - self.hanging) for j in joints]
         return np.array(
             [
-                max(np.linalg.norm(self.places[d] - self.places[j]) + self._ends.get(d, 0.0) for d in down)
+                max(
+                    (np.linalg.norm(self.places[d] - self.places[j]) + self._ends.get(d, 0.0) for d in down),
+                    default=0.0,
+                )
                 for j, down in zip(joints, below, strict=True)
             ]
         )
@@ -163,7 +193,9 @@ class Tree:
 
     def _match(self, a: int, b: int, level: int) -> Match:
         la, lb = float(self.lengths[a]), float(self.lengths[b])
-        if abs(la - lb) > _LENGTH_TOLERANCE * max(la, lb) + _LENGTH_FLOOR * self.height:
+        names = self.skeleton.names
+        tolerance = _NAMED_TOLERANCE if side_of_names(names[a], names[b]) else _LENGTH_TOLERANCE
+        if abs(la - lb) > tolerance * max(la, lb) + _LENGTH_FLOOR * self.height:
             return _NO_MATCH
         total, longest = 0.0, 0.0
         chain: tuple[tuple[int, int], ...] = ((a, b),)
@@ -205,7 +237,8 @@ class Tree:
 
 
 def _limb_pair(tree: Tree, base: int, first: tuple[int, int]) -> LimbPair | None:
-    chain = tree.match(*first).chain
+    names = tree.skeleton.names
+    chain = _without_what_hangs(tree, tree.match(*first).chain)
     if len(chain) < 3:
         return None
     chains = (tuple(a for a, _ in chain), tuple(b for _, b in chain))
@@ -213,19 +246,48 @@ def _limb_pair(tree: Tree, base: int, first: tuple[int, int]) -> LimbPair | None
     # What hangs below each joint, on the side where less does: a club in one hand is no hand.
     rest = np.minimum(tree.spread(chains[0]), tree.spread(chains[1]))
     odd = np.array([tree.is_bent(chain, i) or min(map(tree.branches, chain[i])) > 1 for i in range(len(chain))])
-    apart = np.linalg.norm(tree.places[list(chains[0])] - tree.places[list(chains[1])], axis=-1)
-    places = _bending_joints(np.cumsum(lengths) - lengths[0], rest=rest, apart=apart, odd=odd)
+    twist = np.array([is_twist(names[a]) for a in chains[0]])
+    called_end = next((i for i, (a, _) in enumerate(chain) if is_hand_or_foot(names[a])), None)
+    at = np.cumsum(lengths) - lengths[0]
+    apart = _apart(tree, chains, at)
+    places = _bending_joints(at, rest=rest, apart=apart, odd=odd, twist=twist, called_end=called_end)
+    if places is None:
+        # No limb, unless more hangs below it than a body has: props without a name.
+        places = _bending_joints(at, rest=np.zeros_like(rest), apart=apart, odd=odd, twist=twist, called_end=called_end)
     if places is None:
         return None
     length = float(np.sum(lengths[places[0] + 1 : places[2] + 1]))
-    if length < _SHORTEST_LIMB * tree.height:
-        return None
     triples = (Triple(*(chains[0][i] for i in places)), Triple(*(chains[1][i] for i in places)))
-    return LimbPair(base, chains, triples, length)
+    words = sum(leg_or_arm(names, triple) for triple in triples)
+    if not words and length < _SHORTEST_LIMB * tree.height:
+        return None
+    return LimbPair(base, chains, triples, length, words)
+
+
+def _apart(tree: Tree, chains: tuple[tuple[int, ...], tuple[int, ...]], at: FloatArray) -> FloatArray:
+    """Return how far each joint of a chain is from its twin, shape (N,); `at` is the length from the first one.
+
+    The first joints have one parent, so that their distance is the same in every pose. Below them it is that of the
+    zero pose, and no less than the way there: OFFSETs that all lie along their own bone put all into a heap.
+    """
+    distance = np.linalg.norm(tree.places[list(chains[0])] - tree.places[list(chains[1])], axis=-1)
+    apart: FloatArray = np.maximum(distance, at)
+    return apart
+
+
+def _without_what_hangs(tree: Tree, chain: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
+    """Return a chain down to where something begins that is no limb by its name; nothing where it begins so."""
+    return [pair for pair in chain if tree.hanging.isdisjoint(pair)]
 
 
 def _bending_joints(
-    at: FloatArray, *, rest: FloatArray, apart: FloatArray, odd: BoolArray
+    at: FloatArray,
+    *,
+    rest: FloatArray,
+    apart: FloatArray,
+    odd: BoolArray,
+    twist: BoolArray,
+    called_end: int | None,
 ) -> tuple[int, int, int] | None:
     """Return the places in a chain of a limb's top, bend and end.
 
@@ -239,9 +301,13 @@ def _bending_joints(
     rest : shape (N,)
         Distance from each joint to the farthest end below it.
     apart : shape (N,)
-        Distance from each joint to its twin on the other side in the zero pose.
+        Distance from each joint to its twin on the other side.
     odd : shape (N,)
         Whether a joint is bent or branches, so that no bone is cut there.
+    twist : shape (N,)
+        Whether a joint is called twist or roll.
+    called_end : int or None
+        The place of the first joint that is called hand or foot.
     """
     cut_cost = np.where(odd, _COST_OF_AN_ODD_CUT, _COST_OF_A_CUT)
     best: tuple[float, tuple[int, int, int]] | None = None
@@ -250,11 +316,16 @@ def _bending_joints(
         mean = 0.5 * (upper + lower)
         if min(upper, lower) <= 0.0 or max(upper, lower) > _RATIO_LIMIT * min(upper, lower):
             continue
-        if at[i] > _LONGEST_ABOVE * mean or rest[k] > _LONGEST_BELOW * mean:
+        below = 0.0 if k == called_end else rest[k]
+        if at[i] > _LONGEST_ABOVE * mean or below > _LONGEST_BELOW * mean:
             continue
-        cost = abs(float(np.log(upper / lower))) + float(np.sum(cut_cost[i + 1 : k]) - cut_cost[j])
-        cost += float(_COST_ABOVE * at[i] + _COST_BELOW * rest[k]) / mean
+        # A joint at the place of the top or the bend cuts no bone.
+        cuts = [c for c in range(i + 1, k) if c != j and at[c] > at[i] and at[c] != at[j]]
+        cost = abs(float(np.log(upper / lower))) + float(np.sum(cut_cost[cuts]))
+        cost += float(_COST_ABOVE * at[i] + _COST_BELOW * below) / mean
         cost += _COST_OF_ONE_PLACE * (apart[i] < _APART * mean)
+        cost += _COST_OF_A_TWIST * float(np.sum(twist[[i, j, k]]))
+        cost += _COST_OF_ANOTHER_END * (called_end is not None and k != called_end)
         if best is None or cost < best[0] - 1e-12:
             best = cost, (i, j, k)
     return None if best is None else best[1]

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
 
 _PAIRS = (("left", "right"), ("l", "r"), ("左", "右"))
-_LEG_WORDS = re.compile(r"thigh|leg|knee|calf|shin|ankle|foot|toe|femur|tibia|hip")
-_ARM_WORDS = re.compile(r"arm|elbow|wrist|hand|finger|thumb|clavicle|collar|shoulder|humerus|radius")
 
 
 def side_of_names(a: str, b: str) -> int:
@@ -35,12 +33,6 @@ def side_of_names(a: str, b: str) -> int:
 def side_of_chains(names: tuple[str, ...], chains: tuple[tuple[int, ...], tuple[int, ...]]) -> int:
     """Return +1 where the names say that the first chain is the left one, -1 the right, 0 nothing."""
     return int(np.sign(sum(side_of_names(names[a], names[b]) for a, b in zip(*chains, strict=True))))
-
-
-def leg_or_arm(names: tuple[str, ...], joints: tuple[int, ...]) -> int:
-    """Return how many more names in a chain speak of a leg than of an arm."""
-    words = [names[j].casefold() for j in joints]
-    return sum(bool(_LEG_WORDS.search(w)) - bool(_ARM_WORDS.search(w)) for w in words)
 
 
 def side_of_toes(*, across: FloatArray, up: FloatArray, toes: FloatArray) -> int:

@@ -7,6 +7,8 @@ from motionedit.core import kinematics
 from motionedit.core import rotations as rot
 from motionedit.core.body import ground
 from motionedit.core.body.anatomy import find_anatomy
+from motionedit.core.body.bones import bones_of, travel_joint
+from motionedit.core.body.up import find_up
 from motionedit.core.motion import Motion
 from motionedit.core.pca.database import DatabaseMotion, FitSettings, build_model
 from motionedit.core.pca.fit import ALL, fit_centred
@@ -42,10 +44,10 @@ def stroke(seed, *, frames=60, hit=None, skeleton=None, frame_time=0.02, heading
 
 def place(motion, timeline, *, hit):
     """Return (alignment, warp, travel, up) of a stroke on a timeline."""
-    poses = kinematics.forward(motion)
-    anatomy = find_anatomy(motion.skeleton, poses=poses)
-    up = ground.find_up(motion, poses, anatomy)
-    travel = ground.travel_joint(motion)
+    poses, travel = kinematics.forward(motion), travel_joint(motion)
+    bones = bones_of(motion, travel)
+    anatomy = find_anatomy(bones, poses=poses)
+    up = find_up(motion, bones, poses, anatomy, first=0).axis
     frame = ground.heading_frame(poses, anatomy, up=up, frame=0, travel=travel)
     alignment = align_to(frame, heading=True, position=True)
     warp = make_warp(timeline, first=0, last=len(motion) - 1, events={"hit": hit}, label="stroke")

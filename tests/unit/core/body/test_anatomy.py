@@ -1,4 +1,5 @@
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -315,6 +316,49 @@ def test_legs_alone_have_for_a_head_the_end_of_what_stands_on_them():
     assert anatomy.arms is None
     assert legs_of(skeleton, anatomy) == LEGS
     assert skeleton.names[anatomy.head] == "Head"
+
+
+def test_a_foot_stands_on_its_heel_and_its_toe():
+    skeleton = skeleton_of()
+    points = find_anatomy(skeleton).sole_points
+    found = [(point.foot, point.part, skeleton.names[point.joint], point.offset) for point in points]
+    assert found == [
+        (side.lower(), part, side + joint, (0.0, 0.0, 0.0))
+        for side in ("Left", "Right")
+        for part, joint in (("heel", "Foot"), ("toe", "ToeBase"))
+    ]
+
+
+def test_a_foot_without_a_toe_stands_on_its_farthest_end_site():
+    skeleton = skeleton_of(
+        [row for row in BONES if "Toe" not in row[0]],
+        {"LeftFoot": (0.0, -0.06, 0.19), "RightFoot": (0.0, -0.06, 0.19), "Head": ENDS["Head"]},
+    )
+    sites = (*skeleton.end_sites, EndSite(skeleton.names.index("LeftFoot"), np.array([0.0, -0.05, -0.06])))
+    anatomy = find_anatomy(replace(skeleton, end_sites=sites))
+    assert [leg.toe for leg in anatomy.legs] == [None, None]
+    assert [leg.tip for leg in anatomy.legs] == [(0.0, -0.06, 0.19)] * 2
+    toes = [point for point in anatomy.sole_points if point.part == "toe"]
+    assert [(point.foot, skeleton.names[point.joint]) for point in toes] == [
+        ("left", "LeftFoot"),
+        ("right", "RightFoot"),
+    ]
+    np.testing.assert_array_equal(toes[0].effector.offset, [0.0, -0.06, 0.19])
+
+
+def test_a_foot_of_nothing_but_an_ankle_stands_on_that():
+    skeleton = skeleton_of([row for row in BONES if "Toe" not in row[0]], {"Head": ENDS["Head"]})
+    assert [point.part for point in find_anatomy(skeleton).sole_points] == ["heel", "heel"]
+
+
+def test_a_whole_body_misses_nothing_and_half_a_body_says_what_and_what_that_means():
+    assert find_anatomy(skeleton_of()).missing == ()
+    no_arms = [row for row in BONES if not any(part in row[0] for part in ("Shoulder", "Arm", "Hand"))]
+    (line,) = find_anatomy(skeleton_of(no_arms)).missing
+    assert line.startswith("no arms found: elbows are no hinges")
+    (line,) = find_anatomy(skeleton_of([row for row in BONES if row[0] not in ("Neck", "Head")])).missing
+    assert line.startswith("no head found: ")
+    assert "body: in a spec" in line
 
 
 def test_a_toe_on_one_side_only_is_none_of_the_anatomy_of_the_other():

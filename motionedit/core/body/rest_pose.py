@@ -1,0 +1,49 @@
+"""The frames of a rest pose, such as a T-pose, in front of a take."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core import rotations as rot
+from motionedit.core.arrays import percentile
+
+if TYPE_CHECKING:
+    from motionedit.core.body.anatomy import Anatomy
+    from motionedit.core.motion import Motion
+
+_STEP = 0.6  # rad between two frames, at the least
+_LONGEST = 3  # frames
+# A jump is an outlier: so many times the joint's step right after it, and its own steps over the clip but the fastest.
+_ABOVE_NEXT = 3.0
+_ABOVE_USUAL = 2.0
+_USUAL = 95.0  # percentile
+_SAMPLES = 512  # steps of the clip that are looked at
+
+
+def rest_pose_frames(motion: Motion, anatomy: Anatomy) -> int:
+    """Return how many frames in front of the take (0 to 3) are a rest pose, such as a T-pose.
+
+    A true (geodesic) rotation step above 0.6 rad within the first frames ends it, at a joint that is no wrist, hand,
+    finger or toe, and that never steps so otherwise: a fast arm at a low frame rate goes on as fast.
+    """
+    count = len(motion)
+    joints = np.array([j for j in range(len(motion.skeleton)) if j not in anatomy.digits], dtype=np.intp)
+    q = motion.rotations[: _LONGEST + 2, joints]
+    steps = rot.angle_between(q[:-1], q[1:])
+    jumps = np.argwhere(steps[:_LONGEST] > _STEP)
+    if not len(jumps):
+        return 0
+    at = np.unique(np.linspace(_LONGEST, count - 2, _SAMPLES).astype(np.intp)) if count > _LONGEST + 1 else None
+    found = 0
+    for frame, place in jumps.tolist():
+        jump = steps[frame, place]
+        after = steps[frame + 1, place] if frame + 1 < len(steps) else 0.0
+        usual = 0.0
+        if at is not None:
+            turns = motion.rotations[:, joints[place]]
+            usual = float(percentile(rot.angle_between(turns[at], turns[at + 1]), _USUAL))
+        if jump > _ABOVE_NEXT * after and jump > _ABOVE_USUAL * usual:
+            found = max(found, frame + 1)
+    return found

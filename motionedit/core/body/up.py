@@ -1,0 +1,149 @@
+"""Which way is up: three witnesses, the floor, the OFFSETs and the way the body stands, and how sure they are."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core.arrays import frozen, median
+from motionedit.core.body.bones import below
+from motionedit.core.body.ground import axis_name, axis_vector
+from motionedit.core.body.limbs import zero_pose
+from motionedit.core.body.words import hangs_on
+from motionedit.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from motionedit.core.arrays import BoolArray, FloatArray
+    from motionedit.core.body.anatomy import Anatomy
+    from motionedit.core.kinematics import WorldPoses
+    from motionedit.core.motion import Motion
+    from motionedit.core.skeleton import Skeleton
+
+# What speaks against an axis, most of all first. A floor is worth as much as a stance, an OFFSET pose a little more
+# than the stance (it stands where a body may lie), and most programs write y up, some z, hardly any another axis.
+_OFFSETS_WEIGHT = 1.2
+_PRIOR = {"y": 0.0, "z": 0.1, "x": 0.4, "-y": 0.5, "-z": 0.5, "-x": 0.5}
+# Legs by which the lowest points rise and fall: as arms of a lying body do, and where no floor is.
+_FLOOR, _NO_FLOOR = 0.1, 0.4
+_MOST = 0.7  # of the frames
+_CLEAR = 0.9  # of the OFFSET pose's stance along one axis, both legs alike and the trunk not against them
+_AGREED = 0.95  # along one axis
+_SURE = 0.3  # by which the best axis must be better than the next for no word to be said
+_FRAMES = 256  # at most are looked at
+
+
+@dataclass(frozen=True, eq=False)
+class Up:
+    """The signed unit axis (3,) that is up, and a line for the user where the witnesses leave it unsure."""
+
+    axis: FloatArray
+    warning: str | None = None
+
+
+def find_up(motion: Motion, bones: Skeleton, poses: WorldPoses, anatomy: Anatomy, *, first: int, travel: int = 0) -> Up:
+    """Return which way is up; y where there is no body.
+
+    An axis is the worse the more its lowest points come and go (the floor), the less the skeleton's OFFSETs stand along
+    it where they clearly stand at all, and the less the body stands along it in the median frame.
+
+    Parameters
+    ----------
+    bones : Skeleton
+        As `bones_of` returns it.
+    first : int
+        The first frame after a rest pose.
+    travel : int
+        The joint that carries the travel: what does not hang on it stands on no floor.
+    """
+    shown = poses.positions[first :: max(1, -(-(len(motion) - first) // _FRAMES))]
+    stands = _stance(anatomy, shown)
+    if stands is None:
+        return Up(axis_vector("y"))
+    offsets = _clear_offsets(bones, anatomy)
+    if offsets is not None and min(float(offsets.max()), float(stands[offsets.argmax()])) > _AGREED:
+        # Where both say so no floor could say otherwise.
+        return Up(axis_vector("xyz"[int(offsets.argmax())]))
+    body = _body(bones, travel)
+    floors = _floors(shown if body.all() else shown[:, body], size=anatomy.leg_length)
+    costs = {}
+    for name, prior in _PRIOR.items():
+        axis = axis_vector(name)
+        against = 0.0 if offsets is None else _OFFSETS_WEIGHT * (1.0 - float(offsets @ axis))
+        costs[name] = 1.0 - float(stands @ axis) + against + floors[name] + prior
+    best, next_best = sorted(costs, key=lambda name: costs[name])[:2]
+    said = {"the OFFSETs stand": offsets, "the body mostly stands": stands}
+    others = {words: axis_name(way) for words, way in said.items() if way is not None and axis_name(way) != best}
+    settled = all(floors[best] < floors[axis] - _SURE for axis in others.values())
+    if costs[next_best] - costs[best] >= _SURE and settled:
+        return Up(axis_vector(best))
+    why = ", ".join(f"{words} along {axis}" for words, axis in others.items()) or f"{next_best} is as likely"
+    return Up(
+        axis_vector(best), f"up is taken to be {best}, but {why}; 'up' in a spec, --up elsewhere, says which it is"
+    )
+
+
+@lru_cache(maxsize=4)
+def _body(bones: Skeleton, travel: int) -> BoolArray:
+    """Return which joints may stand on a floor, shape (J,): those of the body, but no hair, tail or prop."""
+    hanging = np.zeros(len(bones), dtype=np.bool_)
+    for j, name in enumerate(bones.names):
+        hanging[j] = hangs_on(name) or (j > 0 and hanging[bones.parents[j]])
+    return frozen(below(bones, travel) & ~hanging)
+
+
+def _floors(positions: FloatArray, *, size: float) -> dict[str, float]:
+    """Return for each signed axis how little its lowest points are a floor, 0 to 1.
+
+    A floor is equally low in most frames; a jump leaves it, and so does a fall.
+    """
+    if size <= 0.0:
+        return dict.fromkeys(_PRIOR, 0.0)
+    lowest = np.concatenate((positions.min(axis=1), -positions.max(axis=1)), axis=1)
+    ordered = np.sort(lowest, axis=0)
+    most = int(_MOST * (len(ordered) - 1))
+    spread = (ordered[most:] - ordered[: len(ordered) - most]).min(axis=0) / size
+    floors = np.clip((spread - _FLOOR) / (_NO_FLOOR - _FLOOR), 0.0, 1.0)
+    return dict(zip(("x", "y", "z", "-x", "-y", "-z"), floors.tolist(), strict=True))
+
+
+def _stance(anatomy: Anatomy, positions: FloatArray) -> FloatArray | None:
+    """Return the way a body stands: the mean of hips over feet and head over hips, each of length 1, shape (3,)."""
+    ways = [_unit(median(top - low)) for low, top in _pairs(anatomy, positions)]
+    stance: FloatArray = np.mean(ways, axis=0) if ways else np.zeros(3)
+    return stance if np.any(stance) else None
+
+
+@lru_cache(maxsize=4)
+def _clear_offsets(bones: Skeleton, anatomy: Anatomy) -> FloatArray | None:
+    """Return the way the OFFSETs stand, shape (3,); None where they only fold bones away, each along its own axis."""
+    places = zero_pose(bones)
+    ways = [_unit(median(top - low)) for low, top in _pairs(anatomy, places[None])]
+    if not ways:
+        return None
+    if anatomy.legs is not None:
+        left, right = (_unit(places[leg.thigh] - places[leg.ankle]) for leg in anatomy.legs)
+        if left @ right < _CLEAR or (len(ways) > 1 and ways[0] @ ways[1] < -0.1):
+            return None
+    clear = np.abs(ways[0]).max() >= _CLEAR
+    return ways[0] if clear else None
+
+
+def _pairs(anatomy: Anatomy, positions: FloatArray) -> list[tuple[FloatArray, FloatArray]]:
+    """Return the (lower, upper) points (F, 3) that stand over each other: feet and hips, then hips and head."""
+    top = anatomy.head if anatomy.head is not None else anatomy.chest
+    pairs = []
+    if anatomy.legs is not None:
+        hips = positions[:, [leg.thigh for leg in anatomy.legs]].mean(axis=1)
+        pairs.append((positions[:, [leg.ankle for leg in anatomy.legs]].mean(axis=1), hips))
+        if top is not None and top != anatomy.pelvis:
+            pairs.append((hips, positions[:, top]))
+    elif top is not None and anatomy.chest is not None and top != anatomy.chest:
+        pairs.append((positions[:, anatomy.chest], positions[:, top]))
+    return pairs
+
+
+def _unit(vector: FloatArray) -> FloatArray:
+    length = float(np.linalg.norm(vector))
+    return vector / length if length > 0.0 else np.zeros(3)
