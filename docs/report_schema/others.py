@@ -72,12 +72,25 @@ _DEFECT = obj(
     },
 )
 _CONTACT = obj(
-    "A plant of a foot.",
+    "A point of a foot that stands.",
     {
         "foot": word("which", "left", "right"),
-        "joint": text("its ankle or toe"),
+        "part": word("of it", "heel", "toe"),
+        "joint": text("its ankle or toe; the ankle where its end site is the toe"),
         "frames": list_of(INTEGER, "from, to, both in", 2),
         "seconds": number("how long"),
+        "height": number("where it stands, along up"),
+    },
+)
+_SPAN = list_of(INTEGER, "from, to, both in", 2)
+_PLANT = obj(
+    "A foot that stands.",
+    {
+        "foot": word("which", "left", "right"),
+        "frames": _SPAN,
+        "seconds": number("how long"),
+        "heel": list_of(_SPAN, "the phases in which its heel stands"),
+        "toe": list_of(_SPAN, "the phases in which its toe stands"),
     },
 )
 _SHOWN_CLIP = {
@@ -105,7 +118,8 @@ _SHOWN_CLIP = {
     "defects": list_of(_DEFECT, "what looks like a fault of the capture"),
     "metrics": measures("of the clip as it is", number),
     "warnings": list_of(STRING, "one line each"),
-    "contacts": list_of(_CONTACT, "with --contacts"),
+    "contacts": list_of(_CONTACT, "with --contacts: heels and toes, each by itself"),
+    "plants": list_of(_PLANT, "with --contacts: whole feet"),
     "poses": list_of(part("pose"), "with --at and --joint"),
 }
 
@@ -145,7 +159,7 @@ OTHER_PARTS: Schema = {
         "A clip of a model's database.",
         {"clip": text("its name"), "coefficients": list_of(NUMBER, "its principal coefficients alpha")},
     ),
-    "shown_clip": obj("A clip that info tells of.", _SHOWN_CLIP, optional=("contacts", "poses")),
+    "shown_clip": obj("A clip that info tells of.", _SHOWN_CLIP, optional=("contacts", "plants", "poses")),
     "joint": obj(
         "A joint of a skeleton.",
         {

@@ -9,7 +9,7 @@ import numpy as np
 from motionedit.core.arrays import frozen
 from motionedit.core.body.center_of_mass import center_of_mass
 from motionedit.core.body.quality import JerkMeter
-from motionedit.core.kinematics import WorldPoses, forward
+from motionedit.core.kinematics import WorldPoses, effector_positions, forward
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import FloatArray
     from motionedit.core.body.center_of_mass import Masses
+    from motionedit.core.kinematics import Effector
     from motionedit.core.motion import Motion
 
 # Frames of a block, whose arrays stay near the processor.
@@ -30,7 +31,7 @@ class Trace:
     Attributes
     ----------
     tracks : shape (F, P, 3), clip units
-        World positions of the joints that were asked for.
+        World positions of the points that were asked for.
     center : shape (F, 3), clip units, or None
         The path of the center of mass, where masses were given.
     jerk_rms : float
@@ -44,7 +45,7 @@ class Trace:
 
 def trace_of(
     blocks: Iterable[WorldPoses],
-    joints: Sequence[int],
+    points: Sequence[Effector],
     *,
     frame_time: float,
     first: int,
@@ -54,14 +55,15 @@ def trace_of(
 
     Parameters
     ----------
-    joints : sequence of int
+    points : sequence of Effector
         Whose tracks are kept.
     first : int
         The first frame after a rest pose; earlier ones have no jerk.
     """
     tracks, centers, jerk = [], [], JerkMeter(first)
     for poses in blocks:
-        tracks.append(poses.positions[:, list(joints)])
+        paths = [effector_positions(poses, point) for point in points]
+        tracks.append(np.stack(paths, axis=1) if paths else np.zeros((len(poses.positions), 0, 3)))
         if masses is not None:
             centers.append(center_of_mass(poses, masses))
         jerk.add(poses.positions)

@@ -185,13 +185,8 @@ def test_a_joint_without_three_axes_is_told_in_the_usual_order(run, write):
 def test_contacts_list_the_plants_of_each_foot(run, write):
     text = run("info", write("stand.bvh", person()), "--contacts").stdout
     rows = [line.split() for line in text[text.index("contacts") :].splitlines()[1:] if line.strip()]
-    assert rows == [
-        [side, name, "0", "to", "59", "0.600"]
-        for side, name in (
-            *(("left", name) for name in ("LeftFoot", "LeftToeBase")),
-            *(("right", name) for name in ("RightFoot", "RightToeBase")),
-        )
-    ]
+    whole = ["0", "to", "59", "0.600", "heel", "0", "to", "59;", "toe", "0", "to", "59"]
+    assert rows == [[side, *whole] for side in ("left", "right")]
     assert "  contacts " not in run("info", "stand.bvh").stdout
     assert fact(run("info", write("short.bvh", person(frames=1)), "--contacts").stdout, "contacts") == "none"
 
@@ -209,7 +204,11 @@ def test_the_report_says_the_same(run, write):
     assert [joint["name"] for joint in entry["joints"]] == [name for name, *_ in BONES]
     assert entry["joints"][0]["channels"] == list(ROOT)
     assert entry["joints"][INDEX["RightHand"]]["end_sites"] == [[0.0, -8.0, 0.0], [0.0, -92.0, 5.0]]
-    assert entry["contacts"][0]["frames"] == [0, 59]
+    named = [(each["foot"], each["part"], each["joint"]) for each in entry["contacts"]]
+    assert named[:2] == [("left", "heel", "LeftFoot"), ("left", "toe", "LeftToeBase")]
+    assert all(each["frames"] == [0, 59] for each in entry["contacts"])
+    assert entry["plants"][1]["foot"] == "right"
+    assert entry["plants"][1]["toe"] == [[0, 59]]
     assert entry["poses"][0]["world"]["position"] == pytest.approx(
         forward(person()).positions[4, INDEX["Head"]].tolist(), abs=1e-3
     )

@@ -85,17 +85,17 @@ class JerkMeter:
         return float(np.sqrt(self._sum / self._count)) / frame_time**3 if self._count else 0.0
 
 
-def foot_slide_max(positions: FloatArray, plants: Sequence[Plant], *, up: FloatArray, frame_time: float) -> float:
+def foot_slide_max(tracks: FloatArray, plants: Sequence[Plant], *, up: FloatArray, frame_time: float) -> float:
     """Return the fastest horizontal speed of a planted point from frame to frame, clip units / s; 0 without plants.
 
-    `positions` has shape (F, J, 3). For an edit the plants are those of its input.
+    `tracks` (F, P, 3) are those of `sole_tracks`. For an edit the plants are those of its input.
     """
     fastest = 0.0
-    for joint in {plant.joint for plant in plants}:
-        step = np.diff(positions[:, joint], axis=0)
+    for point in {plant.point for plant in plants}:
+        step = np.diff(tracks[:, point], axis=0)
         level = step - (step @ up)[:, None] * up
         way = np.linalg.norm(level, axis=-1)
-        here = [plant for plant in plants if plant.joint == joint]
+        here = [plant for plant in plants if plant.point == point]
         fastest = max(fastest, *(float(way[plant.start : plant.stop].max(initial=0.0)) for plant in here))
     return fastest / frame_time
 
@@ -103,11 +103,11 @@ def foot_slide_max(positions: FloatArray, plants: Sequence[Plant], *, up: FloatA
 def foot_drift(before: FloatArray, after: FloatArray, plants: Sequence[Plant]) -> float:
     """Return the largest distance between a planted point in two motions, clip units; 0 without plants.
 
-    Both have shape (F, J, 3), the same frames and joints; the plants are those of the first.
+    Both are the tracks (F, P, 3) of the same points; the plants are those of the first.
     """
     return max(
         (
-            float(np.linalg.norm(after[span, plant.joint] - before[span, plant.joint], axis=-1).max())
+            float(np.linalg.norm(after[span, plant.point] - before[span, plant.point], axis=-1).max())
             for plant in plants
             for span in [slice(plant.start, plant.stop + 1)]
         ),

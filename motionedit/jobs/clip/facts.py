@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from motionedit.core import kinematics
 from motionedit.core.body import ground
-from motionedit.core.body.anatomy import Anatomy, find_anatomy
+from motionedit.core.body.anatomy import NOTHING_GIVEN, Anatomy, GivenBody, find_anatomy
+from motionedit.core.body.bones import bones_of, travel_joint
 from motionedit.core.body.contacts import find_plants
+from motionedit.core.body.rest_pose import rest_pose_frames
+from motionedit.core.body.up import find_up
 from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
+    from motionedit.core.body.contacts import Plant
     from motionedit.core.bvh import Clip
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.motion import Motion
+    from motionedit.core.skeleton import Skeleton
     from motionedit.core.timeline.alignment import Alignment
 
 
@@ -49,16 +55,19 @@ class Poses:
 class ClipFacts:
     """A clip and what was found in it.
 
-    `up` is the signed unit axis (3,), `travel` the joint that carries the travel, `first` the first frame after a rest
-    pose, `world` what holds the world transforms.
+    `bones` is its skeleton with bones for OFFSETs, `up` the signed unit axis (3,), `travel` the joint that carries the
+    travel, `first` the first frame after a rest pose, `world` what holds the world transforms, `warnings` what was not
+    found or is unsure, a line each.
     """
 
     clip: Clip
+    bones: Skeleton
     anatomy: Anatomy
     up: FloatArray
     travel: int
     first: int
     world: Poses
+    warnings: tuple[str, ...]
 
     @property
     def poses(self) -> WorldPoses:
@@ -68,6 +77,12 @@ class ClipFacts:
     def forget_poses(self) -> None:
         """Give back the memory of `poses` until they are asked for again."""
         self.world.forget()
+
+    @cached_property
+    def plants(self) -> tuple[Plant, ...]:
+        """When heels and toes stand, as `find_plants`."""
+        motion = self.clip.motion
+        return tuple(find_plants(motion, self.poses, self.anatomy, up=self.up, first=self.first))
 
     @property
     def last(self) -> int:
@@ -84,9 +99,8 @@ class ClipFacts:
         stance = self._stance_frame(at)
         if stance is None:
             return False
-        plants = find_plants(self.clip.motion, self.poses, self.anatomy, up=self.up, first=self.first)
         when = self.first if at is None else at
-        feet = {plant.foot for plant in plants if plant.start <= when <= plant.stop}
+        feet = {plant.foot for plant in self.plants if plant.start <= when <= plant.stop}
         return feet == {"left", "right"} and float(stance.axes[0] @ self.heading_frame(at).axes[0]) > SIDE_BY_SIDE
 
     def alignment(self, by: Line, *, heading: bool, position: bool, at: float | None) -> Alignment:
@@ -115,12 +129,30 @@ class ClipFacts:
         return kinematics.forward(resample(motion, np.array([at]), frame_time=motion.frame_time)), 0
 
 
-def facts_of(clip: Clip, *, up: str = "auto", keep_rest_pose: bool = False) -> ClipFacts:
-    """Return a clip's facts; `up` is ``auto`` or an axis' name such as ``y`` or ``-z``, which is taken as given."""
+def facts_of(
+    clip: Clip, *, up: str = "auto", keep_rest_pose: bool = False, given: GivenBody = NOTHING_GIVEN
+) -> ClipFacts:
+    """Return a clip's facts.
+
+    Parameters
+    ----------
+    up : str
+        ``auto``, or an axis' name such as ``y`` or ``-z``, which is taken as given.
+    given : GivenBody
+        What the user says that joints are.
+    """
     motion = clip.motion
-    world = Poses(motion)
+    travel = travel_joint(motion)
+    bones, world = bones_of(motion, travel), Poses(motion)
     poses = world.get()
-    anatomy = find_anatomy(motion.skeleton, poses=poses)
-    axis = ground.find_up(motion, poses, anatomy) if up == "auto" else ground.axis_vector(up)
-    first = 0 if keep_rest_pose else ground.rest_pose_frames(motion, anatomy)
-    return ClipFacts(clip, anatomy, axis, ground.travel_joint(motion), min(first, len(motion) - 1), world)
+    anatomy = find_anatomy(bones, poses=poses, given=given)
+    first = min(rest_pose_frames(motion, anatomy), len(motion) - 1)
+    found = find_up(motion, bones, poses, anatomy, first=first, travel=travel)
+    axis, warnings = found.axis, list(anatomy.warnings)
+    if up == "auto":
+        warnings += [] if found.warning is None else [found.warning]
+    else:
+        axis = ground.axis_vector(up)
+        if found.warning is None and axis @ found.axis < 1.0:
+            warnings.append(f"up is given as {up}, but the clip plainly has {ground.axis_name(found.axis)} up")
+    return ClipFacts(clip, bones, anatomy, axis, travel, 0 if keep_rest_pose else first, world, tuple(warnings))

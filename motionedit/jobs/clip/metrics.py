@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,8 +21,8 @@ if TYPE_CHECKING:
 
 def feet_of(facts: ClipFacts, blocks: Iterable[WorldPoses], *, masses: Masses | None = None) -> Trace:
     """Return what `edit_metrics` needs of a motion whose world transforms come in blocks: the tracks are the feet's."""
-    joints = [joint for _, joint in facts.anatomy.foot_points]
-    return trace_of(blocks, joints, frame_time=facts.clip.motion.frame_time, first=facts.first, masses=masses)
+    points = [point.effector for point in facts.anatomy.sole_points]
+    return trace_of(blocks, points, frame_time=facts.clip.motion.frame_time, first=facts.first, masses=masses)
 
 
 def edit_metrics(facts: ClipFacts, before: Trace, after: Trace | None) -> dict[str, Any]:
@@ -36,10 +35,7 @@ def edit_metrics(facts: ClipFacts, before: Trace, after: Trace | None) -> dict[s
         say nothing of its frames.
     """
     motion = facts.clip.motion
-    # Joints of the plants are places among the tracks from here on.
-    place = {joint: p for p, (_, joint) in enumerate(facts.anatomy.foot_points)}
-    found = plants_of(before.tracks, facts.anatomy, up=facts.up, first=facts.first, frame_time=motion.frame_time)
-    plants = [replace(plant, joint=place[plant.joint]) for plant in found]
+    plants = plants_of(before.tracks, facts.anatomy, up=facts.up, first=facts.first, frame_time=motion.frame_time)
     metrics: dict[str, Any] = {"before": _of(facts, before, plants)}
     if after is None:
         return {**metrics, "after": {"foot_slide_max": None, "jerk_rms": None}, "foot_drift_max": None}

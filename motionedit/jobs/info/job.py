@@ -7,7 +7,7 @@ from collections import Counter
 from typing import TYPE_CHECKING, Any
 
 from motionedit.core.body import ground
-from motionedit.core.body.contacts import find_plants
+from motionedit.core.body.contacts import foot_plants, sole_tracks
 from motionedit.core.body.hinges import find_hinges
 from motionedit.core.body.quality import find_defects, foot_slide_max, jerk_rms
 from motionedit.core.units import STANDARD_LEG
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from motionedit.core.body.anatomy import Anatomy, Arm, Leg
-    from motionedit.core.body.contacts import Plant
     from motionedit.core.skeleton import Skeleton
 
 # A grown human's leg (m); outside of it the unit is a guess, and that is said.
@@ -42,7 +41,13 @@ class InfoReport:
 
 
 def run(
-    clips: Sequence[Path], *, at: Sequence[str] = (), joints: Sequence[str] = (), contacts: bool = False, lenient: bool
+    clips: Sequence[Path],
+    *,
+    at: Sequence[str] = (),
+    joints: Sequence[str] = (),
+    contacts: bool = False,
+    up: str = "auto",
+    lenient: bool,
 ) -> InfoReport:
     """Describe clips one after the other; a clip that cannot be read is a failure, the others go on.
 
@@ -52,6 +57,8 @@ def run(
         Times and effectors, as in a spec: each effector's pose is told at each time.
     contacts : bool
         Whether to list the plants of the feet.
+    up : str
+        The axis that is up, or ``auto``.
 
     Raises
     ------
@@ -66,7 +73,7 @@ def run(
     lacking: list[MotionEditError] = []
     for task in find_clips(clips):
         try:
-            facts = facts_of(read_task(task, lenient=lenient))
+            facts = facts_of(read_task(task, lenient=lenient), up=up)
         except ClipError as error:
             failures.append(error)
             records.append({"clip": task.label, "status": "failed", "message": str(error)})
@@ -85,7 +92,6 @@ def _record(facts: ClipFacts, *, question: Question, contacts: bool) -> tuple[di
     """Return a clip's entry of the report, and what was asked for that it does not have."""
     motion, anatomy = facts.clip.motion, facts.anatomy
     skeleton = motion.skeleton
-    plants = find_plants(motion, facts.poses, anatomy, up=facts.up, first=facts.first)
     poses, errors = poses_at(facts, question)
     record: dict[str, Any] = {
         "clip": facts.clip.label,
@@ -107,11 +113,12 @@ def _record(facts: ClipFacts, *, question: Question, contacts: bool) -> tuple[di
         "channels": skeleton.channel_count,
         "hinges": _hinges(facts),
         "defects": _defects(facts),
-        "metrics": _metrics(facts, plants),
-        "warnings": [*facts.clip.warnings, *anatomy.warnings, *_repeated_names(skeleton)],
+        "metrics": _metrics(facts),
+        "warnings": [*facts.clip.warnings, *facts.warnings, *anatomy.missing, *_repeated_names(skeleton)],
     }
     if contacts:
-        record["contacts"] = _contacts(facts, plants)
+        record["contacts"] = _contacts(facts)
+        record["plants"] = _plants(facts)
     if question:
         record["poses"] = poses
     return record, errors
@@ -190,24 +197,43 @@ def _defects(facts: ClipFacts) -> list[dict[str, Any]]:
     ]
 
 
-def _metrics(facts: ClipFacts, plants: Sequence[Plant]) -> dict[str, float]:
+def _metrics(facts: ClipFacts) -> dict[str, float]:
     motion, positions = facts.clip.motion, facts.poses.positions
+    tracks = sole_tracks(facts.poses, facts.anatomy)
     return {
-        "foot_slide_max": foot_slide_max(positions, plants, up=facts.up, frame_time=motion.frame_time),
+        "foot_slide_max": foot_slide_max(tracks, facts.plants, up=facts.up, frame_time=motion.frame_time),
         "jerk_rms": jerk_rms(positions, frame_time=motion.frame_time, first=facts.first),
     }
 
 
-def _contacts(facts: ClipFacts, plants: Sequence[Plant]) -> list[dict[str, Any]]:
+def _contacts(facts: ClipFacts) -> list[dict[str, Any]]:
     motion = facts.clip.motion
     return [
         {
             "foot": plant.foot,
+            "part": plant.part,
             "joint": motion.skeleton.names[plant.joint],
             "frames": [plant.start, plant.stop],
             "seconds": plant.frames * motion.frame_time,
+            "height": plant.height,
         }
-        for plant in plants
+        for plant in facts.plants
+    ]
+
+
+def _plants(facts: ClipFacts) -> list[dict[str, Any]]:
+    """Return when whole feet stand, with the phases of heel and toe."""
+    return [
+        {
+            "foot": plant.foot,
+            "frames": [plant.start, plant.stop],
+            "seconds": (plant.stop - plant.start + 1) * facts.clip.motion.frame_time,
+            **{
+                part: [[phase.start, phase.stop] for phase in plant.phases if phase.part == part]
+                for part in ("heel", "toe")
+            },
+        }
+        for plant in foot_plants(facts.plants)
     ]
 
 

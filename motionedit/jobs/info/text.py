@@ -19,8 +19,8 @@ _MOST_FRAMES = 8  # of a defect, before the rest is counted
 def describe(record: dict[str, Any]) -> str:
     """Return the text of one clip's record, ending in a line's end."""
     sections = [_facts(record), _tree(record)]
-    if "contacts" in record:
-        sections.append(_contacts(record["contacts"]))
+    if "plants" in record:
+        sections.append(_plants(record["plants"]))
     if record.get("poses"):
         sections.append(_poses(record["poses"]))
     lines = [record["clip"]]
@@ -135,16 +135,19 @@ def _channels(channels: Sequence[str]) -> str:
     return ", ".join(words) or "none"
 
 
-def _contacts(contacts: Sequence[dict[str, Any]]) -> list[str]:
-    lines = ["  contacts    " + ("none" if not contacts else "frames, both in; seconds")]
+def _plants(plants: Sequence[dict[str, Any]]) -> list[str]:
+    lines = ["  contacts    " + ("none" if not plants else "frames, both in; seconds")]
     for foot in ("left", "right"):
-        plants = [plant for plant in contacts if plant["foot"] == foot]
-        width = max((len(shown_name(plant["joint"])) for plant in plants), default=0)
         for plant in plants:
-            start, stop = plant["frames"]
-            name = shown_name(plant["joint"])
-            lines.append(f"    {foot:<6}{name:<{width}}  {start:>6} to {stop:>6}  {plant['seconds']:8.3f}")
+            if plant["foot"] == foot:
+                start, stop = plant["frames"]
+                phases = (f"{part} {_spans(plant[part])}" for part in ("heel", "toe") if plant[part])
+                lines.append(f"    {foot:<6}{start:>6} to {stop:>6}  {plant['seconds']:8.3f}  {'; '.join(phases)}")
     return lines
+
+
+def _spans(spans: Sequence[Sequence[int]]) -> str:
+    return ", ".join(f"{start} to {stop}" for start, stop in spans)
 
 
 def _poses(poses: Sequence[dict[str, Any]]) -> list[str]:

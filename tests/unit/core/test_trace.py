@@ -6,14 +6,17 @@ from human import skeleton_of, standing, with_rotation
 
 from motionedit.core import rotations as rot
 from motionedit.core import trace
-from motionedit.core.arrays import median
+from motionedit.core.arrays import median, percentile
 from motionedit.core.body import center_of_mass as center_of_mass_module
 from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.center_of_mass import center_of_mass, find_masses
 from motionedit.core.body.quality import jerk_rms
-from motionedit.core.kinematics import forward
+from motionedit.core.kinematics import Effector, forward
 from motionedit.core.motion import Motion
 from motionedit.core.trace import blocks_of, forward_blocks, frame_blocks, trace_of
+
+HAND = skeleton_of().names.index("LeftHand")
+POINTS = [Effector(HAND, np.array([0.1, -0.3, 0.2])), Effector(1, np.zeros(3))]
 
 
 @pytest.fixture
@@ -35,8 +38,9 @@ def test_a_trace_by_blocks_is_that_of_the_whole_motion(moving, monkeypatch, size
         for block in frame_blocks(len(moving))
     )
     for blocks in (blocks_of(poses), forward_blocks(parts)):
-        found = trace_of(blocks, [4, 1], frame_time=moving.frame_time, first=first, masses=masses)
-        np.testing.assert_allclose(found.tracks, poses.positions[:, [4, 1]], atol=1e-12)
+        found = trace_of(blocks, POINTS, frame_time=moving.frame_time, first=first, masses=masses)
+        tracks = [poses.positions[:, p.joint] + rot.rotate(poses.rotations[:, p.joint], p.offset) for p in POINTS]
+        np.testing.assert_allclose(found.tracks, np.stack(tracks, axis=1), atol=1e-12)
         np.testing.assert_allclose(found.center, center_of_mass(poses, masses), atol=1e-12)
         assert found.jerk_rms == pytest.approx(jerk_rms(poses.positions, frame_time=moving.frame_time, first=first))
         assert found.jerk_rms > 0.0
@@ -50,6 +54,13 @@ def test_without_masses_there_is_no_path_of_their_center(moving):
 def test_the_median_is_numpys(shape):
     values = np.random.default_rng(1).normal(size=shape)
     np.testing.assert_array_equal(median(values), np.median(values, axis=0))
+
+
+@pytest.mark.parametrize("rows", [2, 3, 50, 51, 145])
+@pytest.mark.parametrize("share", [2.0, 95.0])
+def test_the_percentile_is_numpys(rows, share):
+    values = np.random.default_rng(rows).normal(size=(rows, 4))
+    np.testing.assert_allclose(percentile(values, share), np.percentile(values, share, axis=0), rtol=1e-13)
 
 
 def test_the_center_of_mass_does_not_depend_on_the_frames_that_are_taken_together(moving, monkeypatch):

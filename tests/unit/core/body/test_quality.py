@@ -30,15 +30,28 @@ def test_jerk_leaves_a_rest_pose_out_and_is_zero_for_fewer_than_four_frames():
     assert jerk_rms(positions[:4], frame_time=0.01, first=1) == 0.0
 
 
+def planted(point, start, stop):
+    return Plant("left", "heel", joint=7, point=point, start=start, stop=stop, height=0.0)
+
+
 def test_sliding_is_the_fastest_horizontal_speed_of_a_planted_point():
-    positions = np.zeros((20, 2, 3))
-    positions[:, 0, 0] = 0.01 * np.arange(20)  # 1 unit/s along the ground
-    positions[:, 0, 1] = 0.5 * np.arange(20)  # height does not count
-    positions[11:, 0, 2] = 5.0  # after the plant
-    plants = [Plant("left", 0, 2, 10), Plant("right", 1, 0, 19)]
-    assert foot_slide_max(positions, plants, up=UP, frame_time=0.01) == pytest.approx(1.0)
-    assert foot_slide_max(positions, [], up=UP, frame_time=0.01) == 0.0
-    assert foot_slide_max(positions, [Plant("left", 0, 10, 12)], up=UP, frame_time=0.01) > 100.0
+    tracks = np.zeros((20, 2, 3))
+    tracks[:, 0, 0] = 0.01 * np.arange(20)  # 1 unit/s along the ground
+    tracks[:, 0, 1] = 0.5 * np.arange(20)  # height does not count
+    tracks[11:, 0, 2] = 5.0  # after the plant
+    plants = [planted(0, 2, 10), planted(1, 0, 19)]
+    assert foot_slide_max(tracks, plants, up=UP, frame_time=0.01) == pytest.approx(1.0)
+    assert foot_slide_max(tracks, [], up=UP, frame_time=0.01) == 0.0
+    assert foot_slide_max(tracks, [planted(0, 10, 12)], up=UP, frame_time=0.01) > 100.0
+    assert foot_slide_max(tracks, [planted(0, 10, 10)], up=UP, frame_time=0.01) == 0.0
+
+
+def test_the_fastest_of_several_plants_of_a_point_counts():
+    tracks = np.zeros((20, 1, 3))
+    tracks[10:, 0, 2] = 0.02 * np.arange(10)
+    plants = [planted(0, 0, 5), planted(0, 12, 19)]
+    assert foot_slide_max(tracks, plants, up=UP, frame_time=0.01) == pytest.approx(2.0)
+    assert foot_slide_max(tracks, plants[:1], up=UP, frame_time=0.01) == 0.0
 
 
 def test_drift_is_the_largest_distance_between_planted_points_of_two_motions():
@@ -46,7 +59,8 @@ def test_drift_is_the_largest_distance_between_planted_points_of_two_motions():
     after = before.copy()
     after[5, 0] = [3.0, 4.0, 0.0]
     after[15, 0] = 100.0
-    assert foot_drift(before, after, [Plant("left", 0, 0, 10), Plant("right", 1, 0, 19)]) == pytest.approx(5.0)
+    assert foot_drift(before, after, [planted(0, 0, 10), planted(1, 0, 19)]) == pytest.approx(5.0)
+    assert foot_drift(before, after, [planted(0, 0, 15)]) == pytest.approx(100.0 * np.sqrt(3.0))
     assert foot_drift(before, after, []) == 0.0
 
 
