@@ -14,9 +14,12 @@ if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
     from motionedit.core.body.anatomy import Anatomy
     from motionedit.core.motion import Motion
+    from motionedit.core.skeleton import Skeleton
 
 OFF_AXIS_ENERGY = 0.005  # of the whole: above it a joint is no hinge
 FULL_BEND = float(np.radians(150.0))  # where a knee or an elbow ends, unless the input bends it further
+# What the hinge of a joint with few channels may turn: all there is.
+ANY_ANGLE = (-2.0 * np.pi, 2.0 * np.pi)
 _STRAIGHT = float(np.radians(1.0))  # root mean square: a joint that hardly bends shows no axis
 
 
@@ -32,12 +35,16 @@ class Hinge:
         [min(0, the input's least), max(150 degrees, the input's largest)].
     off_axis : float
         Share of the rotation's energy that is not about the axis, 0 to 1.
+    is_second : bool
+        Whether it is the second of two hinges of its joint: the first one's axis is fixed in the parent's frame, its
+        own in the joint's.
     """
 
     joint: int
     axis: FloatArray
     limits: tuple[float, float]
     off_axis: float
+    is_second: bool = False
 
 
 def find_hinges(motion: Motion, anatomy: Anatomy, *, first: int) -> list[Hinge]:
@@ -48,6 +55,20 @@ def find_hinges(motion: Motion, anatomy: Anatomy, *, first: int) -> list[Hinge]:
     joints = [leg.knee for leg in anatomy.legs or ()] + [arm.elbow for arm in anatomy.arms or ()]
     found = (hinge_of(motion, joint, first=first) for joint in joints)
     return [hinge for hinge in found if hinge is not None and hinge.off_axis < OFF_AXIS_ENERGY]
+
+
+def channel_hinges(skeleton: Skeleton) -> dict[int, tuple[Hinge, ...]]:
+    """Return the one or two hinges of each joint whose file has as many rotation channels: it turns about no more.
+
+    R = R_i(a) R_j(b): what the file turns last is about an axis of the parent's frame, what it turns first about one
+    of the joint's own.
+    """
+    found = {}
+    for joint, axes in enumerate(skeleton.rotation_axes):
+        if len(axes) in {1, 2}:
+            hinges = (Hinge(joint, frozen(np.eye(3)[axis]), ANY_ANGLE, 0.0, i == 1) for i, axis in enumerate(axes))
+            found[joint] = tuple(hinges)
+    return found
 
 
 def hinge_of(motion: Motion, joint: int, *, first: int) -> Hinge | None:

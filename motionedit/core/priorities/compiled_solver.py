@@ -42,9 +42,12 @@ _Row = tuple["CompiledTask", int, float]
 
 
 def layout_of(problem: Problem) -> Layout | None:
-    """Return the layout of a problem; None where there is no compiled solver, or a task that it does not know."""
-    module = compiled()
-    rows = None if module is None else _rows(problem, module.row_kinds)
+    """Return the layout of a problem; None where there is no compiled solver, or what it does not know.
+
+    That is a task of another kind, and a root that moves along one or two axes alone.
+    """
+    module, knows_root = compiled(), problem.columns.root_is_free or not problem.moves_root
+    rows = _rows(problem, module.row_kinds) if module is not None and knows_root else None
     if rows is None:
         return None
     columns, skeleton, hinges = problem.columns, problem.columns.skeleton, problem.hinges
@@ -60,7 +63,9 @@ def layout_of(problem: Problem) -> Layout | None:
             "column_nodes": _integers(node_of[columns.joints]),
             "tasks": tasks,
             "hinges": _records(
-                "hinges", len(hinges.places), {"column": hinges.places, "axis": hinges.axes, "limits": hinges.limits}
+                "hinges",
+                len(hinges.places),
+                {"column": hinges.places, "second": hinges.second, "axis": hinges.axes, "limits": hinges.limits},
             ),
             "recruited": np.ascontiguousarray([task.recruited.joints for task, _, _ in rows], dtype=np.uint8),
             "targets": targets,

@@ -8,11 +8,15 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.compiled import compiled
+from motionedit.core.euler import solve_angles
 from motionedit.core.motion import Motion
 from motionedit.core.timeline.interpolation import gaussian, low_pass
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from motionedit.core.arrays import FloatArray
+    from motionedit.core.body.hinges import Hinge
 
 # A displacement below this (rad or m) is rounding: it is no displacement.
 NO_DISPLACEMENT = 1e-9
@@ -49,6 +53,22 @@ def smoothed_displacement(before: Motion, after: Motion, *, sigma: float, first:
     smooth[first:] = low_pass(smooth[first:], sigma=sigma)
     rotations[:, moving] = rot.multiply(before.rotations[:, moving], rot.exp(smooth))
     return Motion(before.skeleton, rotations, translations, before.frame_time)
+
+
+def on_channels(motion: Motion, hinges: Sequence[Hinge]) -> Motion:
+    """Return a motion whose joints of two hinges turn about these alone: each at the nearest such rotation.
+
+    A low-passed displacement is about any axis, and what two channels cannot say would be lost in the file.
+    """
+    axes = motion.skeleton.rotation_axes
+    joints = [hinge.joint for hinge in hinges if hinge.is_second and len(axes[hinge.joint]) == 2]
+    if not joints:
+        return motion
+    rotations = motion.rotations.copy()
+    for joint in joints:
+        angles = solve_angles(rotations[:, joint].T, axes[joint])
+        rotations[:, joint] = rot.from_euler(angles.T, axes[joint])
+    return Motion(motion.skeleton, rotations, motion.translations, motion.frame_time)
 
 
 def filtered_root(before: Motion, after: Motion, place: int, *, cutoff: float, first: int) -> Motion:

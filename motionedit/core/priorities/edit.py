@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from motionedit.core import rotations as rot
+from motionedit.core.body.bones import below
 from motionedit.core.compiled import compiled
 from motionedit.core.priorities.continuity import NO_DISPLACEMENT
 from motionedit.core.priorities.frames import run_of
@@ -84,11 +85,11 @@ def recruit(
         With ``error``, at the first breach.
     """
     skeleton, frames = motion.skeleton, len(motion)
-    turnable = {j for j, axes in enumerate(skeleton.rotation_axes) if len(axes) in {1, 3}}
+    carried = below(skeleton, body.travel)
+    turnable = {j for j, axes in enumerate(skeleton.rotation_axes) if axes and carried[j]}
     movable = Movable(skeleton, body.travel, frozenset(_carriers(body, motion) & turnable))
     asked = [each.recruits(movable) for each in constraints]
-    # A root without all its position channels has no translation that could be moved freely.
-    travels = len(skeleton.position_axes[body.travel]) == 3
+    travels = bool(skeleton.position_axes[body.travel])
     asked = [Recruits(frozenset(each.joints & turnable), each.root and travels) for each in asked]
     reaches = [
         Reach(moved.joints, moved.root, *each.active(frames))
@@ -105,12 +106,11 @@ def recruit(
 
 
 def _carriers(body: Body, motion: Motion) -> set[int]:
-    """Return the joints that carry mass and those above them, from the travel-carrying joint down."""
+    """Return the joints that carry mass and those above them."""
     skeleton = motion.skeleton
     joints: set[int] = set()
     for j in np.flatnonzero(body.masses.shares > 0.0):
-        chain = [int(k) for k in skeleton.chain(int(j))]
-        joints.update(chain[chain.index(body.travel) :] if body.travel in chain else chain)
+        joints.update(int(k) for k in skeleton.chain(int(j)))
     return joints
 
 

@@ -124,4 +124,5 @@ def _hinge_columns(hinges: Sequence[Hinge], joints: IntArray) -> HingeColumns:
         places=np.searchsorted(joints, np.array([hinge.joint for hinge in here], dtype=np.intp)),
         axes=np.array([hinge.axis for hinge in here]).reshape(-1, 3),
         limits=np.array([hinge.limits for hinge in here]).reshape(-1, 2),
+        second=np.array([hinge.is_second for hinge in here], dtype=np.bool_),
     )

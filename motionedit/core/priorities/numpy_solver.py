@@ -170,9 +170,9 @@ def _step(block: _Block, pose: _Pose, hinges: _Hinges, iteration: int) -> tuple[
     anneal = 2.0 ** min(0, problem.max_iterations - ANNEALED_ITERATIONS - iteration - 1)
     gain = problem.attraction * GAIN_DECAY ** max(0, iteration + 1 - FULL_GAIN_ITERATIONS) * anneal
     evaluated = [_evaluated(layer, pose) for layer in problem.layers]
-    evaluated = [(e, hinges.on_axes(J)) for e, J in evaluated]
+    evaluated = [(e, _shifts(problem, pose, hinges.on_axes(J))) for e, J in evaluated]
     z = attraction(problem.columns, block.reference, pose.world, pose.motion, pose.frames)
-    z = hinges.on_axes(z[:, None])[:, 0]
+    z = _shifts(problem, pose, hinges.on_axes(z[:, None]))[:, 0]
     largest_errors = [LARGEST_ERROR * (1.0 if level == 0 else anneal) for level in range(len(evaluated))]
     everything = np.ones(z.shape, dtype=np.bool_)
     down = partial(descend, largest_errors=largest_errors, steady=iteration >= HASTY_ITERATIONS)
@@ -185,6 +185,23 @@ def _step(block: _Block, pose: _Pose, hinges: _Hinges, iteration: int) -> tuple[
     return np.where(outside, step, fast), descent
 
 
+def _shifts(problem: Problem, pose: _Pose, J: FloatArray) -> FloatArray:
+    """Return rows, shape (N, k, n), with what they have of the root's shift along the axes that its channels have."""
+    columns = problem.columns
+    if columns.root_is_free:
+        return J
+    along = np.zeros((len(J), 3, 3))
+    kept = columns.skeleton.position_axes[columns.root]
+    along[:, kept, kept] = 1.0
+    above = int(columns.skeleton.parents[columns.root])
+    if above >= 0:
+        turn = rot.to_matrix(pose.world.rotations[:, above])
+        along = turn @ along @ np.swapaxes(turn, 1, 2)
+    J = J.copy()
+    J[:, :, -3:] = J[:, :, -3:] @ along
+    return J
+
+
 def _evaluated(layer: Sequence[WeightedTask], pose: _Pose) -> tuple[FloatArray, FloatArray]:
     """Return a layer's weighted errors (N, k) and rows (N, k, n)."""
     local = pose.motion.rotations
@@ -195,9 +212,10 @@ def _evaluated(layer: Sequence[WeightedTask], pose: _Pose) -> tuple[FloatArray, 
 
 
 class _Hinges:
-    """The hinges of N frames: world axes (N, H, 3), angles (N, H) in rad, and their unknowns `blocks` (H, 3).
+    """The hinges of N frames: world axes (N, H, 3), angles (N, H) in rad, their columns' unknowns `blocks` (H, 3).
 
-    Of a hinge's three unknowns the first is the turn about its axis; the others stay 0.
+    Of a column's three unknowns the first is the turn about its hinge's axis, the second about that of its second
+    hinge, if any; the others stay 0. `turns` (H,) is the unknown that is each hinge's turn.
     """
 
     def __init__(self, problem: Problem, pose: _Pose) -> None:
@@ -205,13 +223,17 @@ class _Hinges:
         joints = problem.columns.joints[hinges.places]
         parents = problem.columns.skeleton.parents[joints]
         inner = parents >= 0
-        # A turn about an axis leaves it where the parent has it.
+        # A turn about an axis leaves it where the parent has it; the second of two is where the joint itself has it.
         self.axes = np.repeat(hinges.axes[None], len(pose.frames), axis=0)
-        self.axes[:, inner] = rot.rotate(pose.world.rotations[:, parents[inner]], self.axes[:, inner])
+        carriers = np.where(hinges.second, joints, parents)
+        carried = inner | hinges.second
+        self.axes[:, carried] = rot.rotate(pose.world.rotations[:, carriers[carried]], self.axes[:, carried])
         self.angles = np.einsum("nhc,hc->nh", rot.log(pose.motion.rotations[:, joints]), hinges.axes)
         self.limits = hinges.limits
         self.places = hinges.places
         self.blocks = 3 * hinges.places[:, None] + np.arange(3)
+        self.turns = 3 * hinges.places + hinges.second
+        self.pairs = np.flatnonzero(hinges.second)
 
     def on_axes(self, J: FloatArray) -> FloatArray:
         """Return rows, shape (N, k, n), with what they have along each hinge's axis in its first unknown."""
@@ -220,21 +242,26 @@ class _Hinges:
         J = J.copy()
         along = np.einsum("nkhc,nhc->nkh", J[:, :, self.blocks], self.axes)
         J[:, :, self.blocks] = 0.0
-        J[:, :, self.blocks[:, 0]] = along
+        J[:, :, self.turns] = along
         return J
 
     def in_world(self, step: FloatArray) -> FloatArray:
         """Return a step, shape (N, n), with each hinge's turn as a world-axis increment."""
         if not len(self.places):
             return step
+        turns = step[:, self.turns, None] * self.axes
         step = step.copy()
-        step[:, self.blocks] = step[:, self.blocks[:, :1]] * self.axes
+        step[:, self.blocks] = turns
+        for second in self.pairs:
+            # The first hinge turns what the second has turned: exactly so, or the joint would leave its two channels.
+            both = rot.multiply(rot.exp(turns[:, second - 1]), rot.exp(turns[:, second]))
+            step[:, self.blocks[second]] = rot.log(both)
         return step
 
     def out_of_limits(self, step: FloatArray, free: BoolArray) -> BoolArray:
         """Return which free hinges a step (N, n) would take beyond their limits, shape (N, H)."""
         after = self._after(step)
-        out: BoolArray = (np.abs(after - self._limited(after)) > ON_LIMIT) & free[:, self.blocks[:, 0]]
+        out: BoolArray = (np.abs(after - self._limited(after)) > ON_LIMIT) & free[:, self.turns]
         return out
 
     def keep_limits(
@@ -258,14 +285,14 @@ class _Hinges:
             onto = self._limited(self._after(step)) - self.angles
             for h in np.flatnonzero(out.any(axis=0)):
                 rows = np.flatnonzero(out[:, h])
-                fixed[rows, self.blocks[h, 0]] = onto[rows, h]
-                free[rows[:, None], self.blocks[h]] = False
+                fixed[rows, self.turns[h]] = onto[rows, h]
+                free[rows, self.turns[h]] = False
             part = [(e[again], J[again]) for e, J in evaluated]
             new = down(part, z[again], fixed=fixed[again], free=free[again])
             descent.replace_rows(again, new)
 
     def _after(self, step: FloatArray) -> FloatArray:
-        after: FloatArray = self.angles + step[:, self.blocks[:, 0]]
+        after: FloatArray = self.angles + step[:, self.turns]
         return after
 
     def _limited(self, angles: FloatArray) -> FloatArray:

@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from motionedit.core.priorities.continuity import filtered_root, smoothed_displacement
+from motionedit.core.priorities.continuity import filtered_root, on_channels, smoothed_displacement
 from motionedit.core.priorities.frames import Run, Solved, known_after, run_of, solve_frames, solve_in_order
 from motionedit.core.priorities.recruiting import Recruits
 from motionedit.core.priorities.settings import PaperFilter, Passes
+from motionedit.core.priorities.straight import bent_where_missed
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import IntArray
@@ -22,10 +23,11 @@ def solve(run: Run, smoothing: Passes | PaperFilter) -> tuple[Solved, IntArray]:
 def solve_in_passes(run: Run, smoothing: Passes) -> tuple[Solved, IntArray]:
     """Return the motion solved, smoothed and solved again, and the iterations (F,) of the first solve."""
     motion, first = run.motion, run.asked.body.first
-    state = solve_frames(run, motion, reference=motion, pull_root=False)
+    state = bent_where_missed(run, solve_frames(run, motion, reference=motion, pull_root=False))
     iterations = state.iterations.copy()
     for _ in range(smoothing.count):
         smooth = smoothed_displacement(motion, state.motion, sigma=smoothing.sigma, first=first)
+        smooth = on_channels(smooth, run.asked.body.hinges)
         known = known_after(run, state, smooth)
         del state  # of a long motion no more copies are kept than are needed
         state = solve_frames(run, smooth, reference=smooth, pull_root=True, known=known)

@@ -28,6 +28,11 @@ class Columns:
         """Number of unknowns, 3 K + 3."""
         return 3 * len(self.joints) + 3
 
+    @property
+    def root_is_free(self) -> bool:
+        """Whether the root has all three position channels; it moves along those that it has."""
+        return len(self.skeleton.position_axes[self.root]) == 3
+
 
 @dataclass(frozen=True, eq=False)
 class Recruited:

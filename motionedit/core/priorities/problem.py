@@ -82,11 +82,15 @@ class WeightedTask:
 
 @dataclass(frozen=True, eq=False)
 class HingeColumns:
-    """Columns that turn about one axis: their `places` (H,), axes (H, 3) in the joint, and limits (H, 2) in rad."""
+    """Columns that turn about one axis or two: their `places` (H,), axes (H, 3) in the joint, and limits (H, 2) in rad.
+
+    `second` (H,) tells which is the second hinge of its column; it follows the first.
+    """
 
     places: IntArray
     axes: FloatArray
     limits: FloatArray
+    second: BoolArray
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
+from motionedit.core.body.bones import below
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -67,11 +68,10 @@ def recruit_chain(skeleton: Skeleton, rule: RecruitRule, *, start: int, travel: 
     NotOnTheWayError
         If `up_to` is not on the way from the start to the root.
     """
-    chain = [int(j) for j in skeleton.chain(start)][::-1]
-    if travel in chain:
-        chain = chain[: chain.index(travel) + 1]
+    carried = below(skeleton, travel)
+    chain = [int(j) for j in skeleton.chain(start)[::-1] if carried[j]]
     if rule.kind == "joints":
-        return Recruits(frozenset(rule.joints), rule.root)
+        return Recruits(frozenset(j for j in rule.joints if carried[j]), rule.root)
     if rule.kind == "levels":
         return Recruits(frozenset(chain[: rule.levels]), root=False)
     if rule.kind == "up_to":

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
+    from motionedit.core.body.bends import Bend
     from motionedit.core.body.center_of_mass import Masses
     from motionedit.core.body.hinges import Hinge
     from motionedit.core.priorities.trajectories import Curve
@@ -47,10 +48,11 @@ class LayeredSettings:
 class Body:
     """What the edit knows of the body: its masses, hinges, the joint that carries the travel, the first moving frame.
 
-    Frames before `first` are a rest pose.
+    Frames before `first` are a rest pose. `bends` are its knees and elbows, where they are known.
     """
 
     masses: Masses
     hinges: tuple[Hinge, ...]
     travel: int
     first: int
+    bends: tuple[Bend, ...] = ()

@@ -64,10 +64,13 @@ class ControlPoint:
         return slice(self.start, self.stop + 1)
 
 
-def active_interval(points: Sequence[ControlPoint], *, ease_in: float, ease_out: float, frames: int) -> tuple[int, int]:
+def active_interval(
+    points: Sequence[ControlPoint], *, ease_in: float, ease_out: float, frames: int, since: int = 0
+) -> tuple[int, int]:
     """Return the first and last frame at which points act: eased in and out, cut at the clip's ends.
 
-    Both are rounded to the nearest frame, halves up, as every time is. No points act over the whole clip.
+    Both are rounded to the nearest frame, halves up, as every time is. No points act over the whole clip. Frames
+    before `since`, a rest pose, are in no ease.
 
     Raises
     ------
@@ -83,11 +86,17 @@ def active_interval(points: Sequence[ControlPoint], *, ease_in: float, ease_out:
         return 0, frames - 1
     first = round_half_up(points[0].start - ease_in)
     last = round_half_up(points[-1].stop + ease_out)
-    return max(first, 0), min(last, frames - 1)
+    return max(first, since if points[0].start >= since else 0), min(last, frames - 1)
 
 
 def position_targets(
-    path: FloatArray, points: Sequence[ControlPoint], *, ease_in: float, ease_out: float, curve: Curve
+    path: FloatArray,
+    points: Sequence[ControlPoint],
+    *,
+    ease_in: float,
+    ease_out: float,
+    curve: Curve,
+    since: int = 0,
 ) -> tuple[int, FloatArray]:
     """Return the first active frame and the targets from there on, shape (n, 3).
 
@@ -104,17 +113,22 @@ def position_targets(
     curve
         ``time``: S's parameter is time; ``index``: it is the knots' index, and T(t) is piecewise linear, as in the
         paper, whose speed jumps at uneven knots.
+    since : int
+        The first frame after a rest pose: neither eases nor velocities read those before.
 
     Raises
     ------
     ValueError
         If points overlap or are not in order.
     """
-    first, last = active_interval(points, ease_in=ease_in, ease_out=ease_out, frames=len(path))
+    first, last = active_interval(points, ease_in=ease_in, ease_out=ease_out, frames=len(path), since=since)
     targets = path.copy()
     if not points:
         return first, targets
-    velocity = np.gradient(path, axis=0) if len(path) > 1 else np.zeros_like(path)
+    velocity = np.zeros_like(path)
+    for part in (slice(0, since), slice(since, len(path))):
+        if len(path[part]) > 1:
+            velocity[part] = np.gradient(path[part], axis=0)
     absolute = any(point.position is not None for point in points)
     # What is splined is the path where a point gives a position, else the displacement from it.
     base, slope = (np.zeros_like(path), np.zeros_like(path)) if absolute else (path, velocity)
@@ -200,7 +214,7 @@ def _splined(run: list[_Knot], base: FloatArray, slope: FloatArray, *, at: IntAr
 
 
 def rotation_targets(
-    rotations: FloatArray, points: Sequence[ControlPoint], *, ease_in: float, ease_out: float
+    rotations: FloatArray, points: Sequence[ControlPoint], *, ease_in: float, ease_out: float, since: int = 0
 ) -> tuple[int, FloatArray]:
     """Return the first active frame and the target rotations from there on, shape (n, 4).
 
@@ -211,13 +225,15 @@ def rotation_targets(
     ----------
     rotations : shape (F, 4)
         The input's.
+    since : int
+        The first frame after a rest pose: no ease reads those before.
 
     Raises
     ------
     ValueError
         If points overlap or are not in order.
     """
-    first, last = active_interval(points, ease_in=ease_in, ease_out=ease_out, frames=len(rotations))
+    first, last = active_interval(points, ease_in=ease_in, ease_out=ease_out, frames=len(rotations), since=since)
     targets = rotations.copy()
     if not points:
         return first, targets

@@ -6,11 +6,10 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from motionedit.core.arrays import frozen
+from motionedit.core.body.bends import find_bends
 from motionedit.core.body.center_of_mass import Masses, find_masses
-from motionedit.core.body.hinges import OFF_AXIS_ENERGY, Hinge, find_hinges, hinge_of
+from motionedit.core.body.hinges import OFF_AXIS_ENERGY, Hinge, channel_hinges, find_hinges, hinge_of
 from motionedit.core.motion import Motion, scaled
 from motionedit.core.priorities.settings import Body
 from motionedit.core.units import STANDARD_LEG
@@ -19,7 +18,6 @@ from motionedit.errors import ClipError
 from motionedit.jobs.clip import resolve
 
 if TYPE_CHECKING:
-    from motionedit.core.skeleton import Skeleton
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.jobs.clip.faults import Faults
     from motionedit.spec.edit_prioritized import EditPrioritizedSpec
@@ -27,8 +25,6 @@ if TYPE_CHECKING:
 
 # Metres between which a leg is a person's, small or large, or a creature's: else the unit is a slip.
 _SHORTEST_LEG, _LONGEST_LEG = 0.3, 1.5
-# What the hinge of a joint with one rotation channel may turn: all there is.
-_ANY_ANGLE = (-2.0 * np.pi, 2.0 * np.pi)
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,10 +51,10 @@ def sized_clip(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults
         The skeleton has no length.
     """
     spec, anatomy, clip = loaded.model, facts.anatomy, facts.clip
-    if anatomy.leg_length <= 0.0:
-        raise ClipError("every OFFSET is 0; a body without length cannot be edited", file=clip.label)
-    scale = STANDARD_LEG / anatomy.leg_length
-    warnings = list(anatomy.warnings)
+    if anatomy.leg_length <= 0.0 and spec.constraints:
+        raise ClipError("its bones have no length; a body without length cannot be edited", file=clip.label)
+    scale = STANDARD_LEG / (anatomy.leg_length or STANDARD_LEG)
+    warnings = list(facts.warnings)
     if spec.unit is not None and not _SHORTEST_LEG <= anatomy.leg_length * spec.unit.metres <= _LONGEST_LEG:
         leg = anatomy.leg_length * spec.unit.metres
         warnings.append(f"a leg is {leg:.3g} m long where the unit is {spec.unit.name}: is that the clip's unit?")
@@ -66,7 +62,8 @@ def sized_clip(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults
     hinges = _hinges(loaded, facts, faults, warnings)
     motion = scaled(clip.motion, scale)
     sized = replace(masses, skeleton=motion.skeleton, points=frozen(masses.points * scale))
-    body = Body(sized, tuple(hinges), facts.travel, facts.first)
+    bends = find_bends(clip.motion.skeleton, facts.poses, anatomy, first=facts.first)
+    body = Body(sized, tuple(hinges), facts.travel, facts.first, bends)
     return SizedClip(facts, motion, body, masses, scale, tuple(warnings))
 
 
@@ -78,7 +75,7 @@ def _masses(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults: F
         if index is not None:
             given[index] = kilograms
     try:
-        return find_masses(skeleton, facts.anatomy, given=given or None)
+        return find_masses(facts.bones, facts.anatomy, given=given or None)
     except ValueError as error:
         raise place.error(str(error)) from None
 
@@ -86,12 +83,12 @@ def _masses(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults: F
 def _hinges(
     loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults: Faults, warnings: list[str]
 ) -> list[Hinge]:
-    """Return the hinges that the spec asks for, and the joints that have one rotation channel."""
+    """Return the hinges that the spec asks for, and those of joints that have one or two rotation channels."""
     motion, asked = facts.clip.motion, loaded.model.hinges
-    by_channel = _one_channel(motion.skeleton)
-    found: dict[int, Hinge] = {}
+    by_channel = channel_hinges(motion.skeleton)
+    found: dict[int, tuple[Hinge, ...]] = {}
     if asked == "auto":
-        found = {hinge.joint: hinge for hinge in find_hinges(motion, facts.anatomy, first=facts.first)}
+        found = {hinge.joint: (hinge,) for hinge in find_hinges(motion, facts.anatomy, first=facts.first)}
     elif not isinstance(asked, str):
         place = resolve.Place(loaded, ("hinges",), facts.clip.label)
         joints = [
@@ -101,9 +98,9 @@ def _hinges(
         for joint in joints:
             if joint is not None and joint not in by_channel:
                 hinge = _asked_hinge(motion, joint, facts.first, warnings)
-                found.update({} if hinge is None else {joint: hinge})
+                found.update({} if hinge is None else {joint: (hinge,)})
     found.update(by_channel)
-    return [found[joint] for joint in sorted(found)]
+    return [hinge for joint in sorted(found) for hinge in found[joint]]
 
 
 def _asked_hinge(motion: Motion, joint: int, first: int, warnings: list[str]) -> Hinge | None:
@@ -116,12 +113,3 @@ def _asked_hinge(motion: Motion, joint: int, first: int, warnings: list[str]) ->
             "axis); what the edit adds keeps to that axis"
         )
     return hinge
-
-
-def _one_channel(skeleton: Skeleton) -> dict[int, Hinge]:
-    """Return the joints whose file has one rotation channel: they cannot turn about anything else."""
-    found = {}
-    for joint, axes in enumerate(skeleton.rotation_axes):
-        if len(axes) == 1:
-            found[joint] = Hinge(joint, frozen(np.eye(3)[axes[0]]), _ANY_ANGLE, 0.0)
-    return found

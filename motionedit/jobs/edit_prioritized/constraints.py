@@ -125,6 +125,7 @@ class _Resolver:
             points=points,
             ease_in=spec.ease_in.in_frames(frame_time),
             ease_out=spec.ease_out.in_frames(frame_time),
+            since=self.facts.first,
             **given,
         )
         self._check_recruits(found, place)

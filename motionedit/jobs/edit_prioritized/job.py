@@ -25,7 +25,7 @@ from motionedit.jobs.clip.metrics import edit_metrics, feet_of
 from motionedit.jobs.edit_prioritized.body import sized_clip
 from motionedit.jobs.edit_prioritized.constraints import clip_constraints
 from motionedit.jobs.edit_prioritized.record import edit_record
-from motionedit.jobs.edit_prioritized.recruits import breach_error, breach_warnings, layer_lines
+from motionedit.jobs.edit_prioritized.recruits import breach_error, breach_warnings, immovable_warnings, layer_lines
 from motionedit.jobs.preview.with_page import with_page
 
 if TYPE_CHECKING:
@@ -106,7 +106,9 @@ class EditByPriorities:
             Everything that the spec names and the clip lacks.
         """
         faults = Faults()
-        sized = sized_clip(self.loaded, facts_of(clip, up=self.loaded.model.up), faults)
+        spec = self.loaded.model
+        given = resolve.body(spec.body, clip.motion.skeleton, resolve.Place(self.loaded, ("body",), task.label))
+        sized = sized_clip(self.loaded, facts_of(clip, up=spec.up, given=given), faults)
         constraints = self._constraints(sized, task, faults)
         faults.raise_all(f"what the spec names and {task.label} lacks")
         return replace(sized, warnings=(*sized.warnings, *_warnings_of(constraints, sized.masses))), constraints
@@ -163,11 +165,12 @@ class EditByPriorities:
         }
         asked = [each.constraint for each in constraints]
         breaches = breach_warnings(edit.breaches, asked, facts, rule=spec.recruiting_rule)
+        immovable = immovable_warnings(asked, edit.recruits, facts)
         return Outcome(
             _content(clip, edit, sized) if changed else unedited_bytes(clip),
             {"message": result.message, **about},
             result.status,
-            (*sized.warnings, *breaches, *_loose_feet(sized, asked, about["metrics"]), *result.warnings),
+            (*sized.warnings, *immovable, *breaches, *_loose_feet(sized, asked, about["metrics"]), *result.warnings),
             motion=_in_clip_units(edit, sized, slice(None)) if changed and self.verify else None,
             details=(*layer_lines(asked, edit.recruits, sized.body.hinges, facts), *breaches),
         )

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from motionedit.core.body.bones import below
+from motionedit.core.priorities.kinds.constraint import Movable
 from motionedit.core.priorities.problem import order_of_layers
 from motionedit.core.priorities.recruiting import Recruits
 from motionedit.jobs.clip import resolve
@@ -53,6 +55,34 @@ def breach_warnings(
         else:
             lines.append(f"{mover} moves {names} by {joints}, not recruited there: its priority may not hold")
     return lines
+
+
+def immovable_warnings(constraints: Sequence[Constraint], recruits: Sequence[Recruits], facts: ClipFacts) -> list[str]:
+    """Return a line for each thing that constraints ask to move and the clip's channels do not let move."""
+    skeleton, travel = facts.clip.motion.skeleton, facts.travel
+    names, carried = skeleton.names, below(skeleton, travel)
+    lines: list[str] = []
+    wants_root = False
+    for constraint, own in zip(constraints, recruits, strict=True):
+        asked = constraint.recruits(Movable(skeleton, travel, own.joints))
+        rule = getattr(constraint, "recruit", None)
+        listed = () if rule is None else rule.joints
+        for joint in listed:
+            if not carried[joint]:
+                why = f"it does not hang on {names[travel]}, which carries the travel"
+                lines.append(f"{constraint.name}: {names[joint]} is not recruited: {why}")
+            elif not skeleton.rotation_axes[joint]:
+                lines.append(f"{constraint.name}: {names[joint]} is not recruited: it has no rotation channels")
+        if not own.joints and not own.root:
+            lines.append(f"{constraint.name} recruits nothing: no joint on its way has channels to move it by")
+        wants_root = wants_root or asked.root
+    has = [axis for axis in range(3) if axis in skeleton.position_axes[travel]]
+    if wants_root and not has:
+        lines.append(f"{names[travel]} has no position channels: the body cannot be shifted")
+    elif wants_root and len(has) < 3:
+        axes = " and ".join("xyz"[axis] for axis in has)
+        lines.append(f"{names[travel]} has position channels for {axes} alone: the body is shifted along those")
+    return list(dict.fromkeys(lines))
 
 
 def layer_lines(

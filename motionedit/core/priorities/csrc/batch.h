@@ -1,8 +1,8 @@
 /* The layered solver in C: a batch of frames on their way, side by side in lanes, and who does what with it.
 
    The method is that of layers.py, homing.py and numpy_solver.py above this folder; what differs is how the same numbers are
-   found. The unknowns of a step are a world-axis increment for each column, or its angle alone where it is a hinge, and
-   the root's shift: n = 3 (K - H) + H + 3. The Jacobian J of a frame is never formed. Every row of every task is a force
+   found. The unknowns of a step are a world-axis increment for each column, or the angles of its hinges alone where it
+   has one or two, and the root's shift: n = 3 K + 3 without hinges. The Jacobian J of a frame is never formed. Every row of every task is a force
    f at a point and a torque t, shared by the columns of a chain:
 
        row . w  =  sum_j w_j . (l_j x f + t) + w_root . f,        l_j = point - p_j
@@ -64,7 +64,8 @@ typedef struct {
     Pull *pulls;
     Shared *shared;
     int shared_count;
-    int *column_hinge, *column_unknown;        /* shape (K,): its hinge, or -1; its first unknown */
+    int *column_hinge, *column_hinges;         /* shape (K,): its first hinge, or -1; how many it has */
+    int *column_unknown;                       /* shape (K,): its first unknown */
     int *hinge_felt, *hinge_felt_count;        /* shapes (H, R), (H,): the rows that feel it turn */
     V *hinge_axes, *hinge_angles, *hinge_rows; /* shapes (H, 3), in the world; (H,), (H, R) */
     V *hinge_fixed;                            /* rad, shape (H,) */

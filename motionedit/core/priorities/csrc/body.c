@@ -140,10 +140,16 @@ static void attraction(Batch *batch)
         const int h = batch->column_hinge[k];
         V turn[3], *z = batch->z + batch->column_unknown[k];
         turn_to(batch->reference + 4 * k, batch->local + 4 * i, turn);
-        if (h >= 0)
+        if (batch->column_hinges[k] == 1) {
             z[0] = along(problem->hinge[h].axis, turn);
-        else
-            turned(parent_rotation(batch, i), turn, z);
+            continue;
+        }
+        V in_world[3];
+        turned(parent_rotation(batch, i), turn, in_world);
+        if (h < 0)
+            memcpy(z, in_world, sizeof in_world);
+        for (int j = 0; j < batch->column_hinges[k]; j++)
+            z[j] = dot(batch->hinge_axes + 3 * (h + j), in_world);
     }
     root[0] = root[1] = root[2] = all(0.0);
     if (problem->pulls_root && problem->of.root >= 0) {
@@ -154,7 +160,8 @@ static void attraction(Batch *batch)
     }
 }
 
-/* The hinges' axes in the world (a turn about an axis leaves it where the parent has it) and angles (rad). */
+/* The hinges' axes in the world (a turn about an axis leaves it where the parent has it; the second of two is where the
+   joint itself has it) and angles (rad). */
 static void hinge_state(Batch *batch)
 {
     const Problem *problem = batch->problem;
@@ -162,7 +169,8 @@ static void hinge_state(Batch *batch)
         const Hinge *hinge = problem->hinge + h;
         const int64_t i = problem->column_node[hinge->column];
         V turn[3];
-        turned_plain(parent_rotation(batch, i), hinge->axis, batch->hinge_axes + 3 * h);
+        turned_plain(hinge->second ? batch->rotations + 9 * i : parent_rotation(batch, i), hinge->axis,
+            batch->hinge_axes + 3 * h);
         q_log(batch->local + 4 * i, turn);
         batch->hinge_angles[h] = along(hinge->axis, turn);
     }
@@ -184,6 +192,15 @@ static V apply_step(Batch *batch)
                 v[a] = problem->hinge[h].axis[a] * w[0];
         q_exp(v, turn);
         q_multiply(turn, q, turn);
+        if (batch->column_hinges[k] == 2) {
+            V own[4];
+            for (int a = 0; a < 3; a++)
+                v[a] = problem->hinge[h + 1].axis[a] * w[1];
+            q_exp(v, own);
+            q_multiply(turn, own, turn);
+            v[0] += problem->hinge[h].axis[0] * w[0], v[1] += problem->hinge[h].axis[1] * w[0];
+            v[2] += problem->hinge[h].axis[2] * w[0];
+        }
         /* 1 / sqrt(1 + x) to second order: x is rounding */
         const V size = 1.5 - 0.5 * (turn[0] * turn[0] + dot(turn + 1, turn + 1));
         const Mask stays = is_zero(dot(v, v));

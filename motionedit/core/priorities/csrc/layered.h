@@ -34,8 +34,11 @@ typedef struct {
     double axis[3];       /* what an aim looks along, in its joint's frame */
 } Task;
 
+/* A joint of two hinges has them one after the other: the first turns about an axis of the parent's frame, the second
+   about one of its own. */
 typedef struct {
     int64_t column;
+    int64_t second; /* whether it is the second one of its column */
     double axis[3]; /* in its joint's frame */
     double limits[2];
 } Hinge;

@@ -120,7 +120,7 @@ static void list_felt(Batch *batch, int64_t h)
         int feels = 0;
         for (int p = 0; p < pull->parts; p++)
             for (int i = 0; i < pull->part[p].count; i++)
-                feels |= batch->column_hinge[pull->part[p].columns[i]] == h;
+                feels |= pull->part[p].columns[i] == problem->hinge[h].column;
         for (int64_t r = 0; r < problem->task[t].rows && feels; r++)
             felt[count++] = pull->first_row + (int)r;
     }
@@ -182,17 +182,19 @@ static void lay_out_layers(Batch *batch, char **memory, size_t *needed)
     }
 }
 
-/* A column's hinge, and its first unknown: a hinge has one, others have three. */
+/* A column's hinges, and its first unknown: a hinge has one, columns without have three. */
 static void number_unknowns(Batch *batch)
 {
     const Problem *problem = batch->problem;
     for (int64_t k = 0; k < problem->of.columns; k++)
-        batch->column_hinge[k] = -1;
-    for (int64_t h = 0; h < problem->of.hinges; h++)
+        batch->column_hinge[k] = -1, batch->column_hinges[k] = 0;
+    for (int64_t h = problem->of.hinges - 1; h >= 0; h--) {
         batch->column_hinge[problem->hinge[h].column] = (int)h;
+        batch->column_hinges[problem->hinge[h].column]++;
+    }
     for (int64_t k = 0, unknown = 0; k < problem->of.columns; k++) {
         batch->column_unknown[k] = (int)unknown;
-        unknown += batch->column_hinge[k] < 0 ? 3 : 1;
+        unknown += batch->column_hinges[k] == 0 ? 3 : batch->column_hinges[k];
     }
 }
 
@@ -201,7 +203,10 @@ static size_t lay_out(Batch *batch, char *memory)
 {
     const Problem *problem = batch->problem;
     const size_t nodes = problem->of.nodes, R = problem->of.rows, K = problem->of.columns, H = problem->of.hinges;
-    batch->unknowns = (int)(3 * (K - H) + H + 3);
+    size_t hinged = 0;
+    for (size_t h = 0; h < H; h++)
+        hinged += !problem->hinge[h].second;
+    batch->unknowns = (int)(3 * (K - hinged) + H + 3);
     const size_t n = batch->unknowns;
     size_t needed = 0;
     char **from = &memory;
@@ -221,7 +226,7 @@ static size_t lay_out(Batch *batch, char *memory)
     batch->dependent_row = PLACES(R);
     batch->z = NUMBERS(n), batch->home = NUMBERS(n), batch->step = NUMBERS(n), batch->fast = NUMBERS(n);
     batch->home_before = NUMBERS(n), batch->step_before = NUMBERS(n);
-    batch->column_hinge = PLACES(K), batch->column_unknown = PLACES(K);
+    batch->column_hinge = PLACES(K), batch->column_hinges = PLACES(K), batch->column_unknown = PLACES(K);
 #undef NUMBERS
 #undef MASKS
 #undef PLACES

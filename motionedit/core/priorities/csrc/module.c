@@ -41,7 +41,7 @@ static const Field TASK_FIELDS[] = {INTEGER(Task, kind), INTEGER(Task, layer), I
     INTEGER(Task, targets), NUMBER(Task, weight), FIELD(Task, offset, "3f8"), FIELD(Task, measure, "(3,3)f8"),
     FIELD(Task, axis, "3f8"), {0}};
 static const Field HINGE_FIELDS[] = {
-    INTEGER(Hinge, column), FIELD(Hinge, axis, "3f8"), FIELD(Hinge, limits, "2f8"), {0}};
+    INTEGER(Hinge, column), INTEGER(Hinge, second), FIELD(Hinge, axis, "3f8"), FIELD(Hinge, limits, "2f8"), {0}};
 
 static const struct {
     const char *name;

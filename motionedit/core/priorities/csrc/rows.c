@@ -1,5 +1,12 @@
 /* J by its levers: G = J J^T, J v and J^T y ([PRIO] 3). Part of solver.c. */
 
+/* The unknown of a step that is a hinge's turn. */
+static V *hinge_turn(const Batch *batch, V *v, int64_t h)
+{
+    const Hinge *hinge = batch->problem->hinge + h;
+    return v + batch->column_unknown[hinge->column] + hinge->second;
+}
+
 /* What the rows have along a hinge's axis: hinge_rows[h][r] = a . (l x f + t). */
 static void hinge_rows(Batch *batch)
 {
@@ -11,14 +18,14 @@ static void hinge_rows(Batch *batch)
         for (int p = 0; p < pull->parts; p++) {
             const Part *part = pull->part + p;
             for (int i = 0; i < part->count; i++) {
-                const int h = batch->column_hinge[part->columns[i]];
-                if (h < 0)
-                    continue;
-                V *out = batch->hinge_rows + h * problem->of.rows + pull->first_row, lever[3];
-                const V *axis = batch->hinge_axes + 3 * h;
-                cross(axis, part->levers + 3 * i, lever); /* a . (l x f) = f . (a x l) */
-                for (int64_t r = 0; r < problem->task[t].rows; r++)
-                    out[r] += dot(part->force[r], lever) + dot(part->torque[r], axis);
+                const int column = part->columns[i], first = batch->column_hinge[column];
+                for (int h = first; h < first + batch->column_hinges[column]; h++) {
+                    V *out = batch->hinge_rows + h * problem->of.rows + pull->first_row, lever[3];
+                    const V *axis = batch->hinge_axes + 3 * h;
+                    cross(axis, part->levers + 3 * i, lever); /* a . (l x f) = f . (a x l) */
+                    for (int64_t r = 0; r < problem->task[t].rows; r++)
+                        out[r] += dot(part->force[r], lever) + dot(part->torque[r], axis);
+                }
             }
         }
     }
@@ -146,12 +153,14 @@ static void rows_times(const Batch *batch, const V *v, V *out)
             const Part *part = pull->part + p;
             V moved[3] = {all(0.0), all(0.0), all(0.0)}, twist[3] = {all(0.0), all(0.0), all(0.0)};
             for (int i = 0; i < part->count; i++) {
-                const int h = batch->column_hinge[part->columns[i]];
-                const V *w = v + batch->column_unknown[part->columns[i]];
+                const int column = part->columns[i], h = batch->column_hinge[column];
+                const V *w = v + batch->column_unknown[column];
                 V turn[3];
                 if (h >= 0) {
                     for (int a = 0; a < 3; a++)
                         turn[a] = w[0] * batch->hinge_axes[3 * h + a];
+                    if (batch->column_hinges[column] == 2)
+                        add_scaled(turn, w[1], batch->hinge_axes + 3 * (h + 1));
                     w = turn;
                 }
                 if (part->has_force) {
@@ -191,8 +200,8 @@ static void add_rows_transposed(const Batch *batch, const V *y, V *out)
                     add_scaled(torque, of, part->torque[r]);
             }
             for (int i = 0; i < part->count; i++) {
-                const int h = batch->column_hinge[part->columns[i]];
-                V turn[3] = {torque[0], torque[1], torque[2]}, *to = out + batch->column_unknown[part->columns[i]];
+                const int column = part->columns[i], h = batch->column_hinge[column];
+                V turn[3] = {torque[0], torque[1], torque[2]}, *to = out + batch->column_unknown[column];
                 if (part->has_force) {
                     V lever[3];
                     cross(part->levers + 3 * i, force, lever);
@@ -200,15 +209,15 @@ static void add_rows_transposed(const Batch *batch, const V *y, V *out)
                 }
                 if (h < 0)
                     add(to, turn);
-                else
-                    to[0] += dot(batch->hinge_axes + 3 * h, turn);
+                for (int j = 0; j < batch->column_hinges[column]; j++)
+                    to[j] += dot(batch->hinge_axes + 3 * (h + j), turn);
             }
             if (part->root)
                 add(out + batch->unknowns - 3, force);
         }
     }
     for (int64_t h = 0; h < problem->of.hinges; h++) {
-        V *turn = out + batch->column_unknown[problem->hinge[h].column];
+        V *turn = hinge_turn(batch, out, h);
         *turn = only(batch->hinge_free[h], *turn);
     }
 }

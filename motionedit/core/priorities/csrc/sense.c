@@ -69,15 +69,17 @@ static int are_tasks(const Problem *problem)
     return sense && rows == of->rows;
 }
 
-/* Hinges are columns, no column two. */
+/* Hinges are columns, a column's second follows its first. */
 static int are_hinges(const Problem *problem)
 {
     const int64_t count = problem->of.hinges;
     int sense = 1;
     for (int64_t h = 0; h < count; h++) {
         sense &= between(0, problem->hinge[h].column, problem->of.columns);
+        const Hinge *hinge = problem->hinge + h;
+        sense &= between(0, hinge->second, 2) && (!hinge->second || (h > 0 && !hinge[-1].second));
         for (int64_t other = 0; other < h; other++)
-            sense &= problem->hinge[other].column != problem->hinge[h].column;
+            sense &= (problem->hinge[other].column == hinge->column) == (hinge->second && other == h - 1);
     }
     return sense;
 }

@@ -14,11 +14,6 @@ static V *scratch(const Batch *batch, int which)
     return batch->scratch_rows + (2 + which) * batch->problem->of.rows;
 }
 
-static V *hinge_turn(const Batch *batch, V *v, int64_t h)
-{
-    return v + batch->column_unknown[batch->problem->hinge[h].column];
-}
-
 /* Hinges on their limits take no part. */
 static void without_fixed_hinges(const Batch *batch, V *v)
 {
@@ -171,7 +166,8 @@ static V bound_turns(Batch *batch)
     V largest = all(0.0);
     for (int64_t k = 0; k < batch->problem->of.columns; k++) {
         const V *w = batch->step + batch->column_unknown[k];
-        largest = larger(largest, batch->column_hinge[k] < 0 ? dot(w, w) : w[0] * w[0]);
+        const int hinges = batch->column_hinges[k];
+        largest = larger(largest, hinges == 0 ? dot(w, w) : w[0] * w[0] + (hinges == 2 ? w[1] * w[1] : all(0.0)));
     }
     largest = root_of(largest);
     if (!any(less(all(constants->largest_turn), largest)))

@@ -83,7 +83,12 @@ class Aim(EffectorConstraint):
         given = next(point.position for point in self.points if point.position is not None)
         gaze = origin + np.linalg.norm(given - origin, axis=1, keepdims=True) * look
         _, positions = position_targets(
-            gaze, self.points, ease_in=self.ease_in, ease_out=self.ease_out, curve=scene.curve
+            gaze,
+            self.points,
+            ease_in=self.ease_in,
+            ease_out=self.ease_out,
+            curve=scene.curve,
+            since=self.since,
         )
         return Targets(first, last, positions @ self.measure.axes)
 

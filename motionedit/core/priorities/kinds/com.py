@@ -80,7 +80,12 @@ class CenterOfMass(Constraint):
             now = before if self._has_goals(scene.goals, span) else scene.others()
             path = self._mean(now.poses, scene.goals) + path - self._mean(before.poses, {})
         _, positions = position_targets(
-            path @ self.measure.axes.T, self.points, ease_in=self.ease_in, ease_out=self.ease_out, curve=scene.curve
+            path @ self.measure.axes.T,
+            self.points,
+            ease_in=self.ease_in,
+            ease_out=self.ease_out,
+            curve=scene.curve,
+            since=self.since,
         )
         return Targets(*span, positions)
 

@@ -154,6 +154,8 @@ class Constraint(ABC):
         When and where; none: as in the input, the whole clip. Positions along the measuring axes.
     ease_in, ease_out : float
         Frames.
+    since : int
+        The first frame after a rest pose, which no ease reads.
     """
 
     type: ClassVar[str]
@@ -173,6 +175,7 @@ class Constraint(ABC):
     points: tuple[ControlPoint, ...] = ()
     ease_in: float = 0.0
     ease_out: float = 0.0
+    since: int = 0
 
     @property
     def at(self) -> Effector | None:
@@ -181,7 +184,9 @@ class Constraint(ABC):
 
     def active(self, frames: int) -> tuple[int, int]:
         """Return the first and last frame at which the constraint is active."""
-        return active_interval(self.points, ease_in=self.ease_in, ease_out=self.ease_out, frames=frames)
+        return active_interval(
+            self.points, ease_in=self.ease_in, ease_out=self.ease_out, frames=frames, since=self.since
+        )
 
     @abstractmethod
     def recruits(self, movable: Movable) -> Recruits:

@@ -49,7 +49,13 @@ class Orientation(EffectorConstraint):
 def turned(constraint: EffectorConstraint, scene: Scene) -> FloatArray:
     """Return the rotations (n, 4) that a joint's points ask for, as they are measured."""
     turns = constraint.own_turns(scene)
-    return rotation_targets(turns, constraint.points, ease_in=constraint.ease_in, ease_out=constraint.ease_out)[1]
+    return rotation_targets(
+        turns,
+        constraint.points,
+        ease_in=constraint.ease_in,
+        ease_out=constraint.ease_out,
+        since=constraint.since,
+    )[1]
 
 
 def orientation_task(constraint: EffectorConstraint, targets: Targets, stage: Stage) -> OrientationTask:

@@ -55,6 +55,7 @@ def placed(constraint: EffectorConstraint, scene: Scene) -> FloatArray:
         constraint.points,
         ease_in=constraint.ease_in,
         ease_out=constraint.ease_out,
+        since=constraint.since,
         curve=scene.curve,
     )[1]
 

@@ -37,7 +37,7 @@ def arms_of(seed, frames=8):
     axis /= np.linalg.norm(axis)
     angles = rot.log(motion.rotations[:, 4]) @ axis
     limits = np.array([[angles.min() - 0.05, angles.max() + 0.05], [-3.0, 3.0]])
-    hinges = HingeColumns(np.array([3, 4]), np.stack([axis, axis]), limits)
+    hinges = HingeColumns(np.array([3, 4]), np.stack([axis, axis]), limits, np.zeros(2, dtype=bool))
     return Problem(
         columns, moves_root=False, layers=(tuple(tasks),), hinges=hinges, attraction=1.0, max_iterations=12
     ), motion

@@ -39,6 +39,8 @@ def slips():
         yield "tasks", field, 0, value, "tasks"
     yield "hinges", "column", 0, far, "hinges"
     yield "hinges", "column", 0, 4, "hinges"  # twice
+    for at, value in ((0, 1), (1, 1), (1, 2), (1, -1)):  # a second one without its first; neither
+        yield "hinges", "second", at, value, "hinges"
     for field, value in (("nodes", 2**61), ("joints", -1), ("columns", 2**40), ("root", far)):
         yield "settings", field, 0, value, "sizes"
 

@@ -1,0 +1,109 @@
+"""Straight limbs: a singularity that no pull leaves, so that they are bent a little where a layer is not met.
+
+A straight limb cannot begin to shorten: the first derivative of its length by its bend is nothing. Frames in which a
+constraint is missed, and a knee or an elbow straight that some constraint recruits, are solved again from a bend of a
+degree: a body that shall go down is missed, though the feet that hold it up are not.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core import rotations as rot
+from motionedit.core.motion import Motion
+from motionedit.core.priorities.frames import Known, Solved, solve_frames
+from motionedit.core.priorities.targets import errors_of
+
+if TYPE_CHECKING:
+    from motionedit.core.arrays import BoolArray, FloatArray
+    from motionedit.core.body.bends import Bend
+    from motionedit.core.body.hinges import Hinge
+    from motionedit.core.priorities.frames import Run
+
+_LITTLE = float(np.radians(1.0))
+_MISSED = 1e-4  # metres or radians
+
+
+def bent_where_missed(run: Run, state: Solved) -> Solved:
+    """Return a solved motion, frames with missed constraints and straight limbs solved again from bent limbs.
+
+    A frame keeps what it had where that does not help.
+    """
+    body, recruited = run.asked.body, frozenset().union(*(each.joints for each in run.asked.recruits))
+    bends = [bend for bend in body.bends if bend.joint in recruited and bend.straight.any()]
+    if not bends:
+        return state
+    missed = np.max(_lefts(run, state.motion), axis=0) > _MISSED
+    rotations = state.motion.rotations.copy()
+    again = np.zeros(len(rotations), dtype=np.bool_)
+    for bend in bends:
+        frames = missed & bend.straight & _is_recruited(run, bend)
+        if not frames.any():
+            continue
+        hinges = [hinge for hinge in body.hinges if hinge.joint == bend.joint]
+        rotations[frames, bend.joint] = _bent(rotations[frames, bend.joint], bend, hinges)
+        again |= frames
+    if not again.any():
+        return state
+    start = Motion(state.motion.skeleton, rotations, state.motion.translations, state.motion.frame_time)
+    solved = solve_frames(run, start, reference=run.motion, pull_root=False, known=Known(~again, state.ranks))
+    better = again & _is_better(run, solved.motion, state.motion)
+    return _mixed(solved, state, better)
+
+
+def _is_recruited(run: Run, bend: Bend) -> BoolArray:
+    """Return at which frames a constraint is active that recruits a knee or an elbow, shape (F,)."""
+    there = np.zeros(len(run.motion), dtype=np.bool_)
+    for recruits, targets in zip(run.asked.recruits, run.asked.targets, strict=True):
+        if bend.joint in recruits.joints:
+            there[targets.span] = True
+    return there
+
+
+def _lefts(run: Run, motion: Motion) -> list[FloatArray]:
+    """Return what is left of each constraint at every frame, metres or radians, shape (F,); 0 where it is idle."""
+    lefts = []
+    for errors, targets in zip(errors_of(run.asked, motion), run.asked.targets, strict=True):
+        left = np.zeros(len(motion))
+        parts = [part for part in (errors.positions, errors.angles) if part is not None]
+        left[targets.span] = np.max(parts, axis=0)
+        lefts.append(left)
+    return lefts
+
+
+def _is_better(run: Run, after: Motion, before: Motion) -> BoolArray:
+    """Return at which frames the most important constraint that differs is nearer to its goal, shape (F,)."""
+    order = np.argsort([-each.priority for each in run.asked.constraints], kind="stable")
+    gains = np.array(_lefts(run, before))[order] - np.array(_lefts(run, after))[order]
+    gains[np.abs(gains) < 0.1 * _MISSED] = 0.0
+    first = np.argmax(gains != 0.0, axis=0)
+    better: BoolArray = gains[first, np.arange(gains.shape[1])] > 0.0
+    return better
+
+
+def _bent(rotations: FloatArray, bend: Bend, hinges: list[Hinge]) -> FloatArray:
+    """Return a joint's local rotations bent by a degree: about its bend's axis, or the nearest that its hinges have."""
+    if not hinges:
+        return rot.multiply(rot.exp(_LITTLE * bend.axis), rotations)
+    axes = [rot.rotate(rotations[0], hinge.axis) if hinge.is_second else hinge.axis for hinge in hinges]
+    along = [float(axis @ bend.axis) for axis in axes]
+    nearest = int(np.argmax(np.abs(along)))
+    turn = rot.exp(_LITTLE * np.sign(along[nearest]) * hinges[nearest].axis)
+    if hinges[nearest].is_second:
+        return rot.multiply(rotations, turn)
+    return rot.multiply(turn, rotations)
+
+
+def _mixed(new: Solved, old: Solved, better: BoolArray) -> Solved:
+    """Return the new solution at some frames, the old one at all others."""
+    rotations = np.where(better[:, None, None], new.motion.rotations, old.motion.rotations)
+    translations = np.where(better[:, None, None], new.motion.translations, old.motion.translations)
+    return Solved(
+        replace(old.motion, rotations=rotations, translations=translations),
+        np.where(better, new.iterations, old.iterations),
+        np.where(better, new.converged, old.converged),
+        np.where(better[:, None], new.ranks, old.ranks),
+    )

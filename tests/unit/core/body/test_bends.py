@@ -1,0 +1,87 @@
+"""Knees and elbows bend to their own side, also where no frame of a clip shows it."""
+
+import numpy as np
+import pytest
+from human import skeleton_of, standing, with_rotation
+
+from motionedit.core import rotations as rot
+from motionedit.core.body.anatomy import find_anatomy
+from motionedit.core.body.bends import find_bends
+from motionedit.core.kinematics import forward
+from motionedit.core.skeleton import EndSite
+
+SKELETON = skeleton_of()
+INDEX = SKELETON.names.index
+
+
+def bends_of(motion, first=0):
+    anatomy = find_anatomy(motion.skeleton)
+    bends = find_bends(motion.skeleton, forward(motion), anatomy, first=first)
+    return {motion.skeleton.names[bend.joint]: bend for bend in bends}
+
+
+def moved_by(motion, bend, joint):
+    """Return where a joint goes when a limb bends by a degree about the bend's axis."""
+    turned = rot.multiply(rot.exp(np.radians(1.0) * bend.axis), motion.rotations[:, bend.joint])
+    rotations = motion.rotations.copy()
+    rotations[:, bend.joint] = turned
+    after = forward(type(motion)(motion.skeleton, rotations, motion.translations, motion.frame_time))
+    return (after.positions - forward(motion).positions)[0, joint]
+
+
+def test_straight_legs_bend_to_the_toes_side_and_straight_arms_so_that_hands_come_to_the_front():
+    motion = standing(SKELETON)
+    bends = bends_of(motion)
+    assert list(bends) == ["LeftLeg", "RightLeg", "LeftForeArm", "RightForeArm"]
+    for side in ("Left", "Right"):
+        # The toes point along z: the shank goes back, so that the knee can come forward.
+        assert moved_by(motion, bends[f"{side}Leg"], INDEX(f"{side}Foot"))[2] < -5e-3
+        assert moved_by(motion, bends[f"{side}ForeArm"], INDEX(f"{side}Hand"))[2] > 3e-3
+
+
+@pytest.mark.parametrize("turn", [(0.0, 2.0, 0.0), (1.2, 0.0, 0.4)])
+def test_the_side_turns_with_the_body(turn):
+    motion = with_rotation(standing(SKELETON), "Hips", slice(None), turn)
+    plain, turned = bends_of(standing(SKELETON)), bends_of(motion)
+    for name, bend in plain.items():
+        np.testing.assert_allclose(turned[name].axis, bend.axis, atol=1e-9)
+
+
+def test_a_limb_bends_as_it_does_elsewhere_in_the_clip_and_a_rest_pose_does_not_count():
+    motion = with_rotation(standing(SKELETON), "LeftForeArm", slice(8, 12), (0.0, 0.0, 0.7))
+    np.testing.assert_allclose(bends_of(motion)["LeftForeArm"].axis, [0.0, 0.0, 1.0], atol=1e-9)
+    rest = with_rotation(motion, "LeftForeArm", slice(0, 2), (0.0, 0.0, -1.4))
+    np.testing.assert_allclose(bends_of(rest, first=2)["LeftForeArm"].axis, [0.0, 0.0, 1.0], atol=1e-9)
+
+
+def test_a_foot_without_a_toe_joint_shows_the_side_by_its_end_site():
+    bones = [row for row in human_bones() if "Toe" not in row[0]]
+    ends = {"LeftFoot": (0.0, -0.06, 0.13), "RightFoot": (0.0, -0.06, 0.13), "Head": (0.0, 0.18, 0.0)}
+    motion = standing(skeleton_of(bones, ends))
+    bend = bends_of(motion)["LeftLeg"]
+    assert moved_by(motion, bend, motion.skeleton.names.index("LeftFoot"))[2] < -5e-3
+
+
+def human_bones():
+    from human import BONES
+
+    return BONES
+
+
+@pytest.mark.parametrize(("degrees", "straight"), [(0.0, True), (0.1, True), (0.3, False), (40.0, False)])
+def test_a_limb_is_straight_up_to_a_fifth_of_a_degree(degrees, straight):
+    motion = with_rotation(standing(SKELETON), "LeftLeg", slice(None), (np.radians(degrees), 0.0, 0.0))
+    bend = bends_of(motion)["LeftLeg"]
+    assert bend.straight.tolist() == [straight] * len(motion)
+
+
+def test_a_body_without_limbs_has_no_bends():
+    assert bends_of(standing(skeleton_of([("Hips", None, (0, 0, 0)), ("Tip", "Hips", (0, 1, 0))]))) == {}
+
+
+def test_limbs_of_no_length_have_no_bends():
+    flat = skeleton_of(scale=0.0)
+    sites = tuple(EndSite(site.joint, np.zeros(3)) for site in flat.end_sites)
+    motion = standing(type(flat)(flat.names, flat.parents, flat.offsets, flat.channels, sites))
+    anatomy = find_anatomy(SKELETON)
+    assert find_bends(motion.skeleton, forward(motion), anatomy, first=0) == ()

@@ -1,0 +1,114 @@
+"""Straight limbs bend where something would be missed, and nowhere else."""
+
+import numpy as np
+import pytest
+from human import BONES, skeleton_of, standing, with_rotation
+
+from motionedit.core.arrays import frozen
+from motionedit.core.body.anatomy import find_anatomy
+from motionedit.core.body.bends import find_bends
+from motionedit.core.body.center_of_mass import find_masses
+from motionedit.core.body.hinges import Hinge
+from motionedit.core.kinematics import Effector, forward
+from motionedit.core.priorities.edit import edit_by_priorities
+from motionedit.core.priorities.kinds import Orientation, Position
+from motionedit.core.priorities.recruiting import RecruitRule
+from motionedit.core.priorities.settings import Body, LayeredSettings, Passes
+from motionedit.core.priorities.trajectories import ControlPoint
+
+# Thighs hang on the hips: hip joints between them would let the hips down without a knee.
+SKELETON = skeleton_of(
+    [
+        (name, "Hips" if parent in ("LHipJoint", "RHipJoint") else parent, offset)
+        for name, parent, offset in BONES
+        if "HipJoint" not in name
+    ]
+)
+INDEX = SKELETON.names.index
+FRAMES = 60
+HERE = np.zeros(3)
+
+
+def edited(motion, constraints, *, hinges=(), bends=True, passes=0):
+    anatomy = find_anatomy(SKELETON)
+    found = find_bends(SKELETON, forward(motion), anatomy, first=0) if bends else ()
+    body = Body(find_masses(SKELETON, anatomy), tuple(hinges), 0, 0, found)
+    return edit_by_priorities(motion, constraints, body, LayeredSettings(smoothing=Passes(passes)))
+
+
+def wanted(name, shift, *, priority=1, first=30, last=34, **more):
+    point = ControlPoint("hold", first, last, None, np.array(shift, dtype=float))
+    return Position(name=name, priority=priority, effector=Effector(INDEX(name), HERE), points=(point,), **more)
+
+
+def feet(priority=9):
+    made = []
+    for side in ("Left", "Right"):
+        effector = Effector(INDEX(f"{side}Foot"), HERE)
+        made += [
+            Position(name=f"{side} place", priority=priority, effector=effector),
+            Orientation(name=f"{side} turn", priority=priority, effector=effector),
+        ]
+    return made
+
+
+@pytest.fixture(params=["compiled", "numpy"])
+def solver(request, monkeypatch):
+    monkeypatch.setenv("MOTIONEDIT_SOLVER", request.param if request.param == "numpy" else "")
+
+
+@pytest.mark.usefixtures("solver")
+@pytest.mark.parametrize("passes", [0, 3])
+def test_the_hips_go_down_on_straight_legs_whose_feet_are_held(passes):
+    motion = standing(SKELETON, FRAMES)
+    edit = edited(motion, [wanted("Hips", (0.0, -0.12, 0.0)), *feet()], passes=passes)
+    before, after = forward(motion).positions, forward(edit.motion).positions
+    assert max(errors.positions.max() for errors in edit.errors if errors.positions is not None) < 1e-6
+    assert after[32, INDEX("Hips"), 1] - before[32, INDEX("Hips"), 1] == pytest.approx(-0.12, abs=1e-6)
+    for side in ("Left", "Right"):
+        assert after[32, INDEX(f"{side}Leg"), 2] > 0.05, "a knee goes forward"
+    np.testing.assert_array_equal(edit.motion.rotations[:4], motion.rotations[:4])
+
+
+def test_without_knowing_its_knees_a_body_stays_where_it_is():
+    edit = edited(standing(SKELETON, FRAMES), [wanted("Hips", (0.0, -0.12, 0.0)), *feet()], bends=False)
+    assert edit.errors[0].positions.max() == pytest.approx(0.12, abs=1e-6)
+
+
+@pytest.mark.usefixtures("solver")
+def test_a_straight_arm_moves_toward_its_shoulder():
+    rule = RecruitRule("up_to", joint=INDEX("LeftArm"))
+    motion = standing(SKELETON, FRAMES)
+    edit = edited(motion, [wanted("LeftHand", (0.0, 0.1, 0.0), recruit=rule)])
+    assert edit.errors[0].positions.max() < 1e-6
+
+
+def test_a_limb_that_cannot_help_keeps_what_it_had():
+    # Along the arm and away from the body: out of reach, bent or not.
+    rule = RecruitRule("up_to", joint=INDEX("LeftArm"))
+    motion = standing(SKELETON, FRAMES)
+    constraint = wanted("LeftHand", (0.0, -0.2, 0.0), recruit=rule)
+    plain, bent = (edited(motion, [constraint], bends=bends) for bends in (False, True))
+    np.testing.assert_array_equal(plain.motion.rotations, bent.motion.rotations)
+
+
+def test_a_straight_limb_that_misses_nothing_stays_straight():
+    motion = with_rotation(standing(SKELETON, FRAMES), "LeftUpLeg", slice(None), (-0.2, 0.0, 0.0))
+    rule = RecruitRule("up_to", joint=INDEX("RightArm"))
+    edit = edited(motion, [*feet(), wanted("RightHand", (0.0, 0.01, 0.02), recruit=rule)])
+    assert edit.errors[-1].positions.max() < 1e-6
+    knees = [INDEX("LeftLeg"), INDEX("RightLeg")]
+    np.testing.assert_allclose(edit.motion.rotations[:, knees], motion.rotations[:, knees], atol=1e-15)
+
+
+@pytest.mark.usefixtures("solver")
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_straight_hinge_bends_about_its_own_axis(sign):
+    axis = sign * np.array([1.0, 0.0, 0.0])
+    hinges = [Hinge(INDEX(f"{side}Leg"), frozen(axis), (-3.0, 3.0), 0.0) for side in ("Left", "Right")]
+    motion = standing(SKELETON, FRAMES)
+    edit = edited(motion, [wanted("Hips", (0.0, -0.1, 0.0)), *feet()], hinges=hinges)
+    assert edit.errors[0].positions.max() < 1e-6
+    off = edit.motion.rotations[:, INDEX("LeftLeg"), 2:]
+    assert np.abs(off).max() < 1e-9
+    assert forward(edit.motion).positions[32, INDEX("LeftLeg"), 2] > 0.05
