@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from motionedit.cli.options import clips_argument, lenient_option, report_option
+from motionedit.cli.options import clips_argument, lenient_option, report_option, up_option
 from motionedit.cli.verbosity import verbosity_options
 
 if TYPE_CHECKING:
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     help="A joint whose position and orientation are printed at each --at; may be repeated.",
 )
 @click.option("--contacts", is_flag=True, help="List when each foot stands still on the ground.")
+@up_option
 @lenient_option
 @report_option
 @verbosity_options
@@ -37,6 +38,7 @@ def command(
     at: tuple[str, ...],
     joints: tuple[str, ...],
     contacts: bool,  # noqa: FBT001  click passes its options by name
+    up: str,
     lenient: bool,  # noqa: FBT001  as above
     report: Path | None,
 ) -> int:
@@ -58,7 +60,7 @@ def command(
         raise click.UsageError("--at and --joint go together: when, and what of the body")
     if report is not None:
         refuse_overwriting([report], [task.source for task in find_clips(clips) if task.source])
-    found = info.run(clips, at=list(at), joints=list(joints), contacts=contacts, lenient=lenient)
+    found = info.run(clips, at=list(at), joints=list(joints), contacts=contacts, up=up, lenient=lenient)
     if str(report) != "-" and found.text:
         click.echo(found.text.rstrip("\n"))
     show_failures(found.failures)

@@ -63,6 +63,13 @@ set_option = click.option(
 lenient_option = click.option(
     "--lenient", is_flag=True, help="Accept a clip whose row count differs from 'Frames:', with a warning."
 )
+up_option = click.option(
+    "--up",
+    type=click.Choice(["y", "z", "auto"]),
+    default="auto",
+    show_default=True,
+    help="The axis of the clips that points up.",
+)
 report_option = click.option(
     "--report",
     metavar="FILE",

@@ -12,6 +12,7 @@ from motionedit.cli.options import (
     lenient_option,
     output_option,
     overwrite_option,
+    up_option,
 )
 from motionedit.cli.verbosity import verbosity_options
 
@@ -25,6 +26,7 @@ from motionedit.cli.verbosity import verbosity_options
 @clips_argument
 @output_option("FILE", "The page (.html, moves) or the picture (.png or .svg, stands) to write.")
 @overwrite_option
+@up_option
 @lenient_option
 @click.option(
     "--report",
@@ -38,6 +40,7 @@ def command(
     clips: tuple[Path, ...],
     output: str,
     overwrite: bool,  # noqa: FBT001  click passes its options by name
+    up: str,
     lenient: bool,  # noqa: FBT001  as above
     report: Path | None,
 ) -> int:
@@ -50,6 +53,6 @@ def command(
 
     if not overwrite:
         refuse_existing([Path(output)])
-    for path in preview.run(clips, Path(output), report=report, lenient=lenient):
+    for path in preview.run(clips, Path(output), report=report, up=up, lenient=lenient):
         click.echo(path)
     return 0

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from motionedit.core.body.anatomy import find_anatomy
-from motionedit.core.body.ground import axis_vector, travel_joint
+from motionedit.core.body.anatomy import anatomy_of
+from motionedit.core.body.bones import travel_joint
+from motionedit.core.body.ground import axis_vector
 from motionedit.core.pca.database import DatabaseMotion, FitSettings, build_model
 from motionedit.core.pca.fit import AllTheSameError, ComponentCount, TooFewComponentsError
 from motionedit.core.pca.model import DatabaseClip
@@ -22,6 +23,7 @@ from motionedit.jobs.batch.one_clip import read_task
 from motionedit.jobs.batch.plan import ClipTask, refuse_overwriting
 from motionedit.jobs.batch.run import values_in_order
 from motionedit.jobs.clip import resolve
+from motionedit.jobs.clip.kept_rules import kept_body
 from motionedit.jobs.normalize.normalization_file import NAME, Normalization, NormalizedClip, read_normalization
 from motionedit.spec.fit_pca import FitPcaSpec
 
@@ -29,6 +31,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
+    from motionedit.core.body.anatomy import GivenBody
     from motionedit.core.motion import Motion
     from motionedit.core.pca.database import FittedModel
     from motionedit.core.pca.fit import PrincipalComponents
@@ -124,20 +127,28 @@ def fit(database: Database, loaded: LoadedSpec[FitPcaSpec] | None, *, options: R
             timeline=normalization.timeline,
             travel=travel_joint(first.motion),
             up=axis_vector(normalization.up),
-            leg_length=find_anatomy(first.motion.skeleton).leg_length,
+            leg_length=anatomy_of(first.motion, given=_body(loaded, database, first.motion.skeleton)).leg_length,
             settings=FitSettings(
                 representation="centred" if spec.rotation == "centred" else "exponential",
                 root_weight=spec.root_weight,
                 excluded=_excluded(loaded, first, database.label),
                 components=ComponentCount(spec.components, spec.explained_variance),
             ),
-            rules=normalization.rules,
+            rules=normalization.rules if not spec.body.plain else {**normalization.rules, "body": spec.body.plain},
         )
     except TooFewComponentsError as error:
         raise _too_few(loaded, spec, count, error.available) from None
     except AllTheSameError as error:
         raise ModelError(f"{error}: there is nothing to learn; give clips that differ", file=database.label) from error
     return Fit(fitted.model, _report(fitted, spec))
+
+
+def _body(loaded: LoadedSpec[FitPcaSpec] | None, database: Database, skeleton: Skeleton) -> GivenBody:
+    """Return what the spec says that joints are, else what the normalization's rules say."""
+    if loaded is not None and loaded.model.body.plain:
+        return resolve.body(loaded.model.body, skeleton, resolve.Place(loaded, ("body",), database.label))
+    rules = database.normalization.rules
+    return kept_body(rules, skeleton, label=database.list_label, clip=database.label)
 
 
 def _motions(database: Database, options: RunOptions) -> Iterator[DatabaseMotion]:
@@ -155,7 +166,7 @@ def _motions(database: Database, options: RunOptions) -> Iterator[DatabaseMotion
             continue
         if reference is None:
             reference = value.skeleton
-            height = find_anatomy(reference).height
+            height = anatomy_of(value).height
         try:
             against = items[0].task.label
             joint_map = match_joints(reference, value.skeleton, height=height, label=item.task.label, against=against)

@@ -7,6 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 from motionedit.spec import kinds
+from motionedit.spec.body import BodySpec
 from motionedit.spec.events import EventSpec, OrFrame, event_faults
 from motionedit.spec.faults import Fault
 from motionedit.spec.model import SpecModel
@@ -32,7 +33,11 @@ class Document(SpecModel):
         "nothing; serves reports in millimetres and the damped solver.",
     )
     up: Annotated[Literal["y", "z", "auto"], kinds.word("y", "z", "auto")] = Field(
-        default="auto", description="The axis that points up; auto: the one in which the head stands over the feet."
+        default="auto",
+        description="The axis that points up; auto: by the floor, the OFFSETs and the way the body stands.",
+    )
+    body: BodySpec = Field(
+        default=BodySpec(), description="Which joint is what, where it cannot be told by names and lengths."
     )
 
     @property

@@ -147,10 +147,10 @@ def read_task(task: ClipTask, *, lenient: bool) -> Clip:
 
 def _verify(clip: Clip, content: bytes, motion: Motion) -> dict[str, Any]:
     """Return what bvhio, an independent reader, found in the bytes to write; a difference fails the clip."""
-    from motionedit.core.body.anatomy import find_anatomy
+    from motionedit.core.body.anatomy import anatomy_of
     from motionedit.core.bvh import check_with_bvhio
 
-    result = check_with_bvhio(content, motion, leg_length=find_anatomy(motion.skeleton).leg_length)
+    result = check_with_bvhio(content, motion, leg_length=anatomy_of(motion).leg_length)
     if not result.ok:
         raise ClipError(
             f"--verify: bvhio reads joint {result.joint} at frame {result.frame} {result.distance:.4g} from its "

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
+from motionedit.core.body.anatomy import GivenBody
 from motionedit.core.kinematics import Effector
 from motionedit.dataclass import dataclass
+from motionedit.spec.body import NONE
 from motionedit.spec.faults import did_you_mean, listed
 
 if TYPE_CHECKING:
@@ -18,6 +21,7 @@ if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
     from motionedit.core.skeleton import Skeleton
     from motionedit.errors import MotionEditError
+    from motionedit.spec.body import BodySpec
     from motionedit.spec.times import Interval, Time
     from motionedit.spec.values import EffectorSpec, OrientationSpec
 
@@ -91,6 +95,32 @@ def joint(name: str, skeleton: Skeleton, place: Where) -> int:
 def joints(names: Sequence[str], skeleton: Skeleton, place: Where) -> tuple[int, ...]:
     """Return the indices of the joints of those names; `place` is the list's."""
     return tuple(joint(name, skeleton, place.at(i)) for i, name in enumerate(names))
+
+
+def body(spec: BodySpec, skeleton: Skeleton, place: Where) -> GivenBody:
+    """Return what a spec says that joints of a clip are; `place` is the key's.
+
+    Raises
+    ------
+    SpecError
+        Where the clip lacks a joint, or a limb's joints do not hang on one another in their order.
+    """
+    limbs: dict[str, tuple[int, ...] | None] = {}
+    for key in ("left_leg", "right_leg", "left_arm", "right_arm"):
+        names = getattr(spec, key)
+        limbs[key] = None if names is None else joints(names, skeleton, place.at(key))
+        for upper, lower in pairwise(limbs[key] or ()):
+            if upper not in skeleton.chain(lower):
+                at = place.at(key)
+                raise at.error(f"'{skeleton.names[lower]}' does not hang on '{skeleton.names[upper]}' in {at.clip}")
+    head = None if spec.head is None else -1 if spec.head == NONE else joint(spec.head, skeleton, place.at("head"))
+    return GivenBody(head, _both(limbs["left_leg"], limbs["right_leg"]), _both(limbs["left_arm"], limbs["right_arm"]))
+
+
+def _both(left: tuple[int, ...] | None, right: tuple[int, ...] | None) -> tuple[tuple[int, ...], ...] | None:
+    if left is None or right is None:
+        return None
+    return (left, right) if left else ()
 
 
 def effector(spec: EffectorSpec, skeleton: Skeleton, place: Where, *, scale: float = 1.0) -> Effector:

@@ -19,7 +19,9 @@ from motionedit.dataclass import dataclass
 from motionedit.jobs.batch.one_clip import Outcome
 from motionedit.jobs.batch.plan import plan
 from motionedit.jobs.batch.run import run_batch
+from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.facts import facts_of
+from motionedit.jobs.clip.kept_rules import kept_body
 from motionedit.jobs.clip.metrics import edit_metrics, feet_of
 from motionedit.jobs.edit_pc.goals import clip_goals
 from motionedit.jobs.edit_pc.model_events import events_for_model, refuse_unknown_events
@@ -31,6 +33,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
+    from motionedit.core.body.anatomy import GivenBody
     from motionedit.core.bvh import Clip
     from motionedit.core.coefficients.edit import CoefficientEdit
     from motionedit.core.coefficients.projection import Projection
@@ -99,7 +102,12 @@ class _Edit:
 
     def __call__(self, clip: Clip, task: ClipTask) -> Outcome:
         spec, model = self.loaded.model, self.model
-        facts = facts_of(clip, up=axis_name(model.up), keep_rest_pose=model.rules["rest_pose"] == "keep")
+        facts = facts_of(
+            clip,
+            up=axis_name(model.up),
+            keep_rest_pose=model.rules["rest_pose"] == "keep",
+            given=self._body(clip, task),
+        )
         facts.refuse_one_frame()
         projection, events = self._projection(facts, task)
         poses = kinematics.forward(projection.motion) if spec.timing == "normalized" else facts.poses
@@ -114,6 +122,13 @@ class _Edit:
             first=facts.first if spec.timing == "original" else 0,
         )
         return self._outcome(facts, projection, edit, goals, before=poses, bound=bound)
+
+    def _body(self, clip: Clip, task: ClipTask) -> GivenBody:
+        """Return what the spec says that joints are, else what the model's own rules say."""
+        spec, skeleton = self.loaded.model.body, clip.motion.skeleton
+        if spec.plain:
+            return resolve.body(spec, skeleton, resolve.Place(self.loaded, ("body",), task.label))
+        return kept_body(self.model.rules, skeleton, label=self.model_label, clip=task.label)
 
     def _projection(self, facts: ClipFacts, task: ClipTask) -> tuple[Projection, dict[str, float]]:
         """Return a clip in the model's coordinates, and the frames of its events."""

@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any
 
-from motionedit.dataclass import dataclass
-from motionedit.errors import ClipError, MotionEditError
+from motionedit.errors import ClipError
 from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.events import event_frames, explicit_events
+from motionedit.jobs.clip.kept_rules import KeptRules
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -62,7 +62,7 @@ def events_for_model(
     frames = event_frames(rules, facts, place, known=known)
     missing = [name for name, _ in model.timeline.events if name not in frames]
     if missing:
-        own = resolve.Place(_ModelRules(model_label), ("events",), task.label)
+        own = resolve.Place(KeptRules(model_label), ("events",), task.label)
         frames = event_frames(_model_rules(model, missing), facts, own, known=frames)
     for name, _ in model.timeline.events:
         if name not in frames:
@@ -92,20 +92,3 @@ def _model_rules(model: MotionModel, names: Sequence[str]) -> dict[str, Any]:
     return {
         name: EventSpec.model_validate({"detect": rules[name]}, context=context) for name in names if rules.get(name)
     }
-
-
-@dataclass(frozen=True)
-class _ModelRules:
-    """Rules that a model has kept: their errors name the model's file."""
-
-    label: str
-
-    def has(self, keys: Sequence[str | int]) -> bool:
-        """Return that no line is known for any key."""
-        del keys
-        return False
-
-    def error(self, keys: Sequence[str | int], message: str) -> MotionEditError:
-        """Return an error of the clip, which the rule does not fit."""
-        key = ".".join(map(str, keys))
-        return ClipError(message, file=self.label, key=key)

@@ -94,7 +94,7 @@ def _normalization(
     loaded: LoadedSpec[NormalizeSpec], timeline: Timeline, line: Line, measures: Sequence[ClipMeasure]
 ) -> Normalization:
     spec = loaded.model
-    rules = {
+    rules: dict[str, Any] = {
         "align": {
             "heading": spec.align.heading,
             "position": spec.align.position,
@@ -104,6 +104,8 @@ def _normalization(
         "rest_pose": spec.rest_pose,
         "events": {name: _rule(loaded, name) for name in spec.events},
     }
+    if spec.body.plain:
+        rules["body"] = spec.body.plain
     clips = tuple(_normalized_clip(measure, line) for measure in measures)
     return Normalization(timeline, measures[0].up, rules, clips)
 

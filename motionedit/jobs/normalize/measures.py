@@ -40,6 +40,7 @@ class ClipMeasure:
     height: float
     stands: bool
     alignments: dict[Line, Alignment]
+    warnings: tuple[str, ...]
 
     @property
     def last(self) -> int:
@@ -64,7 +65,8 @@ class MeasureClip:
         """Return the clip's measure."""
         spec = self.loaded.model
         clip = read_task(task, lenient=self.lenient)
-        facts = facts_of(clip, up=spec.up, keep_rest_pose=spec.rest_pose == "keep")
+        given = resolve.body(spec.body, clip.motion.skeleton, resolve.Place(self.loaded, ("body",), task.label))
+        facts = facts_of(clip, up=spec.up, keep_rest_pose=spec.rest_pose == "keep", given=given)
         facts.refuse_one_frame()
         events = _events(self.loaded, task, facts, self.others)
         align = spec.align
@@ -86,6 +88,7 @@ class MeasureClip:
             height=facts.anatomy.height,
             stands=facts.stands(at),
             alignments=alignments,
+            warnings=facts.warnings,
         )
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from motionedit.core.body.ground import travel_joint
+from motionedit.core.body.bones import travel_joint
 from motionedit.core.body.quality import find_defects
 from motionedit.core.bvh import resampled_bytes
 from motionedit.core.timeline.alignment import aligned
@@ -44,7 +44,7 @@ class ResampleClip:
         return Outcome(
             resampled_bytes(clip, motion),
             self._record(),
-            warnings=_defects(clip.motion, first=measure.first),
+            warnings=(*measure.warnings, *_defects(clip.motion, first=measure.first)),
             motion=motion,
             details=(line.rstrip("; "),),
         )

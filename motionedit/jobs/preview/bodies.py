@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 
 from motionedit.core import rotations as rot
+from motionedit.core.body.bones import below
 from motionedit.core.body.limbs import zero_pose
 from motionedit.report.preview.body import Ball, Body, Hull, Limb, Side
 
@@ -57,37 +58,44 @@ def body_of(facts: ClipFacts, *, label: str) -> Body:
     The file's up axis becomes y. Limb thickness and sides come from the anatomy found in the skeleton; what is
     not found there is drawn as thin limbs.
     """
-    motion, anatomy, first = facts.clip.motion, facts.anatomy, facts.first
-    skeleton = motion.skeleton
+    motion, anatomy, skeleton, first = facts.clip.motion, facts.anatomy, facts.bones, facts.first
+    size = anatomy.leg_length or 1.0
     turn = upright(facts.up)
     front = turn @ facts.heading_frame().axes[2]
     parts = _parts(skeleton, anatomy)
     hulls = _hulls(skeleton, anatomy)
     covered = _COVERED[: len(hulls)]
     # Beside pelvis and chest, short links that are no limb are helpers of some rig: twist bones, breasts.
-    lengths = np.linalg.norm(skeleton.offsets, axis=-1) / anatomy.leg_length
+    lengths = np.linalg.norm(skeleton.offsets, axis=-1) / size
+    carried = below(skeleton, facts.travel)
     for j, part in enumerate(parts):
         if part in covered or (hulls and part == "limb" and lengths[j] < _HELPER_LENGTH):
             parts[j] = "covered"
+        if not carried[j] or j == facts.travel:
+            # What only says where the body is, and what stands beside it, is no limb.
+            parts[j] = "none"
     balls = _head(facts)
     points = [facts.poses.positions, *_tips(facts.poses, skeleton), *(ball.path[:, None] for ball in balls)]
     positions = np.concatenate(points, axis=1) @ turn.T
-    drawn = len(skeleton) + len(skeleton.end_sites)
-    lowest = float(positions[first:, :drawn, 1].min())
+    # What does not hang on the body is neither shown nor looked at: a root metres away.
+    drawn = np.concatenate((carried, carried[[site.joint for site in skeleton.end_sites]]))
+    positions[:, np.flatnonzero(~drawn)] = positions[:, [facts.travel]]
+    names = [name if shown else "" for name, shown in zip((*skeleton.names, *_tip_names(skeleton)), drawn, strict=True)]
+    lowest = float(positions[first:, : len(drawn), 1].min())
     return Body(
         label=label,
-        names=(*skeleton.names, *_tip_names(skeleton), *("" for _ in balls)),
+        names=(*names, *("" for _ in balls)),
         positions=positions,
         frame_time=motion.frame_time,
         first=first,
-        limbs=_limbs(skeleton, parts, _sides(skeleton, anatomy), positions=positions, size=anatomy.leg_length),
+        limbs=_limbs(skeleton, parts, _sides(skeleton, anatomy), positions=positions, size=size),
         hulls=hulls,
-        balls=tuple(Ball(drawn + i, ball.radius, ball.part) for i, ball in enumerate(balls)),
+        balls=tuple(Ball(len(drawn) + i, ball.radius, ball.part) for i, ball in enumerate(balls)),
         trails=_trails(skeleton, anatomy, parts),
-        size=anatomy.leg_length,
+        size=size,
         forward=(float(front[0]), float(front[1]), float(front[2])),
         axes=_axis_names(turn),
-        floor=lowest if abs(lowest) > _FLOOR_REACH * anatomy.leg_length else 0.0,
+        floor=lowest if abs(lowest) > _FLOOR_REACH * size else 0.0,
     )
 
 
@@ -236,7 +244,7 @@ class _BallPath(NamedTuple):
 
 def _head(facts: ClipFacts) -> list[_BallPath]:
     """Return the head, and the nose where the skeleton tells where the head looks."""
-    anatomy, skeleton = facts.anatomy, facts.clip.motion.skeleton
+    anatomy, skeleton = facts.anatomy, facts.bones
     if anatomy.head is None or anatomy.legs is None:
         return []
     head, radius = anatomy.head, _HEAD_RADIUS * anatomy.leg_length

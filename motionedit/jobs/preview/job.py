@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
+    from motionedit.core.body.anatomy import GivenBody
     from motionedit.core.bvh import Clip
     from motionedit.jobs.batch.plan import ClipTask
     from motionedit.jobs.preview.marks import Figure
@@ -30,7 +31,9 @@ _SHEETS = (".png", ".svg")
 _LIKE_SIZE = 2.0
 
 
-def run(clips: Sequence[Path], output: Path, *, report: Path | None = None, lenient: bool = False) -> list[Path]:
+def run(
+    clips: Sequence[Path], output: Path, *, report: Path | None = None, up: str = "auto", lenient: bool = False
+) -> list[Path]:
     """Write the picture of the clips and return the paths written, which is `output`.
 
     Parameters
@@ -41,6 +44,8 @@ def run(clips: Sequence[Path], output: Path, *, report: Path | None = None, leni
         A name ending in ``.html`` (the page), ``.png`` or ``.svg`` (a contact sheet).
     report
         The JSON report of the edit that wrote some of the clips: the page shows its goals and constraints.
+    up
+        The axis that is up, or ``auto``.
 
     Raises
     ------
@@ -62,7 +67,13 @@ def run(clips: Sequence[Path], output: Path, *, report: Path | None = None, leni
         from motionedit.report.sheet import need_matplotlib
 
         need_matplotlib()
-    content = _page(tasks, report, lenient=lenient) if kind in _PAGES else _sheet(tasks, kind, lenient=lenient)
+    read = None if report is None else read_report(report)
+    found = [] if read is None else matches(read, tasks)
+    spec = {} if read is None else read.spec
+    said = {**spec, "up": up} if up != "auto" else spec
+    figures = _figures(_clips(tasks, lenient=lenient), _labels(tasks), said)
+    edits = [] if read is None else _edits(read, found, figures)
+    content = _page(figures, edits) if kind in _PAGES else _sheet(figures, kind)
     try:
         atomic_write(output, content)
     except OSError as error:
@@ -83,38 +94,32 @@ def edit_page(clip: Clip, task: ClipTask, record: Mapping[str, Any], spec: Mappi
 def page_of_edit(before: Clip, after: Clip, record: Mapping[str, Any], spec: Mapping[str, Any]) -> bytes:
     """Return the page of one edit: the clip that it was made from, the edited one, and the report's `record` of it."""
     from motionedit.jobs.preview.marks import edit_of
-    from motionedit.report.preview.page import page
     from motionedit.report.record import plain
 
-    figures = _figures([before, after], short_labels([before.label, after.label]))
+    figures = _figures([before, after], short_labels([before.label, after.label]), spec)
     edit = edit_of(plain(record), figures, edited=1, before=0, masses=spec.get("masses") or {}, report="--preview")
-    bodies = [figure.body for figure in figures]
-    return page(bodies, title=_title([body.label for body in bodies]), edits=[edit])
+    return _page(figures, [edit])
 
 
-def _page(tasks: Sequence[ClipTask], report: Path | None, *, lenient: bool) -> bytes:
+def _page(figures: Sequence[Figure], edits: Sequence[Edit]) -> bytes:
     from motionedit.report.preview.page import page
 
-    read = None if report is None else read_report(report)
-    found = [] if read is None else matches(read, tasks)
-    figures = _figures(_clips(tasks, lenient=lenient), _labels(tasks))
-    edits = [] if read is None else _edits(read, found, figures)
     return page([figure.body for figure in figures], title=_title([f.body.label for f in figures]), edits=edits)
 
 
 def _edits(report: EditReport, found: Sequence[Match], figures: Sequence[Figure]) -> list[Edit]:
     from motionedit.jobs.preview.marks import edit_of
 
-    name, masses = report.name, report.masses
+    name, given = report.name, report.spec.get("masses")
+    masses = given if isinstance(given, dict) else {}
     return [
         edit_of(one.record, figures, edited=one.edited, before=one.before, masses=masses, report=name) for one in found
     ]
 
 
-def _sheet(tasks: Sequence[ClipTask], kind: str, *, lenient: bool) -> bytes:
+def _sheet(figures: Sequence[Figure], kind: str) -> bytes:
     from motionedit.report.sheet import sheet
 
-    figures = _figures(_clips(tasks, lenient=lenient), _labels(tasks))
     return sheet([figure.body for figure in figures], "png" if kind == ".png" else "svg")
 
 
@@ -135,15 +140,27 @@ def _clips(tasks: Sequence[ClipTask], *, lenient: bool) -> list[Clip]:
     return clips
 
 
-def _figures(clips: Sequence[Clip], labels: Sequence[str]) -> list[Figure]:
-    """Return the clips with their bodies, all at the size of the first."""
+def _figures(clips: Sequence[Clip], labels: Sequence[str], spec: Mapping[str, Any]) -> list[Figure]:
+    """Return the clips with their bodies, all at the size of the first; up and body as the spec of an edit says."""
     from motionedit.jobs.clip.facts import facts_of
     from motionedit.jobs.preview.bodies import body_of
     from motionedit.jobs.preview.marks import Figure
 
-    found = [facts_of(clip) for clip in clips]
+    up = spec.get("up")
+    found = [facts_of(clip, up=up if up in ("y", "z") else "auto", given=_body(clip, spec)) for clip in clips]
     bodies = [body_of(facts, label=label) for facts, label in zip(found, labels, strict=True)]
     return [Figure(facts, _like(bodies[0], body)) for facts, body in zip(found, bodies, strict=True)]
+
+
+def _body(clip: Clip, spec: Mapping[str, Any]) -> GivenBody:
+    """Return what a spec says that a clip's joints are; nothing where it says that of another skeleton."""
+    from motionedit.core.body.anatomy import NOTHING_GIVEN
+    from motionedit.jobs.clip.kept_rules import kept_body
+
+    try:
+        return kept_body(spec, clip.motion.skeleton, label="", clip=clip.label) if spec.get("body") else NOTHING_GIVEN
+    except (MotionEditError, ValueError):
+        return NOTHING_GIVEN
 
 
 def _like(first: Body, body: Body) -> Body:

@@ -45,7 +45,7 @@ class Figure:
             return None
         joint, offset = skeleton.names.index(effector["joint"]), np.array(effector["offset"], dtype=np.float64)
         near = _SAME_POINT * self.facts.anatomy.leg_length
-        if np.linalg.norm(offset) <= near:
+        if np.linalg.norm(offset) <= near and self.body.names[joint]:
             return joint
         for i, site in enumerate(skeleton.end_sites):
             if site.joint == joint and np.linalg.norm(site.offset - offset) <= near:
@@ -60,7 +60,7 @@ class Figure:
     def _center_of_mass(self, masses: Mapping[str, float]) -> FloatArray:
         skeleton = self.facts.clip.motion.skeleton
         given = {skeleton.names.index(name): float(mass) for name, mass in masses.items() if name in skeleton.names}
-        return center_of_mass(self.facts.poses, find_masses(skeleton, self.facts.anatomy, given=given or None))
+        return center_of_mass(self.facts.poses, find_masses(self.facts.bones, self.facts.anatomy, given=given or None))
 
     def _added(self, path: FloatArray) -> int:
         positions = np.concatenate((self.body.positions, self.on_page(path)[:, None]), axis=1)

@@ -22,10 +22,10 @@ COMMANDS = ("edit-pc", "edit-prioritized")
 
 @dataclass(frozen=True)
 class EditReport:
-    """A report of an edit: the file's `name`, `masses` (kg by joint) that its spec gives, and its `clips`."""
+    """A report of an edit: the file's `name`, the `spec` of the edit as plain data, and its `clips`."""
 
     name: str
-    masses: dict[str, float]
+    spec: dict[str, Any]
     clips: list[dict[str, Any]]
 
 
@@ -51,10 +51,7 @@ def read_report(path: Path) -> EditReport:
             f"is a report of {data.get('command')}; a page shows those of {' and '.join(COMMANDS)}", file=name
         )
     spec = data.get("spec")
-    masses = spec.get("masses") if isinstance(spec, dict) else None
-    return EditReport(
-        name, masses if isinstance(masses, dict) else {}, [c for c in data["clips"] if isinstance(c, dict)]
-    )
+    return EditReport(name, spec if isinstance(spec, dict) else {}, [c for c in data["clips"] if isinstance(c, dict)])
 
 
 @dataclass(frozen=True)

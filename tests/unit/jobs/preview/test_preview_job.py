@@ -19,7 +19,7 @@ def clip(tmp_path):
 
 def bodies_of(*paths):
     clips = preview._clips(find_clips(paths), lenient=False)
-    return [figure.body for figure in preview._figures(clips, [path.stem for path in paths])]
+    return [figure.body for figure in preview._figures(clips, [path.stem for path in paths], {})]
 
 
 def test_a_page_is_written_and_named(clip, tmp_path):

@@ -16,7 +16,7 @@ HAND = {"joint": "LeftHand", "offset": [0.0, 0.0, 0.0]}
 
 def figures(*clips):
     read = [parse_clip(bvh_text(**options).encode(), label=f"{i}.bvh") for i, options in enumerate(clips)]
-    return preview._figures(read, [clip.label for clip in read])
+    return preview._figures(read, [clip.label for clip in read], {})
 
 
 def constraint(**more):

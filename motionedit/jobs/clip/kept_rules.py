@@ -1,0 +1,47 @@
+"""Rules that a normalization, and so a model, has kept of the spec it was made by."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from motionedit.dataclass import dataclass
+from motionedit.errors import ClipError
+from motionedit.jobs.clip import resolve
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from motionedit.core.body.anatomy import GivenBody
+    from motionedit.core.skeleton import Skeleton
+    from motionedit.errors import MotionEditError
+
+
+@dataclass(frozen=True)
+class KeptRules:
+    """Kept rules as the place of an error, which names the file that they are in."""
+
+    label: str
+
+    def has(self, keys: Sequence[str | int]) -> bool:
+        """Return that no line is known for any key."""
+        del keys
+        return False
+
+    def error(self, keys: Sequence[str | int], message: str) -> MotionEditError:
+        """Return an error of the clip, which the rule does not fit."""
+        key = ".".join(map(str, keys))
+        return ClipError(message, file=self.label, key=key)
+
+
+def kept_body(rules: Mapping[str, Any], skeleton: Skeleton, *, label: str, clip: str) -> GivenBody:
+    """Return what kept rules say that a clip's joints are; `label` is the file that they are in.
+
+    Raises
+    ------
+    ClipError
+        The clip lacks one of the joints.
+    """
+    from motionedit.spec.body import BodySpec
+
+    spec = BodySpec.model_validate(rules.get("body", {}))
+    return resolve.body(spec, skeleton, resolve.Place(KeptRules(label), ("body",), clip))
