@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from motionedit.core.body.anatomy import find_anatomy
-from motionedit.core.body.contacts import find_plants
+from motionedit.core.body.anatomy import anatomy_of
 from motionedit.core.bvh import read_clip
 from motionedit.jobs.clip.facts import facts_of
 from motionedit.spec.load import load_spec
@@ -34,7 +33,7 @@ def reach(clip: Path, *, axes: Sequence[str] = ("x", "z")) -> list[dict[str, Any
     Feet that may not roll make the legs lift and lower the body: its height cannot stay as it was for nothing.
     """
     motion = read_clip(clip).motion
-    skeleton, anatomy = motion.skeleton, find_anatomy(motion.skeleton)
+    skeleton, anatomy = motion.skeleton, anatomy_of(motion)
     hand = skeleton.names[anatomy.arms[0].wrist] if anatomy.arms else ""
     at, size = len(motion) // 2, anatomy.leg_length
     shift = [0.2 * size, 0.5 * size, 0.2 * size]
@@ -47,7 +46,7 @@ def reach(clip: Path, *, axes: Sequence[str] = ("x", "z")) -> list[dict[str, Any
 def step(clip: Path) -> list[dict[str, Any]]:
     """Return a high-priority ankle over low-priority feet."""
     motion = read_clip(clip).motion
-    skeleton, anatomy = motion.skeleton, find_anatomy(motion.skeleton)
+    skeleton, anatomy = motion.skeleton, anatomy_of(motion)
     feet = [skeleton.names[j] for _, j in anatomy.foot_points]
     at, lift = len(motion) // 2, [0, 0.3 * anatomy.leg_length, 0]
     ankle = skeleton.names[anatomy.legs[1].ankle] if anatomy.legs else feet[0]
@@ -85,7 +84,7 @@ def foot_plants(clip: Path, *, rise: float = 0.0) -> list[dict[str, Any]]:
     One rigid goal for a foot cannot contradict itself, as an ankle's and a toe's may.
     """
     motion = read_clip(clip).motion
-    ankles = [leg.ankle for leg in find_anatomy(motion.skeleton).legs or ()]
+    ankles = [leg.ankle for leg in anatomy_of(motion).legs or ()]
     plants = [plant for plant in plants_of(clip) if plant.joint in ankles]
     starts = sorted({plant.start for plant in plants})
     constraints: list[dict[str, Any]] = []
@@ -102,8 +101,7 @@ def foot_plants(clip: Path, *, rise: float = 0.0) -> list[dict[str, Any]]:
 
 def plants_of(clip: Path) -> list[Plant]:
     """Return the plants of a clip's feet."""
-    facts = facts_of(read_clip(clip))
-    return find_plants(facts.clip.motion, facts.poses, facts.anatomy, up=facts.up, first=facts.first)
+    return list(facts_of(read_clip(clip)).plants)
 
 
 def level(start: int, starts: Sequence[int]) -> int:
@@ -113,4 +111,4 @@ def level(start: int, starts: Sequence[int]) -> int:
 
 def leg(clip: Path) -> float:
     """Return the clip's leg length."""
-    return find_anatomy(read_clip(clip).motion.skeleton).leg_length
+    return anatomy_of(read_clip(clip).motion).leg_length

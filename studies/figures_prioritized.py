@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from motionedit.core.body.anatomy import find_anatomy
-from motionedit.core.body.ground import rest_pose_frames
+from motionedit.core.body.anatomy import anatomy_of
+from motionedit.core.body.rest_pose import rest_pose_frames
 from motionedit.core.bvh import read_clip
 from motionedit.core.kinematics import forward
 from motionedit.core.units import STANDARD_LEG
@@ -65,7 +65,7 @@ def real(lab: Lab, clips: Path) -> list[tuple[str, ...]]:
 def measured(what: str, clip: Path, edit: Edited, spec: Sequence[dict[str, Any]]) -> tuple[str, ...]:
     """Return an edit's row, lengths scaled to a leg of 0.85 m."""
     before, after = read_clip(clip).motion, read_clip(edit.path).motion
-    anatomy = find_anatomy(before.skeleton)
+    anatomy = anatomy_of(before)
     millimetres = MILLIMETRES / anatomy.leg_length
     first = rest_pose_frames(before, anatomy)
     constraints = edit.record["constraints"]
@@ -132,7 +132,7 @@ def laws(lab: Lab) -> list[tuple[str, ...]]:
         rows.append((f"a conflict of 300 mm, weights {weight} and 1: left (mm)", errors))
     met = read_clip(lab.edit_prioritized(walk, {**spec, "constraints": spec["constraints"][:2]}).path).motion
     below = read_clip(one).motion
-    feet = [j for _, j in find_anatomy(below.skeleton).foot_points]
+    feet = [j for _, j in anatomy_of(below).foot_points]
     moved = np.abs(forward(met).positions[:, feet] - forward(below).positions[:, feet]).max()
     rows.append(("the CoM taken away moves the feet by at most (mm)", f"{moved * millimetres:.4f}"))
     rows.append(("nothing asked for", "the input's bytes" if same(walk, nothing(lab, walk)) else "other bytes"))

@@ -13,7 +13,7 @@ import numpy as np
 from benchmarks.clock import best_of, duration, process
 from benchmarks.peers.jobs import COM, places
 from benchmarks.peers.others import PeerError, ask, command, versions
-from motionedit.core.body.anatomy import find_anatomy
+from motionedit.core.body.anatomy import anatomy_of
 from motionedit.core.body.center_of_mass import find_masses
 from motionedit.core.bvh import new_bytes, read_clip
 from motionedit.core.kinematics import forward
@@ -165,7 +165,7 @@ def _faults(edit: Edit, ours: Path, theirs: Path) -> Table:
 def _off(before: Motion, after: Motion, hand: FloatArray) -> tuple[float, float, float]:
     if after.skeleton.names != before.skeleton.names:
         raise PeerError("the joints come back in another order")
-    anatomy = find_anatomy(before.skeleton)
+    anatomy = anatomy_of(before)
     masses = find_masses(before.skeleton, anatomy)
     there = before.skeleton.names.index
     joints = [there("LeftHand"), *(there(name) for name in FEET), COM]

@@ -11,9 +11,9 @@ import numpy as np
 
 from benchmarks.peers.robot import mjcf
 from motionedit.core import rotations as rot
-from motionedit.core.body.anatomy import find_anatomy
+from motionedit.core.body.anatomy import anatomy_of
+from motionedit.core.body.bones import travel_joint
 from motionedit.core.body.center_of_mass import center_of_mass, find_masses
-from motionedit.core.body.ground import travel_joint
 from motionedit.core.body.hinges import find_hinges
 from motionedit.core.bvh import read_clip
 from motionedit.core.kinematics import Effector, WorldPoses, forward
@@ -104,9 +104,9 @@ def places(poses: WorldPoses, masses: Masses, joints: Sequence[int]) -> FloatArr
 def reach() -> Job:
     """Return the reaching clip: four foot points over the left wrist over the center of mass."""
     clip = read_clip(WALK)
-    anatomy = find_anatomy(clip.motion.skeleton)
+    anatomy = anatomy_of(clip.motion)
     motion = scaled(clip.motion, STANDARD_LEG / anatomy.leg_length)
-    masses = find_masses(motion.skeleton, find_anatomy(motion.skeleton))
+    masses = find_masses(motion.skeleton, anatomy_of(motion))
     body = Body(masses, tuple(find_hinges(motion, anatomy, first=0)), travel_joint(motion), 0)
     here = np.zeros(3)
     feet = [Position(name=name, priority=10, effector=Effector(j, here)) for name, j in anatomy.foot_points]

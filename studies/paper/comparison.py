@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from motionedit.core.body.anatomy import find_anatomy
+from motionedit.core.body.anatomy import anatomy_of
 from motionedit.core.body.quality import jerk_rms
 from motionedit.core.bvh import read_clip
 from studies.capsules import clearances, limb_pairs
@@ -44,8 +44,8 @@ class Task:
 
 def feet(clip: Path) -> list[dict[str, Any]]:
     """Return three constraints on the feet that ride the input: all of the left one, ankle and toe of the right."""
-    skeleton = read_clip(clip).motion.skeleton
-    legs = find_anatomy(skeleton).legs
+    motion = read_clip(clip).motion
+    skeleton, legs = motion.skeleton, anatomy_of(motion).legs
     if legs is None:
         return []
     names = [(skeleton.names[leg.ankle], None if leg.toe is None else skeleton.names[leg.toe]) for leg in legs]
@@ -140,7 +140,7 @@ def outcome(
 def overlap(clip: Path) -> float:
     """Return how deep two limbs of a clip are in each other at most, clip units; 0: they never touch."""
     motion = read_clip(clip).motion
-    room = clearances(joint_positions(clip), limb_pairs(find_anatomy(motion.skeleton)))
+    room = clearances(joint_positions(clip), limb_pairs(anatomy_of(motion)))
     return float(max(-room.min(initial=0.0), 0.0))
 
 

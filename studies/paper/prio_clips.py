@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.body.center_of_mass import center_of_mass, find_masses
-from motionedit.core.body.contacts import find_plants
+from motionedit.core.body.contacts import sole_tracks
 from motionedit.core.body.quality import foot_drift
 from motionedit.core.bvh import read_clip
 from motionedit.core.units import STANDARD_LEG
@@ -48,7 +48,7 @@ class Shown:
     def com(self) -> FloatArray:
         """The center of mass, shape (F, 3)."""
         facts = self.facts
-        return center_of_mass(facts.poses, find_masses(facts.clip.motion.skeleton, facts.anatomy))
+        return center_of_mass(facts.poses, find_masses(facts.bones, facts.anatomy))
 
     @cached_property
     def feet(self) -> FloatArray:
@@ -78,9 +78,8 @@ class Shown:
 
     def drift_of(self, edited: Shown) -> float:
         """Return how far an edit moves what stands in this clip, at most, clip units."""
-        facts = self.facts
-        plants = find_plants(facts.clip.motion, facts.poses, facts.anatomy, up=facts.up, first=facts.first)
-        return foot_drift(facts.poses.positions, edited.facts.poses.positions, plants)
+        before, after = (sole_tracks(shown.facts.poses, self.facts.anatomy) for shown in (self, edited))
+        return foot_drift(before, after, self.facts.plants)
 
     def support(self, frame: int) -> FloatArray:
         """Return the outline on the ground of what stands at a frame: points of the feet as low as they ever are."""
