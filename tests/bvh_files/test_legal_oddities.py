@@ -70,6 +70,7 @@ SAME = {
     "a final Ctrl-Z": TEXT.encode() + b"\x1a",
     "a final Ctrl-Z after the last number": TEXT[:-1].encode() + b"\x1a",
     "a final Ctrl-Z and a newline": TEXT.encode() + b"\x1a\r\n",
+    "a last record filled up with Ctrl-Z": TEXT.encode() + b"\x1a" * 100,
     "a final Ctrl-Z and blank lines": TEXT[:-1].encode() + b"\r\n\r\n \x1a\n\t\n",
 }
 
@@ -84,7 +85,7 @@ def test_another_way_of_writing_gives_the_same_clip(name):
     assert clip.motion.frame_time == 0.04
 
 
-@pytest.mark.parametrize("end", [b"\x1a", b"\n\x1a", b"\x1a\n", b"\n\x1a\r\n \n"])
+@pytest.mark.parametrize("end", [b"\x1a", b"\n\x1a", b"\x1a\n", b"\n\x1a\r\n \n", b"\n\x1a\x1a\x1a"])
 def test_a_final_ctrl_z_stays_where_it_is_in_an_edit(end):
     data = TEXT[:-1].encode() + end
     clip = parse_clip(data, label="walk.bvh")

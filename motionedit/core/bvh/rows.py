@@ -125,7 +125,7 @@ def values_between(data: bytes, rows: Rows, start: int, stop: int) -> FloatArray
 
 def _ends_text(data: bytes, at: int) -> bool:
     """Tell whether a byte is the Ctrl-Z with which old programs end a text: nothing but blanks follows it."""
-    return data[at : at + 1] == _CTRL_Z and not data[at + 1 :].strip()
+    return data[at : at + 1] == _CTRL_Z and not data[at + 1 :].strip(_BLANK)
 
 
 def _rows_within(data: bytes, begin: int, end: int) -> int:
