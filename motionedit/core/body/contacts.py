@@ -30,6 +30,7 @@ _SHORTEST = 0.05  # s: a stance of a run
 # A foot held in the air has come up to where it is and goes down from there, by more than this.
 _TOP = 0.06  # m
 _TOP_WHILE = 0.2  # s
+_HELD = 0.6  # s: longer than any jump's top lasts
 
 
 @dataclass(frozen=True)
@@ -78,7 +79,7 @@ def find_plants(motion: Motion, poses: WorldPoses, anatomy: Anatomy, *, up: Floa
     A point is planted while its speed over 40 ms is below 0.45 m/s, if it gets below 0.3, and it is no more than 5 cm
     above its own low within a quarter of a second (at a leg of 0.85 m). Gaps below 0.12 s in which it stays within 3 cm
     are closed; what is shorter than 0.05 s is none, and what the point has come up to and goes down from, by more than
-    6 cm within 0.2 s: a foot held in the air, the top of a jump.
+    6 cm within 0.2 s, for less than 0.6 s or with the other foot below: the top of a jump, a foot held in the air.
 
     Parameters
     ----------
@@ -103,10 +104,12 @@ def plants_of(tracks: FloatArray, anatomy: Anatomy, *, up: FloatArray, first: in
     if not points or len(tracks) - first < 2 or metre <= 0.0:
         return []
     plants = []
+    heights_of_all = tracks[first:] @ up / metre
     for p, point in enumerate(points):
-        places = tracks[first:, p] / metre
-        heights = places @ up
-        for start, stop in _stands(places, heights, frame_time):
+        places, heights = tracks[first:, p] / metre, heights_of_all[:, p]
+        others = [q for q, other in enumerate(points) if other.foot != point.foot]
+        lowest = heights_of_all[:, others].min(axis=1, initial=np.inf)
+        for start, stop in _stands(places, heights, lowest, frame_time):
             height = metre * float(median(heights[start : stop + 1]))
             plants.append(Plant(point.foot, point.part, point.joint, p, first + start, first + stop, height))
     return sorted(plants, key=lambda plant: (plant.start, plant.foot, plant.point))
@@ -130,8 +133,13 @@ def _foot_plant(phases: Sequence[Plant]) -> FootPlant:
     return FootPlant(phases[0].foot, phases[0].start, max(p.stop for p in phases), tuple(phases))
 
 
-def _stands(places: FloatArray, heights: FloatArray, frame_time: float) -> Iterator[tuple[int, int]]:
-    """Yield (first, last) of the stretches in which a point stands; `places` (F, 3) and `heights` (F,) in metres."""
+def _stands(
+    places: FloatArray, heights: FloatArray, lowest: FloatArray, frame_time: float
+) -> Iterator[tuple[int, int]]:
+    """Yield (first, last) of the stretches in which a point stands.
+
+    `places` (F, 3), `heights` (F,), and those of the `lowest` point of the other foot (F,) are in metres.
+    """
     speed = _speeds(places, frame_time)
     slow = _hysteresis(speed < _LEAVES, speed < _ENTERS)
     width = round(_LOW_WHILE / frame_time)
@@ -146,7 +154,10 @@ def _stands(places: FloatArray, heights: FloatArray, frame_time: float) -> Itera
         ended = next(last for first, last in reversed(slow_runs) if first <= stop)
         beside = (heights[max(0, began - around) : began], heights[ended + 1 : ended + 1 + around])
         lower = [side.min() < level - _TOP for side in beside if len(side)]
-        if stop - start + 1 >= max(shortest, 2) and not (lower and all(lower)):
+        # Who stands on a box for a while has both feet there, and who holds a foot up stands on the other.
+        is_held = median(lowest[start : stop + 1]) < level - _TOP or stop - start + 1 < _HELD / frame_time
+        is_top = bool(lower) and all(lower) and is_held
+        if stop - start + 1 >= max(shortest, 2) and not is_top:
             yield start, stop
 
 

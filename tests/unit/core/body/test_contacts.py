@@ -20,13 +20,16 @@ BODY = find_anatomy(skeleton_of())
 ENTERS, LEAVES = 0.3, 0.45
 
 
-def stands_of(path, *, rate=RATE, first=0):
-    """Return when (s) a left heel stands that goes along a path (F, 3), metres; the other points run away."""
+def stands_of(path, *, rate=RATE, first=0, other=None):
+    """Return when (s) a left heel stands that goes along a path (F, 3), metres, the right one along the `other`.
+
+    The toes run away, and so does the other foot where it is not given.
+    """
     away = 100.0 * np.arange(len(path))[:, None] * np.ones(3)
-    tracks = np.stack((path, away, away, away), axis=1)
+    tracks = np.stack((path, away, away if other is None else other, away), axis=1)
     plants = plants_of(tracks, BODY, up=UP, first=first, frame_time=1.0 / rate)
-    assert all(plant.point == 0 for plant in plants)
-    return [(plant.start / rate, plant.stop / rate) for plant in plants]
+    assert all(plant.point in {0, 2} for plant in plants)
+    return [(plant.start / rate, plant.stop / rate) for plant in plants if plant.point == 0]
 
 
 def along(axis, way):
@@ -177,10 +180,22 @@ def test_a_foot_that_is_held_in_the_air_after_a_kick_does_not_stand_there(height
     assume(2.0 * height / rise > 0.6)  # m/s, its fastest
     t = clock(3.5, rate)
     lifted = height * (smooth(t, 0.5, 0.5 + rise) - smooth(t, 0.5 + rise + held, 0.5 + 2.0 * rise + held))
-    spans = stands_of(along(1, lifted), rate=rate)
+    spans = stands_of(along(1, lifted), rate=rate, other=np.zeros((len(t), 3)))
     assert all(lifted[round(middle * rate)] < 0.06 for middle in np.mean(spans, axis=1)), spans
     assert spans[0][0] == 0.0
     assert spans[-1][1] == t[-1]
+
+
+@pytest.mark.parametrize("began", [0.0, 1.0])
+def test_who_stands_on_a_box_with_both_feet_stands_there(began):
+    # Down from it, and before that up onto it, where it does not begin there.
+    t = clock(began + 3.5, RATE)
+    lifted = 0.4 * ((smooth(t, 0.7, 0.9) if began else 1.0) - smooth(t, began + 1.5, began + 1.7))
+    both = along(1, lifted)
+    spans = stands_of(both, other=both)
+    before = [(0.0, 0.7)] if began else []
+    on_the_box = (0.9 if began else 0.0, began + 1.5)
+    assert_spans(spans, [*before, on_the_box, (began + 1.7, t[-1])], within=0.08)
 
 
 @given(st.floats(0.08, 0.8), st.sampled_from([30.0, 60.0, 120.0, 240.0]))
