@@ -107,10 +107,10 @@ class Anatomy:
         if self.arms is None:
             lines.append(
                 "no arms found: elbows are no hinges, and masses for the center of mass go by the lengths of bones; "
-                "body: in a spec says which joints they are"
+                "body: in a spec says which joints are the arms"
             )
         if self.head is None:
-            lines.append("no head found: it has no say in which way is up; body: in a spec says which joint it is")
+            lines.append("no head found: up is found without it; body: in a spec says which joint is the head")
         return tuple(lines)
 
     @property
@@ -329,7 +329,7 @@ def _toe(tree: Tree, chain: tuple[int, ...], ankle: int) -> int | None:
     below = [j for j in chain[chain.index(ankle) + 1 :] if j not in tree.hanging]
     if not below:
         below = [j for j in tree.longest_way(ankle)[1:] if j not in tree.hanging][:1]
-    names = tree.skeleton.names
+    names = tree.names
     below = [j for j in below if not is_end(names[j])] or below[:1]
     below = [j for j in below if is_toe(names[j])] or below
     way = 0.0

@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.arrays import frozen, median
-from motionedit.core.body.words import hangs_on
+from motionedit.core.body.words import bare_names, hangs_on
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from motionedit.core.arrays import BoolArray
+    from motionedit.core.arrays import BoolArray, FloatArray
     from motionedit.core.motion import Motion
     from motionedit.core.skeleton import Skeleton
 
@@ -60,13 +60,24 @@ def bones_of(motion: Motion, travel: int) -> Skeleton:
     moved = [p for p, j in enumerate(skeleton.translated.tolist()) if below(skeleton, travel)[j] and j != travel]
     if moved:
         joints, bones = skeleton.translated[moved], median(motion.translations[:, moved])
-        lengths = np.linalg.norm(offsets[joints], axis=1)
-        gone = (np.linalg.norm(bones, axis=1) <= _COLLAPSED * lengths) & (lengths > 0.0)
-        if 2 * np.count_nonzero(gone) <= np.count_nonzero(lengths):
+        if not _are_shifts(offsets[joints], bones):
             offsets[joints] = bones
     offsets[~below(skeleton, travel)] = 0.0
     offsets[travel] = 0.0
     return skeleton if np.array_equal(offsets, skeleton.offsets) else _with_offsets(skeleton, offsets.tobytes())
+
+
+def is_heaped(motion: Motion, bones: Skeleton) -> bool:
+    """Tell whether position channels put most joints onto their parents: they are shifts from OFFSET, then."""
+    skeleton = motion.skeleton
+    return _are_shifts(bones.offsets[skeleton.translated], median(motion.translations))
+
+
+def _are_shifts(offsets: FloatArray, places: FloatArray) -> bool:
+    """Tell whether most of some joints that have an OFFSET, shape (P, 3), are put to places of nothing."""
+    lengths = np.linalg.norm(offsets, axis=1)
+    gone = (np.linalg.norm(places, axis=1) <= _COLLAPSED * lengths) & (lengths > 0.0)
+    return 2 * int(np.count_nonzero(gone)) > int(np.count_nonzero(lengths))
 
 
 @lru_cache(maxsize=8)
@@ -80,23 +91,44 @@ def below(skeleton: Skeleton, joint: int) -> BoolArray:
 
 
 @lru_cache(maxsize=8)
+def hanging(skeleton: Skeleton) -> BoolArray:
+    """Return which joints only hang on a body, by what they are called, shape (J,): hair, tails, props, helpers.
+
+    So does what hangs on them. What most of the joints hang on is the body, whatever it is called.
+    """
+    names, counts = bare_names(skeleton.names), _counts_below(skeleton)
+    found = np.zeros(len(skeleton), dtype=np.bool_)
+    for j, name in enumerate(names):
+        inherited = j > 0 and found[skeleton.parents[j]]
+        found[j] = inherited or (2 * counts[j] <= len(skeleton) and hangs_on(name))
+    return frozen(found)
+
+
+def _counts_below(skeleton: Skeleton) -> list[int]:
+    """Return how many joints are a joint or hang on it."""
+    counts = [1] * len(skeleton)
+    for j in range(len(skeleton) - 1, 0, -1):
+        counts[skeleton.parents[j]] += counts[j]
+    return counts
+
+
+@lru_cache(maxsize=8)
 def _above_the_fork(skeleton: Skeleton) -> tuple[int, ...]:
     """Return the joints from the root down to where limbs part, both in; the root alone of a chain.
 
     Helpers beside the body, such as the targets of a rig's inverse kinematics, are no fork.
     """
-    counts = np.ones(len(skeleton), dtype=np.intp)
-    branches = [[c for c in children if not hangs_on(skeleton.names[c])] for children in skeleton.children]
-    forks = np.zeros(len(skeleton), dtype=np.bool_)
+    counts, beside = _counts_below(skeleton), hanging(skeleton)
+    branches = [[c for c in children if not beside[c]] for children in skeleton.children]
+    forks = [False] * len(skeleton)
     for j in range(len(skeleton) - 1, -1, -1):
-        counts[j] += sum(int(counts[c]) for c in skeleton.children[j])
-        forks[j] = _is_fork([int(counts[c]) for c in branches[j]]) or any(forks[c] for c in branches[j])
+        forks[j] = _is_fork([counts[c] for c in branches[j]]) or any(forks[c] for c in branches[j])
     path = [0]
     while children := branches[path[-1]]:
         # Where two branches fork, one has the legs and the other the arms.
-        if _is_fork([int(counts[c]) for c in children]) or sum(bool(forks[c]) for c in children) > 1:
+        if _is_fork([counts[c] for c in children]) or sum(forks[c] for c in children) > 1:
             return tuple(path)
-        path.append(max(children, key=lambda c: (bool(forks[c]), counts[c], -c)))
+        path.append(max(children, key=lambda c: (forks[c], counts[c], -c)))
     return (0,)
 
 

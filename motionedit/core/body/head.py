@@ -25,7 +25,7 @@ def find_head(tree: Tree, legs: LimbPair | None, arms: LimbPair | None) -> tuple
     candidates = _necks(tree, legs, arms)
     if not candidates:
         return None, []
-    names = tree.skeleton.names
+    names = tree.names
     branches = [[c for c in below if c not in tree.hanging] for below in tree.skeleton.children]
     way = [_longest(tree, candidates)]
     while len(branches[way[-1]]) == 1:
@@ -49,7 +49,7 @@ def _called_head(tree: Tree, legs: LimbPair | None, arms: LimbPair | None) -> in
     for pair in (legs, arms):
         for chain in () if pair is None else pair.chains:
             limbs |= tree.below(chain[0])
-    names = tree.skeleton.names
+    names = tree.names
     heads = [j for j, name in enumerate(names) if is_head(name) and j not in limbs and j not in tree.hanging]
     return min(heads, key=lambda j: (len(tree.skeleton.chain(j)), j), default=None)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -69,6 +70,14 @@ def channel_hinges(skeleton: Skeleton) -> dict[int, tuple[Hinge, ...]]:
             hinges = (Hinge(joint, frozen(np.eye(3)[axis]), ANY_ANGLE, 0.0, i == 1) for i, axis in enumerate(axes))
             found[joint] = tuple(hinges)
     return found
+
+
+def with_limits_of(hinges: tuple[Hinge, ...], found: Hinge) -> tuple[Hinge, ...]:
+    """Return a joint's channel hinges, the one whose axis is nearest with the limits of the hinge found there."""
+    along = [float(hinge.axis @ found.axis) for hinge in hinges]
+    nearest = int(np.argmax(np.abs(along)))
+    low, high = found.limits if along[nearest] > 0.0 else (-found.limits[1], -found.limits[0])
+    return tuple(replace(each, limits=(low, high)) if i == nearest else each for i, each in enumerate(hinges))
 
 
 def hinge_of(motion: Motion, joint: int, *, first: int) -> Hinge | None:

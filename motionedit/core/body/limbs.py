@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from motionedit.core.body.bones import hanging
 from motionedit.core.body.sides import side_of_chains, side_of_names
-from motionedit.core.body.words import hangs_on, is_hand_or_foot, is_twist, leg_or_arm
+from motionedit.core.body.words import bare_names, is_hand_or_foot, is_twist, leg_or_arm
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -119,6 +120,7 @@ class Tree:
 
     def __init__(self, skeleton: Skeleton) -> None:
         self.skeleton = skeleton
+        self.names = bare_names(skeleton.names)
         self.lengths: FloatArray = np.linalg.norm(skeleton.offsets, axis=-1)
         self._ends: dict[int, float] = {}
         for site in skeleton.end_sites:
@@ -131,11 +133,7 @@ class Tree:
     @cached_property
     def hanging(self) -> frozenset[int]:
         """The joints that their names call hair, tail, prop or the like, and all that hang on them."""
-        found: set[int] = set()
-        for j, name in enumerate(self.skeleton.names):
-            if int(self.skeleton.parents[j]) in found or hangs_on(name):
-                found.add(j)
-        return frozenset(found)
+        return frozenset(np.flatnonzero(hanging(self.skeleton)).tolist())
 
     def below(self, joint: int) -> frozenset[int]:
         """Return a joint and all its descendants."""
@@ -237,7 +235,7 @@ class Tree:
 
 
 def _limb_pair(tree: Tree, base: int, first: tuple[int, int]) -> LimbPair | None:
-    names = tree.skeleton.names
+    names = tree.names
     chain = _without_what_hangs(tree, tree.match(*first).chain)
     if len(chain) < 3:
         return None

@@ -27,13 +27,14 @@ def rest_pose_frames(motion: Motion, anatomy: Anatomy) -> int:
 
     A true (geodesic) rotation step above 0.6 rad within the first frames ends it, at a joint that is no wrist, hand,
     finger or toe, and that never steps so otherwise: a fast arm at a low frame rate goes on as fast.
+    A clip of two frames has none: either could be the take.
     """
     count = len(motion)
     joints = np.array([j for j in range(len(motion.skeleton)) if j not in anatomy.digits], dtype=np.intp)
     q = motion.rotations[: _LONGEST + 2, joints]
     steps = rot.angle_between(q[:-1], q[1:])
     jumps = np.argwhere(steps[:_LONGEST] > _STEP)
-    if not len(jumps):
+    if not len(jumps) or count < 3:
         return 0
     at = np.unique(np.linspace(_LONGEST, count - 2, _SAMPLES).astype(np.intp)) if count > _LONGEST + 1 else None
     found = 0

@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.arrays import frozen, median
-from motionedit.core.body.bones import below
+from motionedit.core.body.bones import below, hanging
 from motionedit.core.body.ground import axis_name, axis_vector
 from motionedit.core.body.limbs import zero_pose
-from motionedit.core.body.words import hangs_on
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -78,7 +77,7 @@ def find_up(motion: Motion, bones: Skeleton, poses: WorldPoses, anatomy: Anatomy
     settled = all(floors[best] < floors[axis] - _SURE for axis in others.values())
     if costs[next_best] - costs[best] >= _SURE and settled:
         return Up(axis_vector(best))
-    why = ", ".join(f"{words} along {axis}" for words, axis in others.items()) or f"{next_best} is as likely"
+    why = ", ".join(f"{words} along {axis}" for words, axis in others.items()) or f"{next_best} is nearly as likely"
     return Up(
         axis_vector(best), f"up is taken to be {best}, but {why}; 'up' in a spec, --up elsewhere, says which it is"
     )
@@ -87,10 +86,7 @@ def find_up(motion: Motion, bones: Skeleton, poses: WorldPoses, anatomy: Anatomy
 @lru_cache(maxsize=4)
 def _body(bones: Skeleton, travel: int) -> BoolArray:
     """Return which joints may stand on a floor, shape (J,): those of the body, but no hair, tail or prop."""
-    hanging = np.zeros(len(bones), dtype=np.bool_)
-    for j, name in enumerate(bones.names):
-        hanging[j] = hangs_on(name) or (j > 0 and hanging[bones.parents[j]])
-    return frozen(below(bones, travel) & ~hanging)
+    return frozen(below(bones, travel) & ~hanging(bones))
 
 
 def _floors(positions: FloatArray, *, size: float) -> dict[str, float]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from functools import lru_cache
+from itertools import takewhile
 
 # Found anywhere in a name: real rigs write LeftUpLeg, l_thigh and upperarm01.L.
 _LEG = re.compile(r"thigh|leg|knee|calf|shin|ankle|foot|toe|femur|tibia|hip|足|脚|腿|膝|ひざ|つま先")
@@ -31,7 +32,26 @@ _HANGING = frozenset(
 _HANGING_ENDS = re.compile(
     r"(?:hair|tail|skirt|dress|cape|cloak|scarf|ribbon|sleeve|(?<!s)wing|sword|weapon|breast)\d*$"
 )
+_NAMESPACE = re.compile(r"^.*[:|]")
 _WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[^\W\d_a-zA-Z]+")
+
+
+@lru_cache(maxsize=8)
+def bare_names(names: tuple[str, ...]) -> tuple[str, ...]:
+    """Return names without namespaces (``mixamorig:``) and without what all begin with, which says nothing of a joint.
+
+    A character called Bat makes no body of wings.
+    """
+    cut = [_NAMESPACE.sub("", name) or name for name in names]
+    # What the first and the last in order share, all share.
+    shared = sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], zip(min(cut), max(cut), strict=False)))
+    while shared and not (len(cut) > 2 and all(_begins_a_word(name, shared) for name in cut)):
+        shared -= 1
+    return tuple(name[shared:] for name in cut)
+
+
+def _begins_a_word(name: str, at: int) -> bool:
+    return at < len(name) and (not name[at - 1].isalnum() or name[at].isupper())
 
 
 @lru_cache(maxsize=4096)

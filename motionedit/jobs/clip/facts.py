@@ -10,7 +10,7 @@ import numpy as np
 from motionedit.core import kinematics
 from motionedit.core.body import ground
 from motionedit.core.body.anatomy import NOTHING_GIVEN, Anatomy, GivenBody, find_anatomy
-from motionedit.core.body.bones import bones_of, travel_joint
+from motionedit.core.body.bones import bones_of, is_heaped, travel_joint
 from motionedit.core.body.contacts import find_plants
 from motionedit.core.body.rest_pose import rest_pose_frames
 from motionedit.core.body.up import find_up
@@ -31,6 +31,10 @@ Line = Literal["hips", "feet"]
 
 # Cosine of the angle between the feet's line and the hips' up to which feet stand side by side: 35 degrees.
 SIDE_BY_SIDE = 0.82
+_HEAPED = (
+    "position channels put most joints onto their parents, as if they were shifts from OFFSET; by the format they "
+    "replace it, and so all lie in a heap"
+)
 
 
 class Poses:
@@ -149,6 +153,8 @@ def facts_of(
     first = min(rest_pose_frames(motion, anatomy), len(motion) - 1)
     found = find_up(motion, bones, poses, anatomy, first=first, travel=travel)
     axis, warnings = found.axis, list(anatomy.warnings)
+    if len(motion.skeleton.translated) > 1 and is_heaped(motion, bones):
+        warnings.append(_HEAPED)
     if up == "auto":
         warnings += [] if found.warning is None else [found.warning]
     else:

@@ -63,7 +63,8 @@ EXTRAS = {
         *_pair("*ArmTwist", "*Arm", 1, (0.0, -0.14, 0.0), (0.0, 0.0, 0.0)),
     ],
 }
-NAMELESS_EXTRAS = ("eyes", "fingers", "twists")
+# Those that are parts of the body.
+PARTS = ("fingers", "twists")
 # Joints at the ends, with End Sites as long again, as importers and exporters in turn make them.
 DOUBLED = [
     ("Head_End", "Head", (0.0, 0.18, 0.0)),
@@ -117,7 +118,7 @@ class Rig:
     Attributes
     ----------
     names : str
-        Of `CONVENTIONS`, or ``nameless``.
+        Of `CONVENTIONS`, or ``nameless``: what hangs on the body alone keeps its names.
     carrier : str
         Of `CARRIERS`: ``hips`` travel as the root or below a static ``root``, and their OFFSET is ``far`` off or not;
         the ``root and hips`` share the way, along the ground and up; or all joints have ``six`` channels, and OFFSETs
@@ -125,6 +126,7 @@ class Rig:
     axes : str
         Of `AXES`: OFFSETs stand as the body does, with the joints' axes those of the ``world``, the arms straight down,
         or in a ``T-pose``; or each bone lies ``along`` an axis of its joint, along x with the others ``rolled`` anyhow.
+        What is no bone or a piece of one has the axes of its parent.
     facing : float
         Degrees by which the body and its way are turned about up.
     order : int
@@ -238,10 +240,10 @@ def in_file_order(rows, seed):
 def file_names(rig):
     """Return what the file calls each joint of human.py and of what hangs on it."""
     rows, _ = rows_of(rig)
+    hanging = {n: styled(n, rig.style) for extra in rig.extras if extra not in PARTS for n, _, _ in EXTRAS[extra]}
     if rig.names == "nameless":
-        return {n: f"joint{i}" for i, (n, _, _) in enumerate(rows)}
-    hanging = {n for extra in rig.extras for n, _, _ in EXTRAS[extra]}
-    return {n: styled(n, rig.style) if n in hanging else CONVENTIONS[rig.names].get(n, n) for n, _, _ in rows}
+        return {n: f"joint{i}" for i, (n, _, _) in enumerate(rows)} | hanging
+    return {n: CONVENTIONS[rig.names].get(n, n) for n, _, _ in rows} | hanging
 
 
 def motion_of(rig, take, *, noise=0.0, drift=0.0):
@@ -334,7 +336,6 @@ def _with_channels(skeleton, rig, names):
         offsets[:] = 0.0
     elif rig.carrier == "six other":
         offsets += rig.scale * np.random.default_rng(rig.order).normal(size=offsets.shape)
-        offsets[[not bone.any() for bone in skeleton.offsets]] = 0.0
     elif "far" in rig.carrier:
         offsets[names.index("Hips")] = rig.scale * np.array([3.0, -4.0, 5.0])
     return replace(skeleton, channels=channels, offsets=offsets)

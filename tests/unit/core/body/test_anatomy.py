@@ -271,6 +271,18 @@ def test_bones_a_tenth_longer_or_shorter_on_either_side_change_nothing(factors):
     assert_human(skeleton, find_anatomy(skeleton))
 
 
+@pytest.mark.parametrize(("factor", "found"), [(0.75, True), (1.3, True), (1.8, False)])
+@pytest.mark.parametrize("bone", ["LeftLeg", "RightFoot"])
+def test_without_names_twins_are_alike_in_length(bone, factor, found):
+    bones = [(n, parent, tuple(factor * x for x in o) if n == bone else o) for n, parent, o in BONES]
+    names = {name: f"joint{i}" for i, (name, _, _) in enumerate(BONES)}
+    legs = find_anatomy(skeleton_of(bones, rename=names.get)).legs
+    thighs = [names[side + "UpLeg"] for side in ("Left", "Right")]
+    assert (
+        legs is not None and [names_of(skeleton_of(bones, rename=names.get), (leg.thigh,))[0] for leg in legs] == thighs
+    ) is found
+
+
 @st.composite
 def trees(draw):
     count = draw(st.integers(1, 25))

@@ -80,7 +80,7 @@ def test_nothing_is_said_of_clips_of_whole_bodies(name):
         assert warnings == NO_LEGS
     elif "karate" in name or "tpose" in name:
         # Over OFFSETs along z one body stands along y, the other, by shifts for places, lies in a heap.
-        assert all(line.startswith("up is taken to be ") for line in warnings)
+        assert all(line.startswith(("up is taken to be ", "position channels put most joints")) for line in warnings)
     else:
         assert warnings == ()
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from rig_names import CONVENTIONS, STYLES
-from rigs import AXES, CARRIERS, EXTRAS, NAMELESS_EXTRAS, Rig, found_in, plainly_found
+from rigs import AXES, CARRIERS, EXTRAS, Rig, found_in, plainly_found
 from takes import TAKES, with_rest_pose
 
 RATE = 60.0
@@ -80,9 +80,10 @@ def test_a_body_that_does_anything_is_found_under_any_rig(take, rig):
 @settings(max_examples=40)
 @given(rig=rigs(), take=st.sampled_from(UPRIGHT))
 def test_names_without_meaning_do_not_hide_a_body(take, rig):
-    # What hangs on a body, or stands beside it, is known by its name alone.
-    extras = tuple(extra for extra in rig.extras if extra in NAMELESS_EXTRAS)
-    rig = replace(rig, names="nameless", extras=extras, doubled=False, controls=False)
+    # Where no foot is called foot a leftski1 is none that could be told, and an arm in pieces ends at a sword anywhere.
+    style = "LeftSkirt1" if rig.style == "leftskirt1" else rig.style
+    rolls = rig.rolls and not {"swords", "club"} & {*rig.extras}
+    rig = replace(rig, names="nameless", style=style, rolls=rolls, doubled=False, controls=False)
     found = found_in(rig, TAKES[take](RATE))
     assert_same(found, plainly_found(take, RATE), rig)
     assert found.warnings == ()
@@ -91,7 +92,7 @@ def test_names_without_meaning_do_not_hide_a_body(take, rig):
 @settings(max_examples=30)
 @given(rig=rigs(), take=st.sampled_from(UPRIGHT), stretch=st.integers(1, 10_000))
 def test_a_body_of_any_proportions_is_found(take, rig, stretch):
-    rig = replace(rig, stretch=stretch, rolls=False)
+    rig = replace(rig, stretch=stretch)
     assert_same_body(found_in(rig, TAKES[take](RATE)), plainly_found(take, RATE), rig)
 
 
@@ -145,7 +146,7 @@ BONES_OF_LIMBS = [
 @settings(max_examples=40)
 @given(rig=rigs(), bone=st.sampled_from(BONES_OF_LIMBS), take=st.sampled_from(UPRIGHT))
 def test_a_bone_of_nearly_twice_its_twins_length_is_still_its_twin(bone, rig, take):
-    rig = replace(rig, longer=bone, rolls=False)
+    rig = replace(rig, longer=bone)
     found = found_in(rig, TAKES[take](RATE))
     assert_same_body(found, plainly_found(take, RATE), rig)
 
@@ -160,7 +161,7 @@ def test_a_bone_of_nearly_twice_its_twins_length_is_still_its_twin(bone, rig, ta
 @settings(max_examples=20)
 @given(rig=rigs(), take=st.sampled_from(UPRIGHT))
 def test_a_body_without_arms_or_a_head_is_found_and_says_so(without, gone, says, rig, take):
-    rig = replace(rig, without=without, neck="beside", hips="bare")
+    rig = replace(rig, without=without, neck="beside")
     found, plain = found_in(rig, TAKES[take](RATE)), plainly_found(take, RATE)
     assert [line.split(":")[0] for line in found.missing] == [says]
     kept = {part: joint for part, joint in plain.joints.items() if part.split()[-1] not in gone}

@@ -1,10 +1,22 @@
 """What the names of joints say, in the spellings of many programs."""
 
 import pytest
+from human import skeleton_of
 from rig_names import CONVENTIONS, STYLES
 from rigs import EXTRAS, Rig, file_names
 
-from motionedit.core.body.words import hangs_on, is_end, is_hand_or_foot, is_head, is_toe, leg_or_arm, words_of
+from motionedit.core.body.anatomy import find_anatomy
+from motionedit.core.body.bones import hanging
+from motionedit.core.body.words import (
+    bare_names,
+    hangs_on,
+    is_end,
+    is_hand_or_foot,
+    is_head,
+    is_toe,
+    leg_or_arm,
+    words_of,
+)
 
 NAMES = {
     (convention, joint): name for convention in CONVENTIONS for joint, name in file_names(Rig(names=convention)).items()
@@ -110,3 +122,30 @@ def test_a_front_leg_is_an_arm():
     assert leg_or_arm(("FrontLeg", "front_knee", "ForeFoot"), (0, 1, 2)) == -3
     assert leg_or_arm(("HindLeg", "hind_knee", "HindFoot"), (0, 1, 2)) == 3
     assert leg_or_arm(("joint1", "joint2"), (0, 1)) == 0
+
+
+@pytest.mark.parametrize("prefix", ["Bat:", "Staff_", "Tail_", "EAR_", "Dress", "My Sword ", "rig|Hair:"])
+def test_what_all_names_begin_with_says_nothing(prefix):
+    skeleton = skeleton_of(rename=lambda name: prefix + name)
+    assert find_anatomy(skeleton) == find_anatomy(skeleton_of())
+    assert not hanging(skeleton).any()
+
+
+@pytest.mark.parametrize(
+    ("names", "bare"),
+    [
+        (("mixamorig:Hips", "mixamorig:LeftLeg", "x"), ("Hips", "LeftLeg", "x")),
+        (("Bat_Hips", "Bat_Head", "Bat_Hair"), ("Hips", "Head", "Hair")),
+        (("Hips", "Head", "Hand"), ("Hips", "Head", "Hand")),
+        (("LeftLeg", "LeftFoot"), ("LeftLeg", "LeftFoot")),
+        (("a", "a", "a"), ("a", "a", "a")),
+        (("ns:", "ns:b", "ns:c"), ("ns:", "b", "c")),
+    ],
+)
+def test_names_are_bare_of_namespaces_and_of_what_all_share(names, bare):
+    assert bare_names(names) == bare
+
+
+def test_what_most_joints_hang_on_is_the_body_whatever_it_is_called():
+    skeleton = skeleton_of(rename=lambda name: "rig_ctrl" if name == "Hips" else name)
+    assert not hanging(skeleton).any()
