@@ -88,13 +88,12 @@ def _bent(rotations: FloatArray, bend: Bend, hinges: list[Hinge]) -> FloatArray:
     """Return a joint's local rotations bent by a degree: about its bend's axis, or the nearest that its hinges have."""
     if not hinges:
         return rot.multiply(rot.exp(_LITTLE * bend.axis), rotations)
-    axes = [rot.rotate(rotations[0], hinge.axis) if hinge.is_second else hinge.axis for hinge in hinges]
-    along = [float(axis @ bend.axis) for axis in axes]
-    nearest = int(np.argmax(np.abs(along)))
-    turn = rot.exp(_LITTLE * np.sign(along[nearest]) * hinges[nearest].axis)
-    if hinges[nearest].is_second:
-        return rot.multiply(rotations, turn)
-    return rot.multiply(turn, rotations)
+    identity = np.broadcast_to(rot.IDENTITY, rotations.shape)
+    axes = [rot.rotate(rotations if hinge.is_second else identity, hinge.axis) for hinge in hinges]
+    along = np.array([axis @ bend.axis for axis in axes])
+    nearest = int(np.argmax(np.abs(along).mean(axis=1)))
+    turns = rot.exp(_LITTLE * np.sign(along[nearest])[:, None] * hinges[nearest].axis)
+    return rot.multiply(rotations, turns) if hinges[nearest].is_second else rot.multiply(turns, rotations)
 
 
 def _mixed(new: Solved, old: Solved, better: BoolArray) -> Solved:

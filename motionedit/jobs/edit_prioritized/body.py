@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from motionedit.core.arrays import frozen
 from motionedit.core.body.bends import find_bends
 from motionedit.core.body.center_of_mass import Masses, find_masses
-from motionedit.core.body.hinges import OFF_AXIS_ENERGY, Hinge, channel_hinges, find_hinges, hinge_of
+from motionedit.core.body.hinges import OFF_AXIS_ENERGY, Hinge, channel_hinges, find_hinges, hinge_of, with_limits_of
 from motionedit.core.motion import Motion, scaled
 from motionedit.core.priorities.settings import Body
 from motionedit.core.units import STANDARD_LEG
@@ -99,7 +99,8 @@ def _hinges(
             if joint is not None and joint not in by_channel:
                 hinge = _asked_hinge(motion, joint, facts.first, warnings)
                 found.update({} if hinge is None else {joint: (hinge,)})
-    found.update(by_channel)
+    for joint, hinges in by_channel.items():
+        found[joint] = with_limits_of(hinges, *found[joint]) if joint in found else hinges
     return [hinge for joint in sorted(found) for hinge in found[joint]]
 
 
