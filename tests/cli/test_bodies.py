@@ -12,6 +12,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "unit" / "core"))
 
 from human import BONES, ROOT_CHANNELS, above, skeleton_of, standing, with_rotation
 
+from motionedit.core import rotations as rot
 from motionedit.core.bvh import new_bytes, read_clip
 from motionedit.core.kinematics import forward
 from motionedit.core.motion import Motion
@@ -247,3 +248,52 @@ def test_a_body_without_length_is_shown_and_an_edit_that_changes_nothing_copies_
     done = run("edit-prioritized", "flat.bvh", "-s", spec(tmp_path), "-o", "out.bvh")
     assert done.exit_code == 0
     assert Path("out.bvh").read_bytes() == Path("flat.bvh").read_bytes()
+
+
+@pytest.mark.parametrize("limb_of", [("Hips", "Spine", "Spine1"), ("Spine1", "Neck", "Head")])
+def test_limbs_that_hang_on_each_other_are_refused(run, write, tmp_path, limb_of):
+    write("person.bvh", person())
+    body = {"left_leg": ["Hips", "Spine", "Spine1"], "right_leg": list(limb_of)}
+    done = run("edit-prioritized", "person.bvh", "-s", spec(tmp_path, body=body), "-o", "out.bvh")
+    assert done.exit_code == 2
+    assert "body.left_leg: must part from right_leg: neither limb hangs on the other" in done.stderr
+
+
+@pytest.mark.parametrize("damaged", [[1, 2], {"head": 5}, {"left_leg": ["a", "b", "c"]}, None])
+def test_damaged_rules_for_a_body_are_said_to_be_damaged(run, write, damaged):
+    for i in range(3):
+        write(f"c{i}.bvh", with_rotation(person(), "Spine", slice(None), (0.1 * i, 0.05, 0.0)))
+    Path("normalize.yaml").write_text("schema: motionedit/normalize/v1\n")
+    run("normalize", "c0.bvh", "c1.bvh", "c2.bvh", "-s", "normalize.yaml", "-o", "n")
+    listed = json.loads(Path("n/normalization.json").read_text())
+    listed["rules"]["body"] = damaged
+    Path("n/normalization.json").write_text(json.dumps(listed))
+    done = run("fit-pca", "n", "-o", "m.npz")
+    assert done.exit_code != 0
+    assert "normalization.json: its rules for the body are damaged" in done.stderr
+
+
+def test_a_knee_of_two_channels_bends_no_further_than_a_knee(run, write, tmp_path):
+    motion = person()
+    skeleton = motion.skeleton
+    channels = list(skeleton.channels)
+    knee = skeleton.names.index("LeftLeg")
+    channels[knee] = ("Xrotation", "Yrotation")
+    write("knee.bvh", Motion(replace(skeleton, channels=tuple(channels)), *astuple(motion)))
+    up = {"type": "position", "effector": "LeftFoot", "recruit": {"up_to": "LeftUpLeg"}}
+    up |= {"points": [{"hold": [10, 30], "shift": [0, 60, 60]}]}
+    run("edit-prioritized", "knee.bvh", "-s", spec(tmp_path, up), "-o", "out.bvh")
+    after = read_clip(Path("out.bvh")).motion.rotations[:, knee]
+    assert np.degrees(rot.log(after)[:, 0]).min() > -1.0
+
+
+def test_rows_that_put_all_joints_onto_their_parents_are_told(run, write):
+    motion = person()
+    channels = tuple(ROOT_CHANNELS for _ in motion.skeleton.names)
+    skeleton = replace(motion.skeleton, channels=channels)
+    translations = np.zeros((len(motion), len(skeleton), 3))
+    translations[:, 0] = motion.translations[:, 0]
+    write("heap.bvh", Motion(skeleton, motion.rotations, translations, motion.frame_time))
+    _, entry = record(run, "info", "heap.bvh")
+    assert entry["leg_length"] == pytest.approx(85.0)
+    assert any("position channels put most joints onto their parents" in line for line in entry["warnings"])

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from motionedit.core.body.anatomy import GivenBody
     from motionedit.core.skeleton import Skeleton
     from motionedit.errors import MotionEditError
+    from motionedit.spec.body import BodySpec
 
 
 @dataclass(frozen=True)
@@ -33,6 +34,12 @@ class KeptRules:
         return ClipError(message, file=self.label, key=key)
 
 
+def with_body(rules: dict[str, Any], spec: BodySpec) -> dict[str, Any]:
+    """Return kept rules with what a spec says of the body in place of what they say of the same parts."""
+    said, kept = spec.plain, rules.get("body", {})
+    return {**rules, "body": {**kept, **said}} if said and isinstance(kept, dict) else rules
+
+
 def kept_body(rules: Mapping[str, Any], skeleton: Skeleton, *, label: str, clip: str) -> GivenBody:
     """Return what kept rules say that a clip's joints are; `label` is the file that they are in.
 
@@ -43,5 +50,10 @@ def kept_body(rules: Mapping[str, Any], skeleton: Skeleton, *, label: str, clip:
     """
     from motionedit.spec.body import BodySpec
 
-    spec = BodySpec.model_validate(rules.get("body", {}))
+    try:
+        spec = BodySpec.model_validate(rules.get("body", {}))
+    except ValueError as error:
+        raise ClipError(
+            "its rules for the body are damaged; make it again with 'motionedit normalize'", file=label
+        ) from error
     return resolve.body(spec, skeleton, resolve.Place(KeptRules(label), ("body",), clip))

@@ -113,8 +113,16 @@ def body(spec: BodySpec, skeleton: Skeleton, place: Where) -> GivenBody:
             if upper not in skeleton.chain(lower):
                 at = place.at(key)
                 raise at.error(f"'{skeleton.names[lower]}' does not hang on '{skeleton.names[upper]}' in {at.clip}")
+    for left, right in (("left_leg", "right_leg"), ("left_arm", "right_arm")):
+        ends = [limbs[key] for key in (left, right)]
+        if all(ends) and _is_on_the_way(skeleton, *(limb[-1] for limb in ends if limb)):
+            raise place.at(left).error(f"must part from {right}: neither limb hangs on the other")
     head = None if spec.head is None else -1 if spec.head == NONE else joint(spec.head, skeleton, place.at("head"))
     return GivenBody(head, _both(limbs["left_leg"], limbs["right_leg"]), _both(limbs["left_arm"], limbs["right_arm"]))
+
+
+def _is_on_the_way(skeleton: Skeleton, one: int, other: int) -> bool:
+    return one in skeleton.chain(other) or other in skeleton.chain(one)
 
 
 def _both(left: tuple[int, ...] | None, right: tuple[int, ...] | None) -> tuple[tuple[int, ...], ...] | None:

@@ -21,7 +21,7 @@ from motionedit.jobs.batch.plan import plan
 from motionedit.jobs.batch.run import run_batch
 from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.facts import facts_of
-from motionedit.jobs.clip.kept_rules import kept_body
+from motionedit.jobs.clip.kept_rules import kept_body, with_body
 from motionedit.jobs.clip.metrics import edit_metrics, feet_of
 from motionedit.jobs.edit_pc.goals import clip_goals
 from motionedit.jobs.edit_pc.model_events import events_for_model, refuse_unknown_events
@@ -124,11 +124,11 @@ class _Edit:
         return self._outcome(facts, projection, edit, goals, before=poses, bound=bound)
 
     def _body(self, clip: Clip, task: ClipTask) -> GivenBody:
-        """Return what the spec says that joints are, else what the model's own rules say."""
-        spec, skeleton = self.loaded.model.body, clip.motion.skeleton
-        if spec.plain:
-            return resolve.body(spec, skeleton, resolve.Place(self.loaded, ("body",), task.label))
-        return kept_body(self.model.rules, skeleton, label=self.model_label, clip=task.label)
+        """Return what the spec says that joints are, and of what it does not say what the model's own rules say."""
+        said, skeleton = self.loaded.model.body, clip.motion.skeleton
+        resolve.body(said, skeleton, resolve.Place(self.loaded, ("body",), task.label))
+        rules = with_body(self.model.rules, said)
+        return kept_body(rules, skeleton, label=self.model_label, clip=task.label)
 
     def _projection(self, facts: ClipFacts, task: ClipTask) -> tuple[Projection, dict[str, float]]:
         """Return a clip in the model's coordinates, and the frames of its events."""
