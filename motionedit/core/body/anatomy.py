@@ -10,7 +10,8 @@ import numpy as np
 from motionedit.core.arrays import median
 from motionedit.core.body.bones import bones_of, travel_joint
 from motionedit.core.body.head import SAME_PLACE, find_head
-from motionedit.core.body.limbs import LimbPair, Tree, Triple, find_limb_pairs
+from motionedit.core.body.legs_and_arms import find_legs_and_arms
+from motionedit.core.body.limbs import LimbPair, Tree, Triple
 from motionedit.core.body.sides import side_of_chains, side_of_toes
 from motionedit.core.body.words import is_end, is_toe
 from motionedit.core.kinematics import Effector
@@ -185,7 +186,7 @@ class _Parts:
 @lru_cache(maxsize=4)
 def _parts(skeleton: Skeleton, given: GivenBody) -> _Parts:
     tree = Tree(skeleton)
-    legs, arms = _legs_and_arms(tree, find_limb_pairs(skeleton))
+    legs, arms = find_legs_and_arms(tree)
     legs = legs if given.legs is None else _given_pair(tree, given.legs, top=0)
     arms = arms if given.arms is None else _given_pair(tree, given.arms, top=-3)
     head, head_way = find_head(tree, legs, arms)
@@ -241,48 +242,6 @@ def _given_pair(tree: Tree, limbs: tuple[tuple[int, ...], ...], *, top: int) -> 
     triples = tuple(Triple(*limb[top:][:3]) for limb in limbs)
     lengths = [_way(tree, triple.top, triple.end) for triple in triples]
     return LimbPair(base, (left, right), (triples[0], triples[1]), 0.5 * sum(lengths))
-
-
-def _legs_and_arms(tree: Tree, pairs: tuple[LimbPair, ...]) -> tuple[LimbPair | None, LimbPair | None]:
-    """Tell legs from arms by what they are called, and by the tree where that does not tell two apart."""
-    called_legs = next((pair for pair in pairs if pair.names > 0), None)
-    called_arms = next((pair for pair in pairs if pair.names < 0), None)
-    if called_legs is not None and called_arms is not None:
-        return called_legs, called_arms
-    if len(pairs) < 2:
-        return (None, pairs[0]) if called_arms is not None else (pairs[0] if pairs else None, None)
-    if called_arms is not None:
-        return next(pair for pair in pairs if pair is not called_arms), called_arms
-    return _by_the_tree(tree, *pairs[:2])
-
-
-def _by_the_tree(tree: Tree, first: LimbPair, second: LimbPair) -> tuple[LimbPair, LimbPair]:
-    """Tell legs from arms: the head hangs where the arms do, the root is nearer to the legs.
-
-    Where these two contradict each other (a tail, a root in the chest), names decide.
-    """
-    depth = len(tree.skeleton.chain(second.base)) - len(tree.skeleton.chain(first.base))
-    by_head = _signed(_neck_length(tree, second, first) - _neck_length(tree, first, second), tree)
-    vote = int(np.sign(depth)) + by_head
-    if vote == 0:
-        vote = first.names - second.names or depth or 1
-    return (first, second) if vote > 0 else (second, first)
-
-
-def _signed(length: float, tree: Tree) -> int:
-    return 0 if abs(length) < SAME_PLACE * tree.height else int(np.sign(length))
-
-
-def _neck_length(tree: Tree, pair: LimbPair, other: LimbPair | None) -> float:
-    return max((float(tree.lengths[c] + tree.reach[c]) for c in _neck_candidates(tree, pair, other)), default=0.0)
-
-
-def _neck_candidates(tree: Tree, pair: LimbPair, other: LimbPair | None) -> list[int]:
-    """Return the children of a pair's base that are neither its limbs nor on the way to the other pair."""
-    way = set() if other is None else set(tree.skeleton.chain(other.base).tolist())
-    limbs = {pair.chains[0][0], pair.chains[1][0]}
-    children = tree.skeleton.children[pair.base]
-    return [c for c in children if c not in limbs and c not in way]
 
 
 def _left_first(parts: _Parts, positions: FloatArray) -> tuple[LimbPair | None, LimbPair | None, bool]:

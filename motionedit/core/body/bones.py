@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import lru_cache
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -47,7 +47,19 @@ def travel_joint(motion: Motion) -> int:
     return above[int(np.argmax(width >= _TRAVEL_SHARE * width.max()))]
 
 
+class Bones(NamedTuple):
+    """A `skeleton` whose offsets are bones; `heaped` where position channels put most joints onto their parents."""
+
+    skeleton: Skeleton
+    heaped: bool
+
+
 def bones_of(motion: Motion, travel: int) -> Skeleton:
+    """Return the skeleton of `find_bones`."""
+    return find_bones(motion, travel).skeleton
+
+
+def find_bones(motion: Motion, travel: int) -> Bones:
     """Return the motion's skeleton with the effective offset of every joint in place of its OFFSET, clip units.
 
     That is the OFFSET itself, or the median over the frames of the joint's translation where position channels replace
@@ -56,21 +68,17 @@ def bones_of(motion: Motion, travel: int) -> Skeleton:
     bones, so that what is read off it is read once in a batch.
     """
     skeleton = motion.skeleton
-    offsets = skeleton.offsets.copy()
+    offsets, heaped = skeleton.offsets.copy(), False
     moved = [p for p, j in enumerate(skeleton.translated.tolist()) if below(skeleton, travel)[j] and j != travel]
     if moved:
         joints, bones = skeleton.translated[moved], median(motion.translations[:, moved])
-        if not _are_shifts(offsets[joints], bones):
+        heaped = _are_shifts(offsets[joints], bones)
+        if not heaped:
             offsets[joints] = bones
     offsets[~below(skeleton, travel)] = 0.0
     offsets[travel] = 0.0
-    return skeleton if np.array_equal(offsets, skeleton.offsets) else _with_offsets(skeleton, offsets.tobytes())
-
-
-def is_heaped(motion: Motion, bones: Skeleton) -> bool:
-    """Tell whether position channels put most joints onto their parents: they are shifts from OFFSET, then."""
-    skeleton = motion.skeleton
-    return _are_shifts(bones.offsets[skeleton.translated], median(motion.translations))
+    same = np.array_equal(offsets, skeleton.offsets)
+    return Bones(skeleton if same else _with_offsets(skeleton, offsets.tobytes()), heaped)
 
 
 def _are_shifts(offsets: FloatArray, places: FloatArray) -> bool:

@@ -6,7 +6,7 @@ LeftHip, a toe LeftFoot), and so do lengths (hair, wings and skirts hang in pair
 
 from __future__ import annotations
 
-from functools import cached_property, lru_cache
+from functools import cached_property
 from itertools import combinations
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -82,21 +82,20 @@ class LimbPair:
         return LimbPair(self.base, self.chains[::-1], self.triples[::-1], self.length, self.names)
 
 
-@lru_cache(maxsize=4)
-def find_limb_pairs(skeleton: Skeleton) -> tuple[LimbPair, ...]:
+def find_limb_pairs(tree: Tree) -> tuple[LimbPair, ...]:
     """Return the pairs of limbs, the likeliest first, none inside another; empty where there are none.
 
     The likeliest are those whose names speak of legs or arms, then the longest. Where the names of some limbs are left
     and right of each other, those whose names are not are none: a tail and a spine beside two legs.
     """
-    tree, names = Tree(skeleton), skeleton.names
+    skeleton = tree.skeleton
     found = [
         pair
         for base, children in enumerate(skeleton.children)
         for a, b in combinations(children, 2)
         if (pair := _limb_pair(tree, base, (a, b))) is not None
     ]
-    mirrored = [pair for pair in found if side_of_chains(names, pair.chains)]
+    mirrored = [pair for pair in found if side_of_chains(skeleton.names, pair.chains)]
     kept: list[LimbPair] = []
     taken: set[int] = set()
     for pair in sorted(mirrored or found, key=lambda pair: (pair.names == 0, -pair.length)):

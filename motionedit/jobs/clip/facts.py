@@ -10,7 +10,7 @@ import numpy as np
 from motionedit.core import kinematics
 from motionedit.core.body import ground
 from motionedit.core.body.anatomy import NOTHING_GIVEN, Anatomy, GivenBody, find_anatomy
-from motionedit.core.body.bones import bones_of, is_heaped, travel_joint
+from motionedit.core.body.bones import find_bones, travel_joint
 from motionedit.core.body.contacts import find_plants
 from motionedit.core.body.rest_pose import rest_pose_frames
 from motionedit.core.body.up import find_up
@@ -147,13 +147,13 @@ def facts_of(
     """
     motion = clip.motion
     travel = travel_joint(motion)
-    bones, world = bones_of(motion, travel), Poses(motion)
+    (bones, heaped), world = find_bones(motion, travel), Poses(motion)
     poses = world.get()
     anatomy = find_anatomy(bones, poses=poses, given=given)
     first = min(rest_pose_frames(motion, anatomy), len(motion) - 1)
     found = find_up(motion, bones, poses, anatomy, first=first, travel=travel)
     axis, warnings = found.axis, list(anatomy.warnings)
-    if len(motion.skeleton.translated) > 1 and is_heaped(motion, bones):
+    if heaped:
         warnings.append(_HEAPED)
     if up == "auto":
         warnings += [] if found.warning is None else [found.warning]
