@@ -23,7 +23,7 @@ from motionedit.jobs.batch.one_clip import read_task
 from motionedit.jobs.batch.plan import ClipTask, refuse_overwriting
 from motionedit.jobs.batch.run import values_in_order
 from motionedit.jobs.clip import resolve
-from motionedit.jobs.clip.kept_rules import kept_body, with_body
+from motionedit.jobs.clip.kept_rules import body_said, kept_body, with_body
 from motionedit.jobs.normalize.normalization_file import NAME, Normalization, NormalizedClip, read_normalization
 from motionedit.spec.fit_pca import FitPcaSpec
 
@@ -145,11 +145,10 @@ def fit(database: Database, loaded: LoadedSpec[FitPcaSpec] | None, *, options: R
 
 def _body(loaded: LoadedSpec[FitPcaSpec] | None, database: Database, skeleton: Skeleton) -> GivenBody:
     """Return what the spec says that joints are, and of what it does not say what the normalization's rules say."""
-    rules = database.normalization.rules
-    if loaded is not None:
-        resolve.body(loaded.model.body, skeleton, resolve.Place(loaded, ("body",), database.label))
-        rules = with_body(rules, loaded.model.body)
-    return kept_body(rules, skeleton, label=database.list_label, clip=database.label)
+    rules, where = database.normalization.rules, {"label": database.list_label, "clip": database.label}
+    if loaded is None:
+        return kept_body(rules, skeleton, **where)
+    return body_said(loaded, rules, skeleton, **where)
 
 
 def _motions(database: Database, options: RunOptions) -> Iterator[DatabaseMotion]:

@@ -61,7 +61,7 @@ def on_channels(motion: Motion, hinges: Sequence[Hinge]) -> Motion:
     A low-passed displacement is about any axis, and what two channels cannot say would be lost in the file.
     """
     axes = motion.skeleton.rotation_axes
-    joints = [hinge.joint for hinge in hinges if hinge.is_second and len(axes[hinge.joint]) == 2]
+    joints = [hinge.joint for hinge in hinges if hinge.is_second]
     if not joints:
         return motion
     rotations = motion.rotations.copy()

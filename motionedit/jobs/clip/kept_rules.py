@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from motionedit.core.skeleton import Skeleton
     from motionedit.errors import MotionEditError
     from motionedit.spec.body import BodySpec
+    from motionedit.spec.document import Document
+    from motionedit.spec.load import LoadedSpec
 
 
 @dataclass(frozen=True)
@@ -38,6 +40,21 @@ def with_body(rules: dict[str, Any], spec: BodySpec) -> dict[str, Any]:
     """Return kept rules with what a spec says of the body in place of what they say of the same parts."""
     said, kept = spec.plain, rules.get("body", {})
     return {**rules, "body": {**kept, **said}} if said and isinstance(kept, dict) else rules
+
+
+def body_said(
+    loaded: LoadedSpec[Document], rules: dict[str, Any], skeleton: Skeleton, *, label: str, clip: str
+) -> GivenBody:
+    """Return what a spec says that a clip's joints are, and of what it does not say what kept rules say.
+
+    Raises
+    ------
+    MotionEditError
+        The clip lacks one of the joints: of the spec, or of the rules, which are in the file `label`.
+    """
+    said = loaded.model.body
+    resolve.body(said, skeleton, resolve.Place(loaded, ("body",), clip))
+    return kept_body(with_body(rules, said), skeleton, label=label, clip=clip)
 
 
 def kept_body(rules: Mapping[str, Any], skeleton: Skeleton, *, label: str, clip: str) -> GivenBody:

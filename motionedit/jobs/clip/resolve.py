@@ -105,30 +105,32 @@ def body(spec: BodySpec, skeleton: Skeleton, place: Where) -> GivenBody:
     SpecError
         Where the clip lacks a joint, or a limb's joints do not hang on one another in their order.
     """
-    limbs: dict[str, tuple[int, ...] | None] = {}
-    for key in ("left_leg", "right_leg", "left_arm", "right_arm"):
-        names = getattr(spec, key)
-        limbs[key] = None if names is None else joints(names, skeleton, place.at(key))
-        for upper, lower in pairwise(limbs[key] or ()):
-            if upper not in skeleton.chain(lower):
-                at = place.at(key)
-                raise at.error(f"'{skeleton.names[lower]}' does not hang on '{skeleton.names[upper]}' in {at.clip}")
-    for left, right in (("left_leg", "right_leg"), ("left_arm", "right_arm")):
-        ends = [limbs[key] for key in (left, right)]
-        if all(ends) and _is_on_the_way(skeleton, *(limb[-1] for limb in ends if limb)):
-            raise place.at(left).error(f"must part from {right}: neither limb hangs on the other")
+    legs = _limbs({"left_leg": spec.left_leg, "right_leg": spec.right_leg}, skeleton, place)
+    arms = _limbs({"left_arm": spec.left_arm, "right_arm": spec.right_arm}, skeleton, place)
     head = None if spec.head is None else -1 if spec.head == NONE else joint(spec.head, skeleton, place.at("head"))
-    return GivenBody(head, _both(limbs["left_leg"], limbs["right_leg"]), _both(limbs["left_arm"], limbs["right_arm"]))
+    return GivenBody(head, legs, arms)
 
 
-def _is_on_the_way(skeleton: Skeleton, one: int, other: int) -> bool:
-    return one in skeleton.chain(other) or other in skeleton.chain(one)
+def _limbs(
+    given: dict[str, tuple[str, ...] | None], skeleton: Skeleton, place: Where
+) -> tuple[tuple[int, ...], ...] | None:
+    """Return the joints of a left and a right limb, as `GivenBody` has them."""
+    limbs = [_limb(names, skeleton, place.at(key)) for key, names in given.items() if names is not None]
+    if not all(limbs):
+        return ()
+    for one, other in pairwise(limbs):
+        if one[-1] in skeleton.chain(other[-1]) or other[-1] in skeleton.chain(one[-1]):
+            left, right = given
+            raise place.at(left).error(f"must part from {right}: neither limb hangs on the other")
+    return tuple(limbs) or None
 
 
-def _both(left: tuple[int, ...] | None, right: tuple[int, ...] | None) -> tuple[tuple[int, ...], ...] | None:
-    if left is None or right is None:
-        return None
-    return (left, right) if left else ()
+def _limb(names: tuple[str, ...], skeleton: Skeleton, place: Where) -> tuple[int, ...]:
+    limb = joints(names, skeleton, place)
+    for upper, lower in pairwise(limb):
+        if upper not in skeleton.chain(lower):
+            raise place.error(f"'{skeleton.names[lower]}' does not hang on '{skeleton.names[upper]}' in {place.clip}")
+    return limb
 
 
 def effector(spec: EffectorSpec, skeleton: Skeleton, place: Where, *, scale: float = 1.0) -> Effector:

@@ -19,9 +19,8 @@ from motionedit.dataclass import dataclass
 from motionedit.jobs.batch.one_clip import Outcome
 from motionedit.jobs.batch.plan import plan
 from motionedit.jobs.batch.run import run_batch
-from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.facts import facts_of
-from motionedit.jobs.clip.kept_rules import kept_body, with_body
+from motionedit.jobs.clip.kept_rules import body_said
 from motionedit.jobs.clip.metrics import edit_metrics, feet_of
 from motionedit.jobs.edit_pc.goals import clip_goals
 from motionedit.jobs.edit_pc.model_events import events_for_model, refuse_unknown_events
@@ -33,7 +32,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from motionedit.core.body.anatomy import GivenBody
     from motionedit.core.bvh import Clip
     from motionedit.core.coefficients.edit import CoefficientEdit
     from motionedit.core.coefficients.projection import Projection
@@ -106,7 +104,7 @@ class _Edit:
             clip,
             up=axis_name(model.up),
             keep_rest_pose=model.rules["rest_pose"] == "keep",
-            given=self._body(clip, task),
+            given=body_said(self.loaded, model.rules, clip.motion.skeleton, label=self.model_label, clip=task.label),
         )
         facts.refuse_one_frame()
         projection, events = self._projection(facts, task)
@@ -122,13 +120,6 @@ class _Edit:
             first=facts.first if spec.timing == "original" else 0,
         )
         return self._outcome(facts, projection, edit, goals, before=poses, bound=bound)
-
-    def _body(self, clip: Clip, task: ClipTask) -> GivenBody:
-        """Return what the spec says that joints are, and of what it does not say what the model's own rules say."""
-        said, skeleton = self.loaded.model.body, clip.motion.skeleton
-        resolve.body(said, skeleton, resolve.Place(self.loaded, ("body",), task.label))
-        rules = with_body(self.model.rules, said)
-        return kept_body(rules, skeleton, label=self.model_label, clip=task.label)
 
     def _projection(self, facts: ClipFacts, task: ClipTask) -> tuple[Projection, dict[str, float]]:
         """Return a clip in the model's coordinates, and the frames of its events."""
