@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from rig_names import CONVENTIONS, STYLES
-from rigs import AXES, CARRIERS, EXTRAS, Rig, found_in, plainly_found
+from rig_rows import EXTRAS
+from rigs import AXES, CARRIERS, Rig, found_in, plainly_found
 from takes import TAKES, with_rest_pose
 
 RATE = 60.0

@@ -7,7 +7,8 @@ import pytest
 from human import BONES, HIPS_HEIGHT, ROOT_CHANNELS, skeleton_of, standing, with_rotation
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from rigs import DOG, FILES, Rig, found_in, mirrored, motion_of
+from rig_rows import DOG
+from rigs import FILES, Rig, found_in, mirrored, motion_of
 from takes import TAKES, Take, about, clock, smooth, walks, wave, waving
 
 from motionedit.core import rotations as rot

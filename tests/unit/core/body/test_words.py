@@ -3,7 +3,8 @@
 import pytest
 from human import skeleton_of
 from rig_names import CONVENTIONS, STYLES
-from rigs import EXTRAS, Rig, file_names
+from rig_rows import EXTRAS
+from rigs import Rig, file_names
 
 from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.bones import hanging
