@@ -166,6 +166,11 @@ class Skeleton:
             path.append(int(self.parents[path[-1]]))
         return np.array(path[::-1], dtype=np.intp)
 
+    def between(self, start: int, stop: int) -> list[int]:
+        """Return the joints below one of a chain down to another, that one in; none where it does not lead there."""
+        chain = list(map(int, self.chain(stop)))
+        return chain[chain.index(start) + 1 :] if start in chain else []
+
     def indices(self, name: str) -> tuple[int, ...]:
         """Return every joint of that name: none, one, or several where the file repeats a name."""
         return tuple(j for j, other in enumerate(self.names) if other == name)

@@ -36,11 +36,14 @@ class Trace:
         The path of the center of mass, where masses were given.
     jerk_rms : float
         As `quality.jerk_rms` of all joints.
+    jerk_at : (int, int)
+        The joint and the frame with the largest.
     """
 
     tracks: FloatArray
     center: FloatArray | None
     jerk_rms: float
+    jerk_at: tuple[int, int]
 
 
 def trace_of(
@@ -68,7 +71,7 @@ def trace_of(
             centers.append(center_of_mass(poses, masses))
         jerk.add(poses.positions)
     center = frozen(np.concatenate(centers)) if centers else None
-    return Trace(frozen(np.concatenate(tracks)), center, jerk.rms(frame_time=frame_time))
+    return Trace(frozen(np.concatenate(tracks)), center, jerk.rms(frame_time=frame_time), jerk.worst)
 
 
 def blocks_of(poses: WorldPoses) -> Iterator[WorldPoses]:

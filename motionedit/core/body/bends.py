@@ -31,11 +31,18 @@ class Bend:
         Unit axis in the frame of the joint's parent, about which it bends further.
     straight : shape (F,)
         The frames in which the limb is straight.
+    upper, lower : shape (3,)
+        Unit directions of the limb's bones, in the frames of the joint's parent and of the joint.
+    angles : shape (n,), rad
+        How far it is bent about the axis, from `upper` to `lower`, after a rest pose; 0 is straight.
     """
 
     joint: int
     axis: FloatArray
     straight: BoolArray
+    upper: FloatArray
+    lower: FloatArray
+    angles: FloatArray
 
 
 def find_bends(skeleton: Skeleton, poses: WorldPoses, anatomy: Anatomy, *, first: int) -> tuple[Bend, ...]:
@@ -77,7 +84,34 @@ def _bend(
     parents = poses.rotations[bent, skeleton.parents[joint]]
     axis = rot.rotate(rot.conjugate(parents), sides[bent]).sum(axis=0)
     length = float(np.linalg.norm(axis))
-    return Bend(joint, frozen(axis / length), frozen(sines < _STRAIGHT)) if length > 0.0 else None
+    if length == 0.0:
+        return None
+    upper = mean_direction(poses, top, joint, seen_from=int(skeleton.parents[joint]), first=first)
+    lower = mean_direction(poses, joint, end, seen_from=joint, first=first)
+    parent = poses.rotations[:, skeleton.parents[joint]]
+    local = rot.multiply(rot.conjugate(parent), poses.rotations[:, joint])
+    angles = turns_about(axis / length, upper, rot.rotate(local, np.broadcast_to(lower, (len(local), 3))))
+    return Bend(
+        joint, frozen(axis / length), frozen(sines < _STRAIGHT), frozen(upper), frozen(lower), frozen(angles[first:])
+    )
+
+
+def turns_about(axis: FloatArray, start: FloatArray, stop: FloatArray) -> FloatArray:
+    """Return the angle about a unit axis (3,) from one direction to another, shapes (..., 3), in rad, (-pi, pi].
+
+    atan2(a . (u x v), u . v - (a . u) (a . v)): what they have along the axis does not count.
+    """
+    sine = np.sum(axis * rot.cross(np.broadcast_to(start, stop.shape), stop), axis=-1)
+    angles: FloatArray = np.arctan2(sine, np.sum(start * stop, axis=-1) - (start @ axis) * (stop @ axis))
+    return angles
+
+
+def mean_direction(poses: WorldPoses, start: int, stop: int, *, seen_from: int, first: int) -> FloatArray:
+    """Return the unit direction from one joint to another in the frame of a third, shape (3,), the mean of frames."""
+    way = poses.positions[first:, stop] - poses.positions[first:, start]
+    own = rot.rotate(rot.conjugate(poses.rotations[first:, seen_from]), way).sum(axis=0)
+    direction: FloatArray = own / max(float(np.linalg.norm(own)), np.finfo(float).tiny)
+    return direction
 
 
 def _sides(positions: FloatArray, top: int, joint: int, end: int) -> FloatArray:

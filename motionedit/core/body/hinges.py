@@ -12,50 +12,60 @@ from motionedit.core.arrays import frozen
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from motionedit.core.arrays import FloatArray
-    from motionedit.core.body.anatomy import Anatomy
+    from motionedit.core.body.bends import Bend
     from motionedit.core.motion import Motion
     from motionedit.core.skeleton import Skeleton
 
-OFF_AXIS_ENERGY = 0.005  # of the whole: above it a joint is no hinge
+OFF_AXIS_ENERGY = 0.005  # of the whole: above it a joint that a user calls a hinge is none in the input
 FULL_BEND = float(np.radians(150.0))  # where a knee or an elbow ends, unless the input bends it further
 # What the hinge of a joint with few channels may turn: all there is.
 ANY_ANGLE = (-2.0 * np.pi, 2.0 * np.pi)
+_LEAST_BEND = float(np.radians(3.0))  # a limb that an edit stretches stays bent so much: straight, it has no side
 _STRAIGHT = float(np.radians(1.0))  # root mean square: a joint that hardly bends shows no axis
 
 
 @dataclass(frozen=True, eq=False)
 class Hinge:
-    """A joint that turns about one axis fixed in its own frame.
+    """A joint that turns about one axis.
 
     Attributes
     ----------
     axis : shape (3,)
-        Unit vector, signed so that the input's mean angle is positive.
+        Unit vector in the frame of the joint's parent; a second hinge's in the joint's own.
+    upper, lower : shape (3,)
+        Its angle is the one about the axis from `upper`, in the parent's frame, to `lower`, in the joint's.
     limits : (low, high), rad
-        [min(0, the input's least), max(150 degrees, the input's largest)].
     off_axis : float
-        Share of the rotation's energy that is not about the axis, 0 to 1.
+        Share of the input's rotation that is not about the axis, 0 to 1, where that is known.
     is_second : bool
-        Whether it is the second of two hinges of its joint: the first one's axis is fixed in the parent's frame, its
-        own in the joint's.
+        Whether it is the second of two hinges of its joint.
     """
 
     joint: int
     axis: FloatArray
+    upper: FloatArray
+    lower: FloatArray
     limits: tuple[float, float]
-    off_axis: float
+    off_axis: float = 0.0
     is_second: bool = False
 
 
-def find_hinges(motion: Motion, anatomy: Anatomy, *, first: int) -> list[Hinge]:
-    """Return the knees and elbows that are hinges, left before right, knees first.
+def find_hinges(bends: Sequence[Bend]) -> list[Hinge]:
+    """Return the knees and elbows as hinges, in their order.
 
-    Frames before `first`, a rest pose, are left out.
+    What an edit adds to one is about the axis that it bends about, however noisy the input is about the others; it
+    keeps within [min(3 degrees, the input's least), max(150 degrees, the input's largest)] of its bend.
     """
-    joints = [leg.knee for leg in anatomy.legs or ()] + [arm.elbow for arm in anatomy.arms or ()]
-    found = (hinge_of(motion, joint, first=first) for joint in joints)
-    return [hinge for hinge in found if hinge is not None and hinge.off_axis < OFF_AXIS_ENERGY]
+    return [Hinge(each.joint, each.axis, each.upper, each.lower, _limits(each.angles, _LEAST_BEND)) for each in bends]
+
+
+def plain_hinge(joint: int, axis: FloatArray, limits: tuple[float, float], off_axis: float = 0.0) -> Hinge:
+    """Return a hinge whose angle is 0 where its joint is not turned."""
+    side = frozen(_square_to(axis))
+    return Hinge(joint, frozen(axis), side, side, limits, off_axis)
 
 
 def channel_hinges(skeleton: Skeleton) -> dict[int, tuple[Hinge, ...]]:
@@ -67,8 +77,12 @@ def channel_hinges(skeleton: Skeleton) -> dict[int, tuple[Hinge, ...]]:
     found = {}
     for joint, axes in enumerate(skeleton.rotation_axes):
         if len(axes) in {1, 2}:
-            hinges = (Hinge(joint, frozen(np.eye(3)[axis]), ANY_ANGLE, 0.0, i == 1) for i, axis in enumerate(axes))
-            found[joint] = tuple(hinges)
+            # What is along the other one's axis shows the angle about each.
+            other = np.eye(3)[list(axes[::-1])] if len(axes) == 2 else [_square_to(np.eye(3)[axes[0]])]
+            found[joint] = tuple(
+                Hinge(joint, frozen(np.eye(3)[axis]), frozen(side), frozen(side), ANY_ANGLE, is_second=i == 1)
+                for i, (axis, side) in enumerate(zip(axes, other, strict=True))
+            )
     return found
 
 
@@ -77,13 +91,15 @@ def with_limits_of(hinges: tuple[Hinge, ...], found: Hinge) -> tuple[Hinge, ...]
     along = [float(hinge.axis @ found.axis) for hinge in hinges]
     nearest = int(np.argmax(np.abs(along)))
     low, high = found.limits if along[nearest] > 0.0 else (-found.limits[1], -found.limits[0])
-    return tuple(replace(each, limits=(low, high)) if i == nearest else each for i, each in enumerate(hinges))
+    limited = replace(hinges[nearest], upper=found.upper, lower=found.lower, limits=(low, high))
+    return tuple(limited if i == nearest else each for i, each in enumerate(hinges))
 
 
 def hinge_of(motion: Motion, joint: int, *, first: int) -> Hinge | None:
     """Return the hinge that fits a joint best, however badly; None where it does not bend.
 
-    Uncentred PCA of v = log q(t): the axis is the first eigenvector of sum v v^T.
+    Uncentred PCA of v = log q(t): the axis is the first eigenvector of sum v v^T, signed so that the mean angle is
+    positive. Frames before `first`, a rest pose, are left out.
     """
     v = rot.log(motion.rotations[first:, joint])
     energies, axes = np.linalg.eigh(v.T @ v)
@@ -94,6 +110,16 @@ def hinge_of(motion: Motion, joint: int, *, first: int) -> Hinge | None:
     angles = v @ axis
     if angles.sum() < 0.0:
         axis, angles = -axis, -angles
-    limits = min(0.0, float(angles.min())), max(FULL_BEND, float(angles.max()))
     off_axis = float(np.clip(1.0 - energies[-1] / total, 0.0, 1.0))
-    return Hinge(joint, frozen(axis), limits, off_axis)
+    return plain_hinge(joint, axis, _limits(angles, 0.0), off_axis)
+
+
+def _limits(angles: FloatArray, least: float) -> tuple[float, float]:
+    return min(least, float(angles.min())), max(FULL_BEND, float(angles.max()))
+
+
+def _square_to(axis: FloatArray) -> FloatArray:
+    """Return a unit vector square to an axis."""
+    side = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    square: FloatArray = side / np.linalg.norm(side)
+    return square

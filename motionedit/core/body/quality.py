@@ -65,6 +65,7 @@ class JerkMeter:
         self._skip = first
         self._last: FloatArray | None = None
         self._sum, self._count = 0.0, 0
+        self._next, self._largest, self._at = first, 0.0, (0, first)
 
     def add(self, positions: FloatArray) -> None:
         """Take the positions, shape (F, J, 3), of the frames that follow those before."""
@@ -76,13 +77,24 @@ class JerkMeter:
         third = np.diff(positions, n=3, axis=0)
         if third.size:
             third *= third
-            self._sum += float(np.sum(np.sum(third, axis=-1)))
-            self._count += third.shape[0] * third.shape[1]
+            squares = np.sum(third, axis=-1)
+            self._sum += float(np.sum(squares))
+            self._count += squares.size
+            frame, joint = np.unravel_index(int(np.argmax(squares)), squares.shape)
+            if squares[frame, joint] > self._largest:
+                # Of the four frames that it is taken from, the third.
+                self._largest, self._at = float(squares[frame, joint]), (int(joint), self._next + int(frame) + 2)
         self._last = positions[-3:].copy()
+        self._next += max(len(positions) - 3, 0)
 
     def rms(self, *, frame_time: float) -> float:
         """Return the root mean square third difference over time, clip units / s^3; 0 below four frames."""
         return float(np.sqrt(self._sum / self._count)) / frame_time**3 if self._count else 0.0
+
+    @property
+    def worst(self) -> tuple[int, int]:
+        """The joint and the frame of the largest third difference."""
+        return self._at
 
 
 def foot_slide_max(tracks: FloatArray, plants: Sequence[Plant], *, up: FloatArray, frame_time: float) -> float:

@@ -75,6 +75,29 @@ def test_a_limb_is_straight_up_to_a_fifth_of_a_degree(degrees, straight):
     assert bend.straight.tolist() == [straight] * len(motion)
 
 
+def test_angles_are_those_between_the_bones_and_negative_where_a_limb_is_bent_back():
+    degrees = np.linspace(-20.0, 140.0, 9)
+    motion = standing(SKELETON, 11)
+    for frame, angle in enumerate(degrees):
+        motion = with_rotation(motion, "LeftLeg", frame + 2, (np.radians(angle), 0.0, 0.0))
+    # The hips and the thigh turn, too: nothing of that is a bend of the knee.
+    motion = with_rotation(motion, "Hips", slice(None), (0.3, 1.2, -0.4))
+    motion = with_rotation(motion, "LeftUpLeg", slice(None), (-0.7, 0.2, 0.1))
+    bend = bends_of(motion, first=2)["LeftLeg"]
+    np.testing.assert_allclose(np.degrees(bend.angles), degrees, atol=0.2)
+    places = forward(motion).positions[2:]
+    hip, knee, ankle = (places[:, INDEX(name)] for name in ("LeftUpLeg", "LeftLeg", "LeftFoot"))
+    thigh, shank = knee - hip, ankle - knee
+    cosines = np.sum(thigh * shank, axis=1) / np.linalg.norm(thigh, axis=1) / np.linalg.norm(shank, axis=1)
+    np.testing.assert_allclose(np.abs(bend.angles), np.arccos(np.clip(cosines, -1.0, 1.0)), atol=1e-2)
+    assert np.linalg.norm([bend.upper, bend.lower], axis=1) == pytest.approx([1.0, 1.0])
+
+
+def test_a_straight_limb_has_no_angle_to_speak_of():
+    for bend in bends_of(standing(SKELETON)).values():
+        np.testing.assert_allclose(bend.angles, 0.0, atol=1e-9)
+
+
 def test_a_body_without_limbs_has_no_bends():
     assert bends_of(standing(skeleton_of([("Hips", None, (0, 0, 0)), ("Tip", "Hips", (0, 1, 0))]))) == {}
 

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from motionedit.core.body.contacts import Plant
 from motionedit.core.body.ground import axis_vector
-from motionedit.core.body.quality import find_defects, foot_drift, foot_slide_max, jerk_rms
+from motionedit.core.body.quality import JerkMeter, find_defects, foot_drift, foot_slide_max, jerk_rms
 from motionedit.core.motion import Motion
 
 UP = axis_vector("y")
@@ -28,6 +28,21 @@ def test_jerk_leaves_a_rest_pose_out_and_is_zero_for_fewer_than_four_frames():
     assert jerk_rms(positions, frame_time=0.01) > 0.0
     assert jerk_rms(positions, frame_time=0.01, first=1) == 0.0
     assert jerk_rms(positions[:4], frame_time=0.01, first=1) == 0.0
+
+
+@pytest.mark.parametrize("size", [1, 3, 4, 30])
+@pytest.mark.parametrize("first", [0, 2])
+def test_the_jerk_meter_knows_where_the_largest_jerk_is_whatever_the_blocks(size, first):
+    positions = np.zeros((30, 4, 3))
+    # A corner: its third differences are 1, -1 in the four frames around it.
+    positions[18:, 2, 1] = np.arange(12)
+    positions[18:, 1, 1] = 0.5 * np.arange(12)
+    meter = JerkMeter(first)
+    for start in range(0, 30, size):
+        meter.add(positions[start : start + size])
+    joint, frame = meter.worst
+    assert joint == 2
+    assert 17 <= frame <= 19
 
 
 def planted(point, start, stop):

@@ -1,0 +1,148 @@
+"""How far the joints of a body turn: cones of swing and twist about where a clip has them, from human ranges.
+
+A joint's rotation against its centre, q_rel = q_c^-1 q, is a swing of the bone v, by the angle between v and q_rel v,
+after a twist about it, 2 atan2(v . vec(q_rel), w). Rigs disagree about where a joint's zero is; a clip shows it: the
+centre is the clip's own mean.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core import rotations as rot
+from motionedit.core.arrays import frozen
+from motionedit.core.body.bends import mean_direction
+from motionedit.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from motionedit.core.arrays import FloatArray
+    from motionedit.core.body.anatomy import Anatomy
+    from motionedit.core.kinematics import WorldPoses
+    from motionedit.core.motion import Motion
+    from motionedit.core.skeleton import Skeleton
+
+
+@dataclass(frozen=True)
+class Range:
+    """Half of a range of motion: how far a bone swings, and how far it twists, degrees."""
+
+    swing: float
+    twist: float
+
+
+# Half ranges of regions: D. A. Neumann, Kinesiology of the Musculoskeletal System,
+# and the American Academy of Orthopaedic Surgeons' tables, rounded; a forearm's pronation is in its wrist, for elbows
+# are hinges.
+NECK = Range(65.0, 90.0)
+SPINE = Range(90.0, 70.0)
+CLAVICLE = Range(45.0, 50.0)
+SHOULDER = Range(165.0, 180.0)
+HIP = Range(135.0, 80.0)
+WRIST = Range(90.0, 120.0)
+ANKLE = Range(60.0, 45.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Limit:
+    """A joint's cone.
+
+    Attributes
+    ----------
+    center : shape (4,)
+        The local rotation in its middle.
+    along : shape (3,)
+        The bone, a unit vector in the joint's frame.
+    swing, twist : float
+        Half ranges, rad; never less than what the clip itself has.
+    """
+
+    joint: int
+    center: FloatArray
+    along: FloatArray
+    swing: float
+    twist: float
+
+
+def human_limits(motion: Motion, poses: WorldPoses, anatomy: Anatomy, *, travel: int, first: int) -> list[Limit]:
+    """Return the limits of neck, spine, clavicles, shoulders, hips, wrists and ankles that were found."""
+    found = {}
+    for region, joints in _regions(motion.skeleton, anatomy, travel):
+        # Of a region that n joints share each may do more than its nth part: not all of them are always asked.
+        share = 1.0 / np.sqrt(len(joints))
+        for joint, start, stop in joints:
+            along = mean_direction(poses, start, stop, seen_from=joint, first=first)
+            half = Range(share * region.swing, share * region.twist)
+            found[joint] = limit_of(motion, joint, along, half, first=first)
+    return [found[joint] for joint in sorted(found)]
+
+
+def given_limits(motion: Motion, poses: WorldPoses, given: Mapping[int, Range], *, first: int) -> list[Limit]:
+    """Return limits that a user gives by joint; a joint's bone leads to the middle of its children."""
+    found = []
+    for joint in sorted(given):
+        children = np.flatnonzero(motion.skeleton.parents == joint)
+        ends = [(joint, int(child)) for child in children] or [(int(motion.skeleton.parents[joint]), joint)]
+        ways = [mean_direction(poses, start, stop, seen_from=joint, first=first) for start, stop in ends]
+        along = np.sum(ways, axis=0)
+        along = along / max(float(np.linalg.norm(along)), np.finfo(float).tiny)
+        found.append(limit_of(motion, joint, along, given[joint], first=first))
+    return found
+
+
+def limit_of(motion: Motion, joint: int, along: FloatArray, half: Range, *, first: int) -> Limit:
+    """Return a joint's limit about its mean in a clip, not tighter than what the clip does after frame `first`."""
+    q = motion.rotations[first:, joint]
+    center = _mean(q)
+    swing, twist = swing_and_twist(rot.multiply(rot.conjugate(center), q), along)
+    widest = max(float(np.radians(half.swing)), float(swing.max()))
+    farthest = max(float(np.radians(half.twist)), float(np.abs(twist).max()))
+    return Limit(joint, frozen(center), frozen(along), widest, farthest)
+
+
+def swing_and_twist(q: FloatArray, along: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return by how much rotations (..., 4) swing unit vectors, and how far they twist about them, rad.
+
+    `along` (3,) is one vector for all, or (C, 3) one for each of the last but one axis of q.
+    """
+    twist = 2.0 * np.arctan2(np.sum(q[..., 1:] * along, axis=-1), q[..., 0])
+    twist = (twist + np.pi) % (2.0 * np.pi) - np.pi
+    still = np.broadcast_to(along, (*q.shape[:-1], 3))
+    turned = rot.rotate(q, still)
+    across = np.linalg.norm(rot.cross(still, turned), axis=-1)
+    swing: FloatArray = np.arctan2(across, np.sum(turned * still, axis=-1))
+    return swing, twist
+
+
+def _mean(q: FloatArray) -> FloatArray:
+    """Return the mean of rotations, shape (4,): the first eigenvector of sum q q^T, its sign that of the first."""
+    _, vectors = np.linalg.eigh(q.T @ q)
+    mean: FloatArray = vectors[:, -1]
+    return -mean if mean @ q[0] < 0.0 else mean
+
+
+_Joint = tuple[int, int, int]  # a joint, and from where to where its bone is
+
+
+def _regions(skeleton: Skeleton, anatomy: Anatomy, travel: int) -> Iterator[tuple[Range, list[_Joint]]]:
+    """Yield regions with their joints."""
+    chest = travel if anatomy.chest is None else anatomy.chest
+    spine = skeleton.between(travel, chest)
+    if spine:
+        yield SPINE, [(joint, int(skeleton.parents[joint]), joint) for joint in spine]
+    neck = [] if anatomy.head is None else skeleton.between(chest, anatomy.head)
+    if neck:
+        yield NECK, [(joint, int(skeleton.parents[joint]), joint) for joint in neck]
+    for arm in anatomy.arms or ():
+        clavicles = skeleton.between(chest, arm.shoulder)[:-1]
+        if clavicles:
+            yield CLAVICLE, [(joint, joint, arm.shoulder) for joint in clavicles]
+        yield SHOULDER, [(arm.shoulder, arm.shoulder, arm.elbow)]
+        yield WRIST, [(arm.wrist, arm.elbow, arm.wrist)]
+    for leg in anatomy.legs or ():
+        yield HIP, [(leg.thigh, leg.thigh, leg.knee)]
+        end = (leg.knee, leg.ankle) if leg.toe is None else (leg.ankle, leg.toe)
+        yield ANKLE, [(leg.ankle, *end)]

@@ -1,0 +1,184 @@
+"""How far an edit takes joints beyond the range that they have in its input, and bends knees and elbows back."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core import rotations as rot
+from motionedit.core.body.bones import below
+from motionedit.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from motionedit.core.arrays import BoolArray, FloatArray
+    from motionedit.core.body.anatomy import Anatomy
+    from motionedit.core.body.bends import Bend
+    from motionedit.core.motion import Motion
+    from motionedit.core.skeleton import Skeleton
+
+# Degrees beyond its range in the input from which a joint looks wrong: most of them; neck and spine, which are many
+# joints that each take a part; shoulders and hips: an arm that hangs in the input may be raised overhead. Knees and
+# elbows, which fold, are seen where they bend back.
+MOST, TRUNK, BALL, BACK = 45.0, 60.0, 150.0, 5.0
+
+
+@dataclass(frozen=True)
+class Region:
+    """A joint as it turns against one above it, and from how many degrees beyond its range on that is seen."""
+
+    lower: int
+    upper: int
+    most: float
+
+
+@dataclass(frozen=True)
+class Beyond:
+    """A joint that is taken beyond its range in the input: by how many `degrees`, at which frame, and what is seen.
+
+    `against` is the joint that it is measured against, None for a knee or an elbow that is bent back.
+    """
+
+    joint: int
+    against: int | None
+    frame: int
+    degrees: float
+    most: float
+
+
+def regions_of(skeleton: Skeleton, anatomy: Anatomy, *, travel: int) -> tuple[Region, ...]:
+    """Return what has a range: every joint against its parent, and neck, spine, limbs against what carries them.
+
+    The joint that carries the `travel` has none, nor have those above it and beside it; knees and elbows neither.
+    """
+    carried, bending = below(skeleton, travel), {limb[1] for limb in _limbs(anatomy)}
+    seen = dict.fromkeys(_trunk(skeleton, anatomy), TRUNK) | dict.fromkeys((limb[0] for limb in _limbs(anatomy)), BALL)
+    found = {
+        (j, skeleton.parents[j]): seen.get(j, MOST)
+        for j in range(len(skeleton))
+        if carried[j] and j != travel and j not in bending
+    }
+    for lower, upper, most in _wholes(anatomy):
+        if lower is not None and upper is not None and lower != upper:
+            found[lower, upper] = most
+    return tuple(Region(lower, upper, most) for (lower, upper), most in sorted(found.items()))
+
+
+def beyond_range(
+    before: Motion, after: Motion, regions: Sequence[Region], *, first: int, touched: BoolArray
+) -> list[Beyond]:
+    """Return the regions that an edit takes further beyond their range in the input than is not seen.
+
+    The range is the largest angle from the mean rotation of the input, the frames before `first` left out. A region
+    with no joint among the `touched`, shape (J,), is left out.
+    """
+    found = []
+    for region in regions:
+        up, down = _ways(before.skeleton, region)
+        if not touched[[*up, *down]].any():
+            continue
+        own, taken = (_relative(motion.rotations[first:], up, down) for motion in (before, after))
+        mean = rot.mean_of_products(own.T @ own)
+        angles = np.degrees(rot.angle_between(mean, taken))
+        worst = int(np.argmax(angles))
+        degrees = float(angles[worst] - np.degrees(rot.angle_between(mean, own)).max())
+        if degrees > region.most:
+            found.append(Beyond(region.lower, region.upper, first + worst, degrees, region.most))
+    return found
+
+
+def bent_back(
+    before: Motion, after: Motion, anatomy: Anatomy, bends: Sequence[Bend], *, first: int, touched: BoolArray
+) -> list[Beyond]:
+    """Return the knees and elbows that an edit bends back further than the input does, by more than `BACK`."""
+    found, axes = [], {bend.joint: bend.axis for bend in bends}
+    for limb in _limbs(anatomy):
+        _, joint, end = limb
+        way = before.skeleton.chain(end).tolist()
+        if joint not in axes or not touched[way[way.index(limb[0]) :]].any():
+            continue
+        own, taken = (_bend(motion, limb, axes[joint])[first:] for motion in (before, after))
+        worst = int(np.argmin(taken))
+        degrees = min(0.0, float(own.min())) - float(taken[worst])
+        if degrees > BACK:
+            found.append(Beyond(joint, None, first + worst, degrees, BACK))
+    return found
+
+
+def _limbs(anatomy: Anatomy) -> list[tuple[int, int, int]]:
+    legs = [(leg.thigh, leg.knee, leg.ankle) for leg in anatomy.legs or ()]
+    return legs + [(arm.shoulder, arm.elbow, arm.wrist) for arm in anatomy.arms or ()]
+
+
+def _wholes(anatomy: Anatomy) -> Iterator[tuple[int | None, int | None, float]]:
+    """Yield what turns as one by several joints: the lower and the upper joint, and what is seen."""
+    yield anatomy.head, anatomy.chest, TRUNK
+    yield anatomy.chest, anatomy.pelvis, TRUNK
+    for leg in anatomy.legs or ():
+        yield leg.thigh, anatomy.pelvis, BALL
+        yield leg.ankle, leg.knee, MOST
+    for arm in anatomy.arms or ():
+        yield arm.clavicle, anatomy.chest, MOST
+        yield arm.shoulder, anatomy.chest, BALL
+        yield arm.wrist, arm.elbow, MOST
+
+
+def _trunk(skeleton: Skeleton, anatomy: Anatomy) -> frozenset[int]:
+    """Return the joints of neck and spine: those on the way to the head and the chest."""
+    ends = (joint for joint in (anatomy.head, anatomy.chest) if joint is not None)
+    return frozenset(int(j) for end in ends for j in skeleton.chain(end))
+
+
+def _ways(skeleton: Skeleton, region: Region) -> tuple[list[int], list[int]]:
+    """Return the joints between a region's upper joint and where the ways to both part, and between that and its lower.
+
+    Both from the root outwards.
+    """
+    upper, lower = (skeleton.chain(joint).tolist() for joint in (region.upper, region.lower))
+    shared = sum(one == other for one, other in zip(upper, lower, strict=False))
+    return upper[shared:], lower[shared:]
+
+
+def _relative(rotations: FloatArray, up: Sequence[int], down: Sequence[int]) -> FloatArray:
+    """Return the rotation of the lower joint in the frame of the upper one, shape (F, 4)."""
+    turned = _product(rotations, down)
+    return turned if not up else rot.multiply(rot.conjugate(_product(rotations, up)), turned)
+
+
+def _product(rotations: FloatArray, way: Sequence[int]) -> FloatArray:
+    product = rotations[:, way[0]] if way else np.broadcast_to(rot.IDENTITY, (len(rotations), 4))
+    for j in way[1:]:
+        product = rot.multiply(product, rotations[:, j])
+    return product
+
+
+def _bend(motion: Motion, limb: tuple[int, int, int], axis: FloatArray) -> FloatArray:
+    """Return how a limb is bent, shape (F,), degrees, positive where it bends about `axis` of its joint's parent."""
+    top, joint, end = limb
+    skeleton = motion.skeleton
+    frame = int(skeleton.parents[joint])
+    upper, lower = _path(motion, frame, joint), _path(motion, joint, end)
+    if top != frame:
+        # The upper bone comes from further up: seen from the frame that the axis is fixed in.
+        way = skeleton.chain(frame).tolist()
+        turned = _product(motion.rotations, way[way.index(top) + 1 :])
+        upper = upper + rot.rotate(rot.conjugate(turned), _path(motion, top, frame))
+    lower = rot.rotate(motion.rotations[:, joint], lower)
+    side = rot.cross(upper, lower)
+    angle = np.arctan2(np.linalg.norm(side, axis=1), np.einsum("fi,fi->f", upper, lower))
+    bend: FloatArray = np.degrees(np.where(side @ axis < 0.0, -angle, angle))
+    return bend
+
+
+def _path(motion: Motion, top: int, end: int) -> FloatArray:
+    """Return where a joint is in the frame of one above it, shape (F, 3)."""
+    skeleton, way = motion.skeleton, motion.skeleton.chain(end).tolist()
+    places = {int(j): p for p, j in enumerate(skeleton.translated)}
+    path, turned = np.zeros((len(motion), 3)), np.broadcast_to(rot.IDENTITY, (len(motion), 4))
+    for j in way[way.index(top) + 1 :]:
+        local = motion.translations[:, places[j]] if j in places else skeleton.offsets[j]
+        path = path + rot.rotate(turned, local)
+        turned = rot.multiply(turned, motion.rotations[:, j])
+    return path

@@ -1,0 +1,51 @@
+"""How readily the joints of a body give: a human's trunk, neck and shoulder girdle less than its limbs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from motionedit.core.arrays import FloatArray
+    from motionedit.core.body.anatomy import Anatomy
+    from motionedit.core.skeleton import Skeleton
+
+# Mobility: a joint's share of a change goes with its square. 1 is a shoulder, an elbow, a hip or a knee.
+PELVIS = 0.5
+SPINE = 0.35
+NECK = 0.35
+CLAVICLE = 0.4
+WRIST_AND_ANKLE = 0.7
+# Of the root's shift.
+TRAVEL = 0.25
+
+
+def human_mobility(skeleton: Skeleton, anatomy: Anatomy, *, travel: int) -> FloatArray:
+    """Return the mobility of every joint, shape (J,), of a body's parts that were found; 1 elsewhere.
+
+    `travel` is the joint that carries the travel.
+    """
+    mobility = np.ones(len(skeleton))
+    for joint, value in _parts(skeleton, anatomy, travel):
+        mobility[joint] = value
+    return mobility
+
+
+def _parts(skeleton: Skeleton, anatomy: Anatomy, travel: int) -> Iterator[tuple[int, float]]:
+    """Yield joints with their mobility."""
+    chest = travel if anatomy.chest is None else anatomy.chest
+    if anatomy.head is not None:
+        for joint in skeleton.between(chest, anatomy.head):
+            yield joint, NECK
+    for arm in anatomy.arms or ():
+        for joint in skeleton.between(chest, arm.shoulder)[:-1]:
+            yield joint, CLAVICLE
+        yield arm.wrist, WRIST_AND_ANKLE
+    for leg in anatomy.legs or ():
+        yield leg.ankle, WRIST_AND_ANKLE
+    for joint in skeleton.between(travel, chest):
+        yield joint, SPINE
+    yield travel, PELVIS

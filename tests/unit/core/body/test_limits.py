@@ -1,0 +1,67 @@
+"""Cones of swing and twist about where a clip has its joints, never tighter than what it does."""
+
+import numpy as np
+import pytest
+from human import skeleton_of, standing, with_rotation
+from scipy.spatial.transform import Rotation
+
+from motionedit.core import rotations as rot
+from motionedit.core.body.anatomy import find_anatomy
+from motionedit.core.body.limits import NECK, Range, given_limits, human_limits, limit_of, swing_and_twist
+from motionedit.core.kinematics import forward
+
+SKELETON = skeleton_of()
+INDEX = SKELETON.names.index
+UP = np.array([0.0, 1.0, 0.0])
+
+
+def limits_of(motion, first=0):
+    anatomy = find_anatomy(motion.skeleton)
+    found = human_limits(motion, forward(motion), anatomy, travel=0, first=first)
+    return {motion.skeleton.names[limit.joint]: limit for limit in found}
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_swing_after_a_twist_is_taken_apart_again(seed):
+    rng = np.random.default_rng(seed)
+    along = rng.normal(size=3)
+    along /= np.linalg.norm(along)
+    square = np.cross(along, rng.normal(size=3))
+    square /= np.linalg.norm(square)
+    swing, twist = rng.uniform(0.1, 3.0), rng.uniform(-3.0, 3.0)
+    q = (Rotation.from_rotvec(swing * square) * Rotation.from_rotvec(twist * along)).as_quat()[[3, 0, 1, 2]]
+    found = swing_and_twist(q[None], along)
+    np.testing.assert_allclose([found[0][0], found[1][0]], [swing, twist], atol=1e-9)
+
+
+def test_necks_spines_and_limbs_have_limits_and_knees_and_elbows_have_none():
+    found = limits_of(standing(SKELETON))
+    assert {"Head", "LeftArm", "RightHand", "LeftUpLeg", "RightFoot"} <= set(found)
+    assert not {"LeftLeg", "RightLeg", "LeftForeArm", "RightForeArm", "Hips"} & set(found)
+
+
+def test_a_limit_is_never_tighter_than_what_the_clip_does_and_a_rest_pose_does_not_count():
+    plain = limits_of(standing(SKELETON))["Head"]
+    nodding = with_rotation(standing(SKELETON), "Head", slice(4, 6), (2.5, 0.0, 0.0))
+    wide = limits_of(nodding)["Head"]
+    assert plain.swing < np.radians(NECK.swing) + 1e-12
+    q = rot.multiply(rot.conjugate(wide.center), nodding.rotations[:, INDEX("Head")])
+    assert wide.swing == pytest.approx(swing_and_twist(q, wide.along)[0].max(), abs=1e-12)
+    assert wide.swing > plain.swing
+    assert limits_of(nodding, first=6)["Head"].swing == plain.swing
+
+
+def test_given_limits_are_of_the_joints_that_are_named():
+    motion = standing(SKELETON)
+    given = {INDEX("Head"): Range(20.0, 10.0), INDEX("LeftArm"): Range(90.0, 45.0)}
+    found = given_limits(motion, forward(motion), given, first=0)
+    assert [limit.joint for limit in found] == sorted(given)
+    by_joint = {limit.joint: limit for limit in found}
+    np.testing.assert_allclose(by_joint[INDEX("Head")].swing, np.radians(20.0))
+    np.testing.assert_allclose(by_joint[INDEX("LeftArm")].twist, np.radians(45.0))
+
+
+def test_the_middle_of_a_limit_is_the_mean_of_the_clip():
+    motion = with_rotation(standing(SKELETON), "Head", slice(None), (0.0, 0.7, 0.0))
+    limit = limit_of(motion, INDEX("Head"), UP, Range(10.0, 10.0), first=0)
+    assert rot.angle_between(limit.center, rot.exp(np.array([0.0, 0.7, 0.0]))) < 1e-6
