@@ -81,6 +81,19 @@ class Measure:
 WORLD = Measure()
 
 
+@dataclass(frozen=True, eq=False)
+class Level:
+    """A height in the world: `height` along the unit vector `up`, shape (3,)."""
+
+    up: FloatArray
+    height: float = 0.0
+
+    def above(self, points: FloatArray) -> FloatArray:
+        """Return how far points, shape (..., 3), are above it."""
+        heights: FloatArray = points @ self.up - self.height
+        return heights
+
+
 def relative_rows(
     inverse: FloatArray, between: FloatArray, rows: FloatArray, base_rows: FloatArray, base_turns: FloatArray
 ) -> FloatArray:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from motionedit.core import rotations as rot
 from motionedit.core import units
 from motionedit.core.compiled import compiled
 from motionedit.core.priorities import constants
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.body.center_of_mass import Masses
-    from motionedit.core.priorities.problem import CompiledTask, LayeredSolution, Problem, Reference
+    from motionedit.core.priorities.problem import CompiledTask, LayeredSolution, Problem, Reference, WeightedTask
 
 # Frames a thread takes at least.
 _LEAST_SHARE = 32
@@ -36,9 +37,16 @@ class Layout:
 
     buffers: dict[str, NDArray[Any]]
 
+    def with_targets_of(self, problem: Problem) -> Layout:
+        """Return the layout with the targets of a problem that has the same tasks."""
+        rows = (row for tasks in problem.layers for each in tasks for row in each.task.compiled() or ())
+        return Layout(
+            {**self.buffers, "targets": np.concatenate([np.zeros(0), *(np.ravel(row.targets) for row in rows)])}
+        )
 
-# A task's rows, their layer, and their weight in it.
-_Row = tuple["CompiledTask", int, float]
+
+# A task's rows, their layer, and the task with its weight in it.
+_Row = tuple["CompiledTask", int, "WeightedTask"]
 
 
 def layout_of(problem: Problem) -> Layout | None:
@@ -61,12 +69,21 @@ def layout_of(problem: Problem) -> Layout | None:
             "constants": _constants(),
             "nodes": _node_records(problem, nodes, node_of, masses),
             "column_nodes": _integers(node_of[columns.joints]),
+            "mobility": _numbers(problem.mobility),
             "tasks": tasks,
             "hinges": _records(
                 "hinges",
                 len(hinges.places),
-                {"column": hinges.places, "second": hinges.second, "axis": hinges.axes, "limits": hinges.limits},
+                {
+                    "column": hinges.places,
+                    "second": hinges.second,
+                    "axis": hinges.axes,
+                    "upper": hinges.upper,
+                    "lower": hinges.lower,
+                    "limits": hinges.limits,
+                },
             ),
+            "limits": _limit_records(problem),
             "recruited": np.ascontiguousarray([task.recruited.joints for task, _, _ in rows], dtype=np.uint8),
             "targets": targets,
         }
@@ -79,6 +96,7 @@ def solve(
     reference: Reference,
     frames: IntArray,
     *,
+    softness: FloatArray,
     in_order: bool,
     threads: int,
 ) -> None:
@@ -89,11 +107,13 @@ def solve(
         "frames": _integers(frames),
         "reference_rotations": _numbers(reference.rotations),
         "reference_root": _numbers([] if reference.root is None else reference.root),
+        "softness": _numbers(softness),
         "rotations": motion.rotations,
         "translations": motion.translations,
         "iterations": solution.iterations,
         "converged": solution.converged,
         "ranks": solution.ranks,
+        "left": solution.left,
     }
     shares = 1 if in_order else max(1, min(threads, count // _LEAST_SHARE))
     bounds = [count * i // shares for i in range(shares + 1)]
@@ -118,7 +138,7 @@ def _rows(problem: Problem, kinds: Sequence[str]) -> list[_Row] | None:
             rows = each.task.compiled()
             if rows is None or any(row.row_kind not in kinds for row in rows):
                 return None
-            found += [(row, layer, each.weight) for row in rows]
+            found += [(row, layer, each) for row in rows]
     return found
 
 
@@ -147,6 +167,7 @@ def _settings(
         "columns": len(columns.joints),
         "tasks": len(tasks),
         "hinges": len(problem.hinges.places),
+        "limits": len(problem.limits.places),
         "layers": len(problem.layers),
         "joints": len(skeleton),
         "translated": len(skeleton.translated),
@@ -181,22 +202,38 @@ def _node_records(problem: Problem, nodes: IntArray, node_of: IntArray, masses: 
     return _records("nodes", len(nodes), values)
 
 
+def _limit_records(problem: Problem) -> NDArray[Any]:
+    limits = problem.limits
+    halves = np.stack([limits.swing, limits.twist], axis=1)
+    values = {
+        "column": limits.places,
+        "center": limits.centers,
+        "along": limits.along,
+        "middle": rot.rotate(limits.centers, limits.along),
+        "halves": halves,
+        "least": np.cos(0.5 * np.minimum(halves.min(axis=1), np.pi)),
+    }
+    return _records("limits", len(limits.places), values)
+
+
 def _tasks(rows: Sequence[_Row], node_of: IntArray, kinds: Sequence[str]) -> tuple[NDArray[Any], FloatArray]:
     """Return the records of all tasks, and their targets one after the other."""
     records = _records("tasks", len(rows), {})
     given: list[FloatArray] = [np.zeros(0)]
-    for record, (task, layer, weight) in zip(records, rows, strict=True):
+    for record, (task, layer, weighted) in zip(records, rows, strict=True):
         counted = task.measure.counted
         values = {
             "kind": kinds.index(task.row_kind),
             "layer": layer,
-            "weight": weight,
+            "one_sided": weighted.one_sided,
+            "weight": weighted.weight * task.sign,
             "rows": len(counted),
             "root": task.recruited.root if task.point is None else task.point.moves_with_root,
             "base_root": task.base is not None and task.base.moves_with_root,
             "node": -1 if task.point is None else node_of[task.point.effector.joint],
             "base": -1 if task.base is None else node_of[task.base.effector.joint],
             "offset": 0.0 if task.point is None else task.point.effector.offset,
+            "base_offset": 0.0 if task.base is None else task.base.effector.offset,
             "axis": 0.0 if task.axis is None else task.axis,
             "width": task.targets.shape[1],
             "targets": sum(map(len, given)),

@@ -2,6 +2,8 @@
 
 # Metres at leg length 0.85 m: a layer's error is clamped to this much per iteration.
 LARGEST_ERROR = 0.6
+# That of a layer that gives way: so far it pulls, and no farther, at what is out of reach.
+LARGEST_SOFT_ERROR = 0.3
 # Radians: no joint turns further than this in one iteration. The series of csrc's q_exp are good up to it.
 LARGEST_TURN = 0.5
 # Radians and metres: a frame is done when its largest step falls below,
@@ -21,6 +23,15 @@ ANNEALED_ITERATIONS = 10
 LIMIT_ROUNDS = 4
 # Radians: so far beyond its limit a hinge is on it.
 ON_LIMIT = 1e-12
+# One-sided rows are taken in so many times at most: the worst of each frame, the last time all.
+SIDED_ROUNDS = 8
+# Metres: a step that falls short of a row by less is on its limit.
+ON_SIDE = 1e-12
+
+# Radians: so far beyond its limit a joint has a frame solved on with limits,
+BEYOND_LIMIT = 1e-6
+# metres or radians: where nothing is farther from its goal, but what gives way. Out of reach is out of reach with them.
+MET_WITHOUT_LIMITS = 1e-3
 
 # Metres, and sine: below these a direction is none.
 NO_DIRECTION = 1e-9

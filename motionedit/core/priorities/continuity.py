@@ -10,6 +10,7 @@ from motionedit.core import rotations as rot
 from motionedit.core.compiled import compiled
 from motionedit.core.euler import solve_angles
 from motionedit.core.motion import Motion
+from motionedit.core.rotation_vectors import unwrapped
 from motionedit.core.timeline.interpolation import gaussian, low_pass
 
 if TYPE_CHECKING:
@@ -24,10 +25,13 @@ NO_DISPLACEMENT = 1e-9
 _FIR_PERIODS = 1.0
 
 
-def smoothed_displacement(before: Motion, after: Motion, *, sigma: float, first: int) -> Motion:
+def smoothed_displacement(
+    before: Motion, after: Motion, *, sigma: float, first: int, hinges: Sequence[Hinge] = ()
+) -> Motion:
     """Return the input plus the low-passed displacement of the edit: the next pass's start and reference.
 
-    d = log(q_in^-1 q_out) per joint and the difference of translations, through a zero-phase Gaussian.
+    d = log(q_in^-1 q_out) per joint and the difference of translations, through a zero-phase Gaussian; of a hinge it is
+    the turn about its axis a, d = a . log(q_out q_in^-1), and of a joint of two the nearest that they can do.
 
     Parameters
     ----------
@@ -40,19 +44,34 @@ def smoothed_displacement(before: Motion, after: Motion, *, sigma: float, first:
     shifts[first:] = low_pass(shifts[first:], sigma=sigma)
     translations = before.translations + shifts
     kernel, taps = compiled(), gaussian(sigma, len(before) - first)
+    axes = _axes(hinges, len(before.skeleton))
     if kernel is not None:
         rotations = np.empty_like(before.rotations)
-        inputs = [np.ascontiguousarray(a) for a in (before.rotations, after.rotations, taps)]
+        inputs = [np.ascontiguousarray(a) for a in (before.rotations, after.rotations, axes, taps)]
         kernel.smooth(*inputs, rotations, len(before), first, NO_DISPLACEMENT)
-        return Motion(before.skeleton, rotations, translations, before.frame_time)
+        return on_channels(Motion(before.skeleton, rotations, translations, before.frame_time), hinges)
     turns = rot.log(rot.multiply(rot.conjugate(before.rotations), after.rotations))
+    bent = np.flatnonzero(axes.any(axis=1))
+    about = rot.log(rot.multiply(after.rotations[:, bent], rot.conjugate(before.rotations[:, bent])))
+    turns[:, bent] = np.sum(about * axes[bent], axis=2, keepdims=True) * axes[bent]
+    turns[first:] = unwrapped(turns[first:])
     turns[np.abs(turns) < NO_DISPLACEMENT] = 0.0
     moving = turns.any(axis=(0, 2))
     rotations = before.rotations.copy()
     smooth = turns[:, moving]
     smooth[first:] = low_pass(smooth[first:], sigma=sigma)
-    rotations[:, moving] = rot.multiply(before.rotations[:, moving], rot.exp(smooth))
-    return Motion(before.skeleton, rotations, translations, before.frame_time)
+    hinged = np.any(axes[moving] != 0.0, axis=1)[None, :, None]
+    still, turned = before.rotations[:, moving], rot.exp(smooth)
+    rotations[:, moving] = np.where(hinged, rot.multiply(turned, still), rot.multiply(still, turned))
+    return on_channels(Motion(before.skeleton, rotations, translations, before.frame_time), hinges)
+
+
+def _axes(hinges: Sequence[Hinge], joints: int) -> FloatArray:
+    """Return the axes of joints of one hinge, shape (J, 3), zeros of all others."""
+    axes = np.zeros((joints, 3))
+    for hinge in hinges:
+        axes[hinge.joint] = 0.0 if hinge.is_second else hinge.axis
+    return axes
 
 
 def on_channels(motion: Motion, hinges: Sequence[Hinge]) -> Motion:

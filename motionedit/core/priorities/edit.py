@@ -14,6 +14,8 @@ from motionedit.core.priorities.frames import run_of
 from motionedit.core.priorities.kinds.constraint import Movable
 from motionedit.core.priorities.passes import solve
 from motionedit.core.priorities.recruiting import Breach, Reach, Recruits, breaches, expanded
+from motionedit.core.priorities.settings import Passes
+from motionedit.core.priorities.switching import eased_from_others
 from motionedit.core.priorities.targets import errors_of, with_targets
 from motionedit.core.trace import frame_blocks
 from motionedit.dataclass import dataclass
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, IntArray
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.frames import Run
+    from motionedit.core.priorities.groups import Asked
     from motionedit.core.priorities.kinds.constraint import Constraint, ConstraintErrors
     from motionedit.core.priorities.settings import Body, LayeredSettings, RecruitingRule
 
@@ -52,6 +55,8 @@ class PrioritizedEdit:
         What each constraint may move, after the recruiting rule.
     breaches : tuple of Breach
         Breaches of the recruiting rule that were mended (`expand`) or left (`ignore`).
+    asked : Asked
+        What was asked for, for those who ask why a constraint is missed (`blame_of`).
     """
 
     motion: Motion
@@ -64,6 +69,7 @@ class PrioritizedEdit:
     solver: Literal["compiled", "numpy"]
     recruits: tuple[Recruits, ...]
     breaches: tuple[Breach, ...]
+    asked: Asked
 
 
 class RecruitingError(ValueError):
@@ -119,7 +125,10 @@ def prepare(
 ) -> tuple[Run, list[Breach]]:
     """Return an edit that is ready to be solved, and the breaches of the recruiting rule; raises as `recruit`."""
     recruits, found = recruit(constraints, motion, body, rule=settings.recruiting_rule)
-    return run_of(with_targets(motion, constraints, recruits, body, settings)), found
+    asked = with_targets(motion, constraints, recruits, body, settings)
+    smoothing = settings.smoothing
+    run = eased_from_others(asked, smoothing) if isinstance(smoothing, Passes) else run_of(asked)
+    return run, found
 
 
 def edit_by_priorities(
@@ -140,19 +149,21 @@ def edit_by_priorities(
         As `recruit`.
     """
     run, found = prepare(motion, constraints, body, settings)
-    state, iterations = solve(run, settings.smoothing)
+    passed = solve(run, settings.smoothing)
+    state = passed.state
     touched, moved = _changes(motion, state.motion, body.travel)
     return PrioritizedEdit(
         motion=state.motion,
         touched=touched,
         moved=moved,
         errors=errors_of(run.asked, state.motion),
-        iterations=iterations,
+        iterations=passed.iterations,
         converged=state.converged,
         ranks=state.ranks,
         solver="compiled" if compiled() and all(group.prepared.layout for group in run.groups) else "numpy",
         recruits=run.asked.recruits,
         breaches=tuple(found),
+        asked=run.asked,
     )
 
 

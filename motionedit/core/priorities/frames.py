@@ -2,27 +2,38 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from operator import itemgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from motionedit.core.motion import Motion
-from motionedit.core.priorities.groups import Asked, Group, groups_of, part_of, spans_of
+from motionedit.core.priorities.groups import Asked, Group, groups_of, part_of, retargeted, spans_of
 from motionedit.core.priorities.problem import Reference
 from motionedit.core.priorities.solver import solve_layers
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from motionedit.core.arrays import BoolArray, IntArray
+    from motionedit.core.arrays import BoolArray, FloatArray, IntArray
+    from motionedit.core.priorities.kinds.constraint import Targets
 
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """One edit ready to be solved: what is asked, and the groups of its frames."""
+    """One edit ready to be solved: what is asked, and the groups of its frames.
+
+    `calm`: no layer shall make the motion step, for an ease relies on it.
+    """
 
     asked: Asked
     groups: tuple[Group, ...]
+    calm: bool = False
+
+    def aimed_at(self, targets: tuple[Targets, ...]) -> Run:
+        """Return the same edit with other targets over the same frames."""
+        asked = replace(self.asked, targets=targets)
+        return replace(self, asked=asked, groups=tuple(retargeted(asked, group) for group in self.groups))
 
     @property
     def motion(self) -> Motion:
@@ -42,12 +53,16 @@ def run_of(asked: Asked) -> Run:
 
 @dataclass(eq=False)
 class Solved:
-    """A motion whose frames are solved in place, and how it went: iterations (F,), converged (F,), ranks (F, L)."""
+    """A motion whose frames are solved in place, and how it went: iterations (F,), converged (F,), ranks (F, L).
+
+    `left` (F, L) is what was left of each layer before the last step, as `LayeredSolution` has it.
+    """
 
     motion: Motion
     iterations: IntArray
     converged: BoolArray
     ranks: IntArray
+    left: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,6 +126,7 @@ def _unsolved(run: Run, start: Motion) -> Solved:
         np.zeros(count, dtype=np.intp),
         np.ones(count, dtype=np.bool_),
         np.zeros((count, len(run.asked.levels)), dtype=np.intp),
+        np.zeros((count, len(run.asked.levels))),
     )
 
 
@@ -137,7 +153,10 @@ def _solve(
         threads=run.asked.settings.threads,
     )
     solved.iterations[group.frames], solved.converged[group.frames] = solution.iterations, solution.converged
-    solved.ranks[group.frames[:, None], group.levels] = solution.ranks
+    solved.ranks[group.frames] = 0
+    np.add.at(solved.ranks, (group.frames[:, None], group.levels), solution.ranks)
+    solved.left[group.frames] = 0.0
+    np.maximum.at(solved.left, (group.frames[:, None], group.levels), solution.left)
 
 
 def _same(one: Motion, other: Motion) -> BoolArray:

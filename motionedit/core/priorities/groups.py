@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.motion import Motion
+from motionedit.core.priorities.continuity import NO_DISPLACEMENT
 from motionedit.core.priorities.kinds.constraint import Stage
 from motionedit.core.priorities.points import Columns
-from motionedit.core.priorities.problem import HingeColumns, Problem, WeightedTask, order_of_layers
+from motionedit.core.priorities.problem import HingeColumns, LimitColumns, Problem, WeightedTask, order_of_layers
+from motionedit.core.priorities.sight import sight_of
 from motionedit.core.priorities.solver import Prepared, prepare_problem
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from motionedit.core.arrays import IntArray
+    from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.body.hinges import Hinge
-    from motionedit.core.motion import Motion
     from motionedit.core.priorities.kinds.constraint import Constraint, Targets
     from motionedit.core.priorities.recruiting import Recruits
     from motionedit.core.priorities.settings import Body, LayeredSettings
@@ -25,7 +28,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Asked:
-    """All that is asked of a motion: each constraint, what it may move, and where its task shall be."""
+    """All that is asked of a motion: each constraint, what it may move, and where its task shall be.
+
+    `softness` has lambda^2 at every frame, shape (F,), of the constraints that give way: see `Problem`.
+    """
 
     motion: Motion
     constraints: tuple[Constraint, ...]
@@ -33,6 +39,18 @@ class Asked:
     targets: tuple[Targets, ...]
     body: Body
     settings: LayeredSettings
+    softness: tuple[FloatArray | None, ...]
+
+    def softness_at(self, i: int, frames: IntArray) -> FloatArray:
+        """Return lambda^2 of a constraint at frames, shape (N,): 0 where it does not give way."""
+        soft = self.softness[i]
+        return np.zeros(len(frames)) if soft is None else soft[frames]
+
+    def only(self, keep: Sequence[int]) -> Asked:
+        """Return what some of the constraints ask for."""
+        constraints, recruits = tuple(self.constraints[i] for i in keep), tuple(self.recruits[i] for i in keep)
+        targets, softness = tuple(self.targets[i] for i in keep), tuple(self.softness[i] for i in keep)
+        return replace(self, constraints=constraints, recruits=recruits, targets=targets, softness=softness)
 
     @property
     def levels(self) -> list[int]:
@@ -49,12 +67,15 @@ class Group:
     frames : shape (n,)
     levels : shape (L,)
         Where the problem's layers stand among those of the whole edit.
+    members : tuple of tuples of int
+        The constraints of each layer.
     prepared : Prepared
         The problem, ready to be solved.
     """
 
     frames: IntArray
     levels: IntArray
+    members: tuple[tuple[int, ...], ...]
     prepared: Prepared
 
     @property
@@ -65,10 +86,13 @@ class Group:
 
 def groups_of(asked: Asked) -> tuple[Group, ...]:
     """Return the frames at which anything is active, together where the same constraints are."""
-    active = np.zeros((len(asked.motion), len(asked.constraints)), dtype=np.bool_)
-    for i, each in enumerate(asked.targets):
-        active[each.span, i] = True
-    together: dict[tuple[bool, ...], list[IntArray]] = {}
+    active = np.zeros((len(asked.motion), len(asked.constraints)), dtype=np.int8)
+    for i, (targets, softness) in enumerate(zip(asked.targets, asked.softness, strict=True)):
+        active[targets.span, i] = 1
+        if softness is not None:
+            active[targets.span, i] += softness[targets.span] > 0.0
+    active[: asked.body.first][_nothing_is_wanted(asked)] = 0
+    together: dict[tuple[int, ...], list[IntArray]] = {}
     for run in np.split(np.arange(len(active)), np.flatnonzero((active[1:] != active[:-1]).any(axis=1)) + 1):
         together.setdefault(tuple(active[run[0]].tolist()), []).append(run)
     return tuple(
@@ -76,6 +100,28 @@ def groups_of(asked: Asked) -> tuple[Group, ...]:
         for key in sorted(together)
         if any(key)
     )
+
+
+def _nothing_is_wanted(asked: Asked) -> BoolArray:
+    """Return the frames of a rest pose that do already what is asked, shape (first,).
+
+    They are not solved: limbs that stand straight there, as they never do in the motion, would be bent to their limits.
+    """
+    first = asked.body.first
+    wanted = np.zeros(first, dtype=np.bool_)
+    if not first:
+        return ~wanted
+    whole = asked.motion
+    rest = Motion(whole.skeleton, whole.rotations[:first], whole.translations[:first], whole.frame_time)
+    for constraint, targets in zip(asked.constraints, asked.targets, strict=True):
+        if targets.first >= first:
+            continue
+        seen = sight_of(rest, constraint.looked_at(), asked.body.masses if constraint.weighs else None)
+        errors = constraint.errors(targets.until(first), seen, reference=rest)
+        for left in (errors.positions, errors.angles):
+            if left is not None:
+                wanted[targets.first :][: len(left)] |= left > NO_DISPLACEMENT
+    return ~wanted
 
 
 def part_of(asked: Asked, group: Group, frames: IntArray) -> Group:
@@ -94,27 +140,53 @@ def spans_of(frames: IntArray) -> list[IntArray]:
 def _group(asked: Asked, members: Sequence[int], frames: IntArray) -> Group:
     joints = np.array(sorted(set().union(*(asked.recruits[i].joints for i in members))), dtype=np.intp)
     columns = Columns(asked.motion.skeleton, joints, asked.body.travel)
-    priorities = order_of_layers([asked.constraints[i].priority for i in members])
-    layers = [
-        tuple(_task(asked, i, frames, columns) for i in members if asked.constraints[i].priority == priority)
-        for priority in priorities
-    ]
+    # Of one priority, what gives way is a layer below what is met.
+    softness = np.stack([asked.softness_at(i, frames) for i in members], axis=1)
+    places = [(-asked.constraints[i].priority, bool(softness[0, k] > 0.0)) for k, i in enumerate(members)]
+    order = sorted(set(places))
+    layers = tuple(tuple(i for i, place in zip(members, places, strict=True) if place == layer) for layer in order)
     problem = Problem(
         columns=columns,
         moves_root=any(asked.recruits[i].root for i in members),
-        layers=tuple(layers),
+        layers=_tasks(asked, layers, frames, columns),
         hinges=_hinge_columns(asked.body.hinges, joints),
+        limits=_limit_columns(asked.body, joints),
         attraction=asked.settings.attraction,
         max_iterations=asked.settings.max_iterations,
+        mobility=_mobility(asked.body, joints),
+        softness=np.stack([softness[:, places.index(layer)] for layer in order], axis=1),
     )
     levels = asked.levels
-    return Group(frames, np.array([levels.index(priority) for priority in priorities]), prepare_problem(problem))
+    return Group(frames, np.array([levels.index(-priority) for priority, _ in order]), layers, prepare_problem(problem))
 
 
-def _task(asked: Asked, i: int, frames: IntArray, columns: Columns) -> WeightedTask:
+def retargeted(asked: Asked, group: Group) -> Group:
+    """Return a group with what is asked now of the same constraints."""
+    problem = group.problem
+    problem = replace(problem, layers=_tasks(asked, group.members, group.frames, problem.columns))
+    return replace(group, prepared=group.prepared.with_targets_of(problem))
+
+
+def _tasks(
+    asked: Asked, layers: tuple[tuple[int, ...], ...], frames: IntArray, columns: Columns
+) -> tuple[tuple[WeightedTask, ...], ...]:
+    # Weights say how a layer is shared: the step's damping and softness are in metres and radians of the largest.
+    largest = [max(asked.constraints[i].weight for i in layer) for layer in layers]
+    return tuple(
+        tuple(_task(asked, i, frames, columns, largest=most) for i in layer)
+        for layer, most in zip(layers, largest, strict=True)
+    )
+
+
+def _task(asked: Asked, i: int, frames: IntArray, columns: Columns, *, largest: float) -> WeightedTask:
     constraint = asked.constraints[i]
     stage = Stage(frames, columns, asked.recruits[i], asked.body.masses, asked.motion)
-    return WeightedTask(constraint.task(asked.targets[i], stage), constraint.weight)
+    return WeightedTask(constraint.task(asked.targets[i], stage), constraint.weight / largest, constraint.one_sided)
+
+
+def _mobility(body: Body, joints: IntArray) -> FloatArray:
+    turns = np.ones(len(joints)) if body.mobility is None else body.mobility[joints]
+    return np.append(turns, body.root_mobility)
 
 
 def _hinge_columns(hinges: Sequence[Hinge], joints: IntArray) -> HingeColumns:
@@ -123,6 +195,21 @@ def _hinge_columns(hinges: Sequence[Hinge], joints: IntArray) -> HingeColumns:
     return HingeColumns(
         places=np.searchsorted(joints, np.array([hinge.joint for hinge in here], dtype=np.intp)),
         axes=np.array([hinge.axis for hinge in here]).reshape(-1, 3),
+        upper=np.array([hinge.upper for hinge in here]).reshape(-1, 3),
+        lower=np.array([hinge.lower for hinge in here]).reshape(-1, 3),
         limits=np.array([hinge.limits for hinge in here]).reshape(-1, 2),
         second=np.array([hinge.is_second for hinge in here], dtype=np.bool_),
+    )
+
+
+def _limit_columns(body: Body, joints: IntArray) -> LimitColumns:
+    """Return the limits among the columns, which are `joints`; a hinge has its own."""
+    hinged = {hinge.joint for hinge in body.hinges}
+    here = [limit for limit in body.limits if limit.joint in set(map(int, joints)) - hinged]
+    return LimitColumns(
+        places=np.searchsorted(joints, np.array([limit.joint for limit in here], dtype=np.intp)),
+        centers=np.array([limit.center for limit in here]).reshape(-1, 4),
+        along=np.array([limit.along for limit in here]).reshape(-1, 3),
+        swing=np.array([limit.swing for limit in here]),
+        twist=np.array([limit.twist for limit in here]),
     )

@@ -40,11 +40,15 @@ class Descent:
     ranks: IntArray
 
     def replace_rows(self, rows: IntArray, other: Descent) -> None:
-        """Put the frames of another descent in place of some of these."""
+        """Put the frames of another descent, which may have more or fewer rows, in place of some of these."""
+        more = other.Q.shape[1] - self.Q.shape[1]
+        if more > 0:
+            self.Q = np.pad(self.Q, ((0, 0), (0, more), (0, 0)))
+        self.Q[rows] = 0.0
+        self.Q[rows, : other.Q.shape[1]] = other.Q
         for mine, new in (
             (self.tasks, other.tasks),
             (self.home, other.home),
-            (self.Q, other.Q),
             (self.free, other.free),
             (self.ranks, other.ranks),
         ):
@@ -57,8 +61,10 @@ def descend(
     *,
     fixed: FloatArray,
     free: BoolArray,
-    largest_errors: Sequence[float],
+    largest_errors: Sequence[FloatArray],
     steady: bool,
+    softness: FloatArray,
+    limits: FloatArray,
 ) -> Descent:
     """Return one pass down the layers.
 
@@ -71,21 +77,26 @@ def descend(
     fixed : shape (N, n)
         The step of unknowns that are not free.
     free : shape (N, n)
-    largest_errors : L numbers
+    largest_errors : L arrays of shape (N,)
         b_max of each layer: a longer error is clamped to it, all rows by one factor.
     steady : bool
         Whether errors may be out of reach: see `_damped_step`.
+    softness : shape (N, L)
+        lambda^2 of layers that give way: what is left of the pull among their rows counts beside their errors.
+    limits : shape (N, k, n)
+        Orthonormal rows, or zeros, that no layer may use: joints are on limits there, where `fixed` has set them.
     """
     tasks = fixed.copy()
     ranks = np.zeros((len(z), len(evaluated)), dtype=np.intp)
-    Q = np.zeros((len(z), 0, z.shape[1]))
+    Q = limits
     for level, ((e, J), largest) in enumerate(zip(evaluated, largest_errors, strict=True)):
         size = np.linalg.norm(e, axis=1, keepdims=True)
-        clamped = e * np.minimum(1.0, largest / np.maximum(size, largest))
+        clamped = e * np.minimum(1.0, largest[:, None] / np.maximum(size, largest[:, None]))
         b = clamped - (J @ tasks[..., None])[..., 0]
         A = J * free[:, None]
         A = A - (A @ np.swapaxes(Q, 1, 2)) @ Q
-        change, rows, ranks[:, level] = _damped_step(A, b, largest, steady=steady)
+        soft = softness[:, level]
+        change, rows, ranks[:, level] = _damped_step(A, b, z, largest, soft, steady=steady)
         tasks += change
         Q = np.concatenate((Q, rows), axis=1)
     return Descent(tasks, off_layers(Q, z * free), Q, free, ranks)
@@ -98,7 +109,7 @@ def off_layers(Q: FloatArray, v: FloatArray) -> FloatArray:
 
 
 def _damped_step(
-    A: FloatArray, b: FloatArray, largest: float, *, steady: bool
+    A: FloatArray, b: FloatArray, z: FloatArray, largest: FloatArray, soft: FloatArray, *, steady: bool
 ) -> tuple[FloatArray, FloatArray, IntArray]:
     """Return the layer's step (N, n), its orthonormal rows (N, k, n; zero where not kept), and its rank (N,).
 
@@ -121,6 +132,8 @@ def _damped_step(
     damping = np.where(least <= 0.5 * d, 0.5 * d, np.sqrt(np.maximum(least * (d - least), 0.0)))
     damping = np.where(least <= d, damping, 0.0)
     along = (np.swapaxes(vectors, 1, 2) @ b[..., None])[..., 0]
-    weights = np.where(kept, along * safe / (safe**2 + damping[:, None] ** 2), 0.0)
+    home = (rows @ z[..., None])[..., 0]
+    square = np.maximum(damping**2, soft)[:, None]
+    weights = np.where(kept, (along * safe + soft[:, None] * home) / (safe**2 + square), 0.0)
     step: FloatArray = (weights[:, None] @ rows)[:, 0]
     return step, rows, np.count_nonzero(kept, axis=1)

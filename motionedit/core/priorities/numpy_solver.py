@@ -6,7 +6,7 @@ All frames iterate together; those that have converged leave.
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +14,7 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.kinematics import WorldPoses, forward
 from motionedit.core.motion import Motion
+from motionedit.core.priorities.cones import Cones, are_beyond
 from motionedit.core.priorities.constants import (
     ANNEALED_ITERATIONS,
     FULL_GAIN_ITERATIONS,
@@ -21,20 +22,22 @@ from motionedit.core.priorities.constants import (
     HASTY_ITERATIONS,
     LARGEST_ERROR,
     LARGEST_RATIO,
+    LARGEST_SOFT_ERROR,
     LARGEST_TURN,
-    LIMIT_ROUNDS,
-    ON_LIMIT,
+    MET_WITHOUT_LIMITS,
     STOP_ERROR,
     STOP_LEFT,
     STOP_STEP,
 )
+from motionedit.core.priorities.hinged import Hinges
 from motionedit.core.priorities.homing import Memory, accelerated, attraction
 from motionedit.core.priorities.layers import Descent, descend
+from motionedit.core.priorities.one_sided import Evaluated, Rows, Sides
 from motionedit.core.priorities.problem import Reference
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.priorities.points import Columns
@@ -61,7 +64,7 @@ def _solve(problem: Problem, solution: LayeredSolution, reference: Reference, *,
     if not in_order:
         for block in range(0, count, BLOCK):
             frames = np.arange(block, min(block + BLOCK, count))
-            _iterate(problem, solution, reference, frames[~solution.converged[frames]])
+            _within_limits(problem, solution, reference, frames[~solution.converged[frames]])
         return
     columns, motion = problem.columns, solution.motion
     root = int(np.searchsorted(columns.skeleton.translated, columns.root))
@@ -70,7 +73,22 @@ def _solve(problem: Problem, solution: LayeredSolution, reference: Reference, *,
             motion.rotations[frame, columns.joints] = motion.rotations[frame - 1, columns.joints]
             if problem.moves_root:
                 motion.translations[frame, root] = motion.translations[frame - 1, root]
-        _iterate(problem, solution, reference, np.array([frame]))
+        _within_limits(problem, solution, reference, np.array([frame]))
+
+
+def _within_limits(problem: Problem, solution: LayeredSolution, reference: Reference, frames: IntArray) -> None:
+    """Solve frames without limits of joints, and those whose solutions are beyond them on with these."""
+    _iterate(problem, solution, reference, frames, limited=False)
+    joints = problem.columns.joints[problem.limits.places]
+    if not len(joints) or not len(frames):
+        return
+    left = np.where(problem.softness[frames] > 0.0, 0.0, solution.left[frames]).max(axis=1, initial=0.0)
+    passed = are_beyond(problem.limits, solution.motion.rotations[frames[:, None], joints])
+    beyond = frames[passed & (left <= MET_WITHOUT_LIMITS)]
+    before = solution.iterations[beyond]
+    solution.converged[beyond] = False
+    _iterate(problem, solution, reference, beyond, limited=True)
+    solution.iterations[beyond] += before
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,8 +98,15 @@ class _Block:
     problem: Problem
     reference: Reference
     memory: Memory
+    sides: Sides
     first: int
     root: int
+    limited: bool
+
+    @cached_property
+    def mobility(self) -> FloatArray:
+        """Of every unknown, shape (n,)."""
+        return np.repeat(self.problem.mobility, 3)
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,35 +123,40 @@ class _Pose:
         return cls(frames, motion, forward(motion))
 
 
-def _iterate(problem: Problem, solution: LayeredSolution, reference: Reference, frames: IntArray) -> None:
+def _iterate(
+    problem: Problem, solution: LayeredSolution, reference: Reference, frames: IntArray, *, limited: bool
+) -> None:
     columns, state = problem.columns, solution.motion
     root = int(np.searchsorted(columns.skeleton.translated, columns.root))
     if not len(frames):
         return
     first, count = int(frames[0]), int(frames[-1] - frames[0]) + 1
-    block = _Block(problem, reference, Memory.empty(count, columns.size), first, root)
+    block = _Block(problem, reference, Memory.empty(count, columns.size), Sides(count), first, root, limited)
     memory, moved_before = block.memory, np.zeros(count)
     for iteration in range(problem.max_iterations):
         here = frames - block.first
         pose = _Pose.of(state, frames)
-        hinges = _Hinges(problem, pose)
+        hinges = Hinges(problem, pose.motion.rotations, pose.world)
         step, descent = _step(block, pose, hinges, iteration)
-        largest = np.linalg.norm(step[:, :-3].reshape(len(frames), -1, 3), axis=2).max(axis=1, initial=0.0)
+        turns = (step * block.mobility)[:, :-3].reshape(len(frames), -1, 3)
+        largest = np.linalg.norm(turns, axis=2).max(axis=1, initial=0.0)
         step *= np.minimum(1.0, LARGEST_TURN / np.maximum(largest, LARGEST_TURN))[:, None]
-        _apply(state, columns, pose, hinges.in_world(step), root)
+        _apply(state, columns, pose, hinges.in_world(step * block.mobility), root)
         memory.keep(here, descent, step)
         solution.iterations[frames] = iteration + 1
         solution.ranks[frames] = descent.ranks
-        moved = np.maximum(np.minimum(largest, LARGEST_TURN), np.linalg.norm(step[:, -3:], axis=1))
+        moved = np.maximum(np.minimum(largest, LARGEST_TURN), np.linalg.norm((step * block.mobility)[:, -3:], axis=1))
         done = moved < STOP_STEP
         nearly = np.flatnonzero(~done & (_left(moved, moved_before[here]) < STOP_LEFT))
         if len(nearly):
             done[nearly[_are_met(problem, solution, frames[nearly])]] = True
         moved_before[here] = moved
         solution.converged[frames[done]] = True
+        solution.left[frames] = _largest_left(problem, pose)
         frames = frames[~done]
         if not len(frames):
-            break
+            return
+    solution.left[frames] = _largest_left(problem, _Pose.of(state, frames))
 
 
 def _left(moved: FloatArray, before: FloatArray) -> FloatArray:
@@ -140,10 +170,20 @@ def _left(moved: FloatArray, before: FloatArray) -> FloatArray:
     return left
 
 
+def _largest_left(problem: Problem, pose: _Pose) -> FloatArray:
+    """Return the largest error of any row of each layer, its weight taken off, shape (N, L)."""
+    left = np.zeros((len(pose.frames), len(problem.layers)))
+    for level, layer in enumerate(problem.layers):
+        for each in layer:
+            found = _evaluated([replace(each, weight=1.0)], pose).left
+            left[:, level] = np.maximum(left[:, level], np.abs(found).max(axis=1, initial=0.0))
+    return left
+
+
 def _are_met(problem: Problem, solution: LayeredSolution, frames: IntArray) -> BoolArray:
     """Return which frames meet every layer, shape (N,)."""
     pose = _Pose.of(solution.motion, frames)
-    errors = [_evaluated(layer, pose)[0] for layer in problem.layers]
+    errors = [_evaluated(layer, pose).left for layer in problem.layers]
     met: BoolArray = np.all([np.linalg.norm(e, axis=1) < STOP_ERROR for e in errors], axis=0)
     return met
 
@@ -164,25 +204,66 @@ def _apply(state: Motion, columns: Columns, pose: _Pose, step: FloatArray, root:
         state.translations[frames, root] += shift
 
 
-def _step(block: _Block, pose: _Pose, hinges: _Hinges, iteration: int) -> tuple[FloatArray, Descent]:
+def _step(block: _Block, pose: _Pose, hinges: Hinges, iteration: int) -> tuple[FloatArray, Descent]:
     """Return the step, shape (N, n), and the descent behind it; hinges that leave their limits are set on them."""
     problem = block.problem
     anneal = 2.0 ** min(0, problem.max_iterations - ANNEALED_ITERATIONS - iteration - 1)
     gain = problem.attraction * GAIN_DECAY ** max(0, iteration + 1 - FULL_GAIN_ITERATIONS) * anneal
     evaluated = [_evaluated(layer, pose) for layer in problem.layers]
-    evaluated = [(e, _shifts(problem, pose, hinges.on_axes(J))) for e, J in evaluated]
+    rows = Rows(
+        [replace(each, J=block.mobility * _shifts(problem, pose, hinges.on_axes(each.J))) for each in evaluated]
+    )
     z = attraction(problem.columns, block.reference, pose.world, pose.motion, pose.frames)
-    z = _shifts(problem, pose, hinges.on_axes(z[:, None]))[:, 0]
-    largest_errors = [LARGEST_ERROR * (1.0 if level == 0 else anneal) for level in range(len(evaluated))]
+    z = _shifts(problem, pose, hinges.on_axes(z[:, None]))[:, 0] / block.mobility
+    softness = problem.softness[pose.frames]
+    met = LARGEST_ERROR * np.where(np.arange(len(evaluated)) == 0, 1.0, anneal)
+    way = _Way(np.where(softness > 0.0, LARGEST_SOFT_ERROR, met), softness, iteration >= HASTY_ITERATIONS)
     everything = np.ones(z.shape, dtype=np.bool_)
-    down = partial(descend, largest_errors=largest_errors, steady=iteration >= HASTY_ITERATIONS)
-    descent = down(evaluated, z, fixed=np.zeros_like(z), free=everything)
-    hinges.keep_limits(evaluated, z, descent, down, gain)
-    step = descent.tasks + gain * descent.home
-    home = accelerated(block.memory, pose.frames - block.first, descent)
+    whole = np.arange(len(z))
+    none = np.zeros((len(z), 0, z.shape[1]))
+    descent = way.down(whole, rows.taking_part(whole), z, fixed=np.zeros_like(z), free=everything, limits=none)
+    cones = Cones(problem, pose.motion.rotations, pose.world) if block.limited else None
+    hinges.keep_limits(rows, cones, z, descent, way.down, gain)
+    step, here = descent.tasks + gain * descent.home, pose.frames - block.first
+    home = accelerated(block.memory, here, descent)
     fast = descent.tasks + gain * home
-    outside = hinges.out_of_limits(fast, descent.free).any(axis=1, keepdims=True)
-    return np.where(outside, step, fast), descent
+    outside = hinges.out_of_limits(fast, descent.free).any(axis=1)
+    active = rows.active if cones is None else np.concatenate((rows.active, cones.active), axis=1)
+    outside |= rows.lacks(fast).any(axis=1) | ~block.sides.unchanged(here, active)
+    if cones is not None:
+        outside |= (cones.beyond(fast) > 0.0).any(axis=1)
+    return np.where(outside[:, None], step, fast), descent
+
+
+@dataclass(frozen=True, eq=False)
+class _Way:
+    """How frames of a block go down the layers: b_max (N,) and softness (N,) of each, and whether steps are steady."""
+
+    largest_errors: FloatArray
+    softness: FloatArray
+    steady: bool
+
+    def down(
+        self,
+        rows: IntArray,
+        evaluated: Sequence[tuple[FloatArray, FloatArray]],
+        z: FloatArray,
+        *,
+        fixed: FloatArray,
+        free: BoolArray,
+        limits: FloatArray,
+    ) -> Descent:
+        """Return a pass down the layers of some rows of the block."""
+        return descend(
+            evaluated,
+            z,
+            fixed=fixed,
+            free=free,
+            largest_errors=list(self.largest_errors[rows].T),
+            steady=self.steady,
+            softness=self.softness[rows],
+            limits=limits,
+        )
 
 
 def _shifts(problem: Problem, pose: _Pose, J: FloatArray) -> FloatArray:
@@ -202,99 +283,11 @@ def _shifts(problem: Problem, pose: _Pose, J: FloatArray) -> FloatArray:
     return J
 
 
-def _evaluated(layer: Sequence[WeightedTask], pose: _Pose) -> tuple[FloatArray, FloatArray]:
-    """Return a layer's weighted errors (N, k) and rows (N, k, n)."""
+def _evaluated(layer: Sequence[WeightedTask], pose: _Pose) -> Evaluated:
+    """Return a layer's weighted errors and rows."""
     local = pose.motion.rotations
     parts = [(each.weight, *each.task.evaluate(pose.world, local, pose.frames)) for each in layer]
     e = np.concatenate([weight * error for weight, error, _ in parts], axis=1)
     J = np.concatenate([weight * rows for weight, _, rows in parts], axis=1)
-    return e, J
-
-
-class _Hinges:
-    """The hinges of N frames: world axes (N, H, 3), angles (N, H) in rad, their columns' unknowns `blocks` (H, 3).
-
-    Of a column's three unknowns the first is the turn about its hinge's axis, the second about that of its second
-    hinge, if any; the others stay 0. `turns` (H,) is the unknown that is each hinge's turn.
-    """
-
-    def __init__(self, problem: Problem, pose: _Pose) -> None:
-        hinges = problem.hinges
-        joints = problem.columns.joints[hinges.places]
-        parents = problem.columns.skeleton.parents[joints]
-        inner = parents >= 0
-        # A turn about an axis leaves it where the parent has it; the second of two is where the joint itself has it.
-        self.axes = np.repeat(hinges.axes[None], len(pose.frames), axis=0)
-        carriers = np.where(hinges.second, joints, parents)
-        carried = inner | hinges.second
-        self.axes[:, carried] = rot.rotate(pose.world.rotations[:, carriers[carried]], self.axes[:, carried])
-        self.angles = np.einsum("nhc,hc->nh", rot.log(pose.motion.rotations[:, joints]), hinges.axes)
-        self.limits = hinges.limits
-        self.places = hinges.places
-        self.blocks = 3 * hinges.places[:, None] + np.arange(3)
-        self.turns = 3 * hinges.places + hinges.second
-        self.pairs = np.flatnonzero(hinges.second)
-
-    def on_axes(self, J: FloatArray) -> FloatArray:
-        """Return rows, shape (N, k, n), with what they have along each hinge's axis in its first unknown."""
-        if not len(self.places):
-            return J
-        J = J.copy()
-        along = np.einsum("nkhc,nhc->nkh", J[:, :, self.blocks], self.axes)
-        J[:, :, self.blocks] = 0.0
-        J[:, :, self.turns] = along
-        return J
-
-    def in_world(self, step: FloatArray) -> FloatArray:
-        """Return a step, shape (N, n), with each hinge's turn as a world-axis increment."""
-        if not len(self.places):
-            return step
-        turns = step[:, self.turns, None] * self.axes
-        step = step.copy()
-        step[:, self.blocks] = turns
-        for second in self.pairs:
-            # The first hinge turns what the second has turned: exactly so, or the joint would leave its two channels.
-            both = rot.multiply(rot.exp(turns[:, second - 1]), rot.exp(turns[:, second]))
-            step[:, self.blocks[second]] = rot.log(both)
-        return step
-
-    def out_of_limits(self, step: FloatArray, free: BoolArray) -> BoolArray:
-        """Return which free hinges a step (N, n) would take beyond their limits, shape (N, H)."""
-        after = self._after(step)
-        out: BoolArray = (np.abs(after - self._limited(after)) > ON_LIMIT) & free[:, self.turns]
-        return out
-
-    def keep_limits(
-        self,
-        evaluated: Sequence[tuple[FloatArray, FloatArray]],
-        z: FloatArray,
-        descent: Descent,
-        down: Callable[..., Descent],
-        gain: float,
-    ) -> None:
-        """Set hinges that would leave their limits on them, take them out of the system, and go `down` again."""
-        if not len(self.places):
-            return
-        fixed, free = np.zeros_like(z), descent.free.copy()
-        for _ in range(LIMIT_ROUNDS):
-            step = descent.tasks + gain * descent.home
-            out = self.out_of_limits(step, free)
-            again = np.flatnonzero(out.any(axis=1))
-            if not len(again):
-                break
-            onto = self._limited(self._after(step)) - self.angles
-            for h in np.flatnonzero(out.any(axis=0)):
-                rows = np.flatnonzero(out[:, h])
-                fixed[rows, self.turns[h]] = onto[rows, h]
-                free[rows, self.turns[h]] = False
-            part = [(e[again], J[again]) for e, J in evaluated]
-            new = down(part, z[again], fixed=fixed[again], free=free[again])
-            descent.replace_rows(again, new)
-
-    def _after(self, step: FloatArray) -> FloatArray:
-        after: FloatArray = self.angles + step[:, self.turns]
-        return after
-
-    def _limited(self, angles: FloatArray) -> FloatArray:
-        limited: FloatArray = np.clip(angles, self.limits[:, 0], self.limits[:, 1])
-        return limited
+    one_sided = np.repeat([each.one_sided for each in layer], [error.shape[1] for _, error, _ in parts])
+    return Evaluated(e, J, one_sided)

@@ -5,42 +5,49 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from motionedit.core.priorities.continuity import filtered_root, on_channels, smoothed_displacement
+from motionedit.core.priorities.continuity import filtered_root
 from motionedit.core.priorities.frames import Run, Solved, known_after, run_of, solve_frames, solve_in_order
+from motionedit.core.priorities.giving_way import within_reach, without_steps
 from motionedit.core.priorities.recruiting import Recruits
 from motionedit.core.priorities.settings import PaperFilter, Passes
+from motionedit.core.priorities.smoothing import steps_at
 from motionedit.core.priorities.straight import bent_where_missed
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import IntArray
 
 
-def solve(run: Run, smoothing: Passes | PaperFilter) -> tuple[Solved, IntArray]:
-    """Return the motion after all passes, and the iterations (F,) of the first solve."""
+@dataclass(frozen=True, eq=False)
+class Passed:
+    """A motion after all passes: its `state`, iterations (F,) of the first solve, and whether steps were `calmed`."""
+
+    state: Solved
+    iterations: IntArray
+    calmed: bool = False
+
+
+def solve(run: Run, smoothing: Passes | PaperFilter) -> Passed:
+    """Return the motion after all passes."""
     return solve_in_passes(run, smoothing) if isinstance(smoothing, Passes) else solve_as_the_paper(run, smoothing)
 
 
-def solve_in_passes(run: Run, smoothing: Passes) -> tuple[Solved, IntArray]:
-    """Return the motion solved, smoothed and solved again, and the iterations (F,) of the first solve."""
-    motion, first = run.motion, run.asked.body.first
+def solve_in_passes(run: Run, smoothing: Passes) -> Passed:
+    """Return the motion solved, smoothed and solved again."""
+    motion = run.motion
     state = bent_where_missed(run, solve_frames(run, motion, reference=motion, pull_root=False))
     iterations = state.iterations.copy()
-    for _ in range(smoothing.count):
-        smooth = smoothed_displacement(motion, state.motion, sigma=smoothing.sigma, first=first)
-        smooth = on_channels(smooth, run.asked.body.hinges)
-        known = known_after(run, state, smooth)
-        del state  # of a long motion no more copies are kept than are needed
-        state = solve_frames(run, smooth, reference=smooth, pull_root=True, known=known)
-        del smooth
-    return state, iterations
+    found = within_reach(run, state, smoothing)
+    calm = run.calm or bool(smoothing.count and steps_at(run, found.state.motion).any())
+    return Passed(without_steps(found, smoothing) if calm else found.state, iterations, calm)
 
 
-def solve_as_the_paper(run: Run, smoothing: PaperFilter) -> tuple[Solved, IntArray]:
+def solve_as_the_paper(run: Run, smoothing: PaperFilter) -> Passed:
     """Solve frame by frame from eq. (4)'s start states, filter the root, and solve again with the root frozen."""
     state = solve_in_order(run)
     iterations = state.iterations.copy()
     if not smoothing.count:
-        return state, iterations
+        return Passed(state, iterations)
     motion, first = run.motion, run.asked.body.first
     filtered = filtered_root(motion, state.motion, run.place, cutoff=smoothing.cutoff, first=first)
     state = replace(state, motion=filtered)
@@ -50,4 +57,4 @@ def solve_as_the_paper(run: Run, smoothing: PaperFilter) -> tuple[Solved, IntArr
     for _ in range(1, smoothing.count):
         known = known_after(frozen, state, state.motion)
         state = solve_frames(frozen, state.motion, reference=motion, pull_root=False, known=known)
-    return state, iterations
+    return Passed(state, iterations)

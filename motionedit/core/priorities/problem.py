@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Protocol
 
+import numpy as np
+
 from motionedit.core.measure import WORLD, Measure
 from motionedit.dataclass import dataclass
 
@@ -35,6 +37,8 @@ class CompiledTask:
         A direction in the point's joint.
     masses : Masses or None
         Where the kind weighs the body.
+    sign : float
+        -1 turns its rows and errors around.
     """
 
     row_kind: str
@@ -45,6 +49,7 @@ class CompiledTask:
     measure: Measure = WORLD
     axis: FloatArray | None = None
     masses: Masses | None = None
+    sign: float = 1.0
 
 
 class Task(Protocol):
@@ -74,23 +79,48 @@ class Task(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class WeightedTask:
-    """A task and its weight in its layer."""
+    """A task and its weight in its layer.
+
+    Rows that are `one_sided` ask for J w >= e: they count only where e > 0, or where a step would take them there.
+    """
 
     task: Task
     weight: float
+    one_sided: bool = False
 
 
 @dataclass(frozen=True, eq=False)
 class HingeColumns:
-    """Columns that turn about one axis or two: their `places` (H,), axes (H, 3) in the joint, and limits (H, 2) in rad.
+    """Columns that turn about one axis or two: their `places` (H,), axes (H, 3), and limits (H, 2) in rad.
 
-    `second` (H,) tells which is the second hinge of its column; it follows the first.
+    `second` (H,) tells which is the second hinge of its column; it follows the first. Axes are in the parent's frame,
+    those of second ones in the joint's. A hinge's angle is the one about its axis from `upper`, in the parent's frame,
+    to `lower`, in the joint's, shapes (H, 3).
     """
 
     places: IntArray
     axes: FloatArray
+    upper: FloatArray
+    lower: FloatArray
     limits: FloatArray
     second: BoolArray
+
+
+@dataclass(frozen=True, eq=False)
+class LimitColumns:
+    """Cones of columns that turn about any axis: their `places` (C,), and `body.limits.Limit` as arrays.
+
+    Centres (C, 4), bones `along` (C, 3) in the joints' frames, half ranges `swing` and `twist` (C,) in rad.
+    """
+
+    places: IntArray
+    centers: FloatArray
+    along: FloatArray
+    swing: FloatArray
+    twist: FloatArray
+
+
+NO_LIMITS = LimitColumns(np.zeros(0, dtype=np.intp), np.zeros((0, 4)), np.zeros((0, 3)), np.zeros(0), np.zeros(0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,6 +137,12 @@ class Problem:
     attraction : float
         Gain of z.
     max_iterations : int
+    mobility : shape (K + 1,)
+        How readily each column turns, and the root shifts: z is as long as its parts over their mobility.
+    softness : shape (N, L)
+        lambda^2 of layers that give way, (m/rad)^2: such a layer is |e|^2 + lambda^2 |z|^2 made least among its rows. 0
+        of layers that shall be met.
+    limits : LimitColumns
     """
 
     columns: Columns
@@ -115,6 +151,9 @@ class Problem:
     hinges: HingeColumns
     attraction: float
     max_iterations: int
+    mobility: FloatArray
+    softness: FloatArray
+    limits: LimitColumns = NO_LIMITS
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,12 +166,16 @@ class Reference:
 
 @dataclass(eq=False)
 class LayeredSolution:
-    """What comes out, written in place: the motion, and of its N frames iterations, converged, ranks (N, L)."""
+    """What comes out, written in place: the motion, and of its N frames iterations, converged, ranks (N, L).
+
+    `left` (N, L) is the largest error of any row, its weight taken off, before the last step: no step makes more of it.
+    """
 
     motion: Motion
     iterations: IntArray
     converged: BoolArray
     ranks: IntArray
+    left: FloatArray
 
 
 def order_of_layers(priorities: Sequence[int]) -> list[int]:

@@ -8,7 +8,7 @@ from motionedit.core.body.bones import below
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
+    from collections.abc import Collection, Iterable, Sequence
 
     from motionedit.core.skeleton import Skeleton
 
@@ -79,6 +79,28 @@ def recruit_chain(skeleton: Skeleton, rule: RecruitRule, *, start: int, travel: 
             raise NotOnTheWayError(-1 if rule.joint is None else rule.joint, frozenset(chain))
         return Recruits(frozenset(chain[: chain.index(rule.joint) + 1]), root=False)
     return Recruits(frozenset(chain), root=True)
+
+
+def recruit_chains(skeleton: Skeleton, rule: RecruitRule, *, starts: Iterable[int], travel: int) -> Recruits:
+    """Return what a constraint on several points recruits: the chains of all, as `recruit_chain`.
+
+    An `up_to` is on the way of one of them at least; those that it is not on are left out.
+
+    Raises
+    ------
+    NotOnTheWayError
+        If `up_to` is on the way of none.
+    """
+    chains: list[Recruits] = []
+    missed: list[NotOnTheWayError] = []
+    for start in starts:
+        try:
+            chains.append(recruit_chain(skeleton, rule, start=start, travel=travel))
+        except NotOnTheWayError as error:
+            missed.append(error)
+    if missed and not chains:
+        raise NotOnTheWayError(missed[0].joint, frozenset().union(*(error.way for error in missed)))
+    return Recruits(frozenset().union(*(each.joints for each in chains)), any(each.root for each in chains))
 
 
 def recruit_body(rule: RecruitRule, body: Collection[int]) -> Recruits:

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, Literal
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
+    from motionedit.core.arrays import FloatArray
     from motionedit.core.body.bends import Bend
     from motionedit.core.body.center_of_mass import Masses
     from motionedit.core.body.hinges import Hinge
+    from motionedit.core.body.limits import Limit
     from motionedit.core.priorities.trajectories import Curve
 
 RecruitingRule = Literal["expand", "error", "ignore"]
@@ -48,7 +50,9 @@ class LayeredSettings:
 class Body:
     """What the edit knows of the body: its masses, hinges, the joint that carries the travel, the first moving frame.
 
-    Frames before `first` are a rest pose. `bends` are its knees and elbows, where they are known.
+    Frames before `first` are a rest pose. `bends` are its knees and elbows, where they are known. `mobility` (J,) is
+    how readily each joint turns, `root_mobility` how readily the root shifts; 1, the default, is as the paper has it.
+    `limits` are the cones that joints keep to.
     """
 
     masses: Masses
@@ -56,3 +60,6 @@ class Body:
     travel: int
     first: int
     bends: tuple[Bend, ...] = ()
+    mobility: FloatArray | None = None
+    root_mobility: float = 1.0
+    limits: tuple[Limit, ...] = ()

@@ -39,6 +39,10 @@ class Prepared:
     problem: Problem
     layout: Layout | None
 
+    def with_targets_of(self, problem: Problem) -> Prepared:
+        """Return the same problem with the targets of another that has the same tasks."""
+        return Prepared(problem, None if self.layout is None else self.layout.with_targets_of(problem))
+
 
 def prepare_problem(problem: Problem) -> Prepared:
     """Return a problem ready to be solved: laid out for the compiled solver, where that runs and knows all tasks."""
@@ -79,11 +83,20 @@ def solve_layers(
         np.zeros(len(frames), dtype=np.int64),
         np.zeros(len(frames), dtype=np.bool_) if done is None else done.copy(),
         np.zeros((len(frames), len(problem.layers)), dtype=np.int64),
+        np.zeros((len(frames), len(problem.layers))),
     )
     if prepared.layout is None or compiled() is None:
         from motionedit.core.priorities import numpy_solver
 
         numpy_solver.solve(problem, solution, reference, frames, in_order=in_order)
     else:
-        compiled_solver.solve(prepared.layout, solution, reference, frames, in_order=in_order, threads=threads)
+        compiled_solver.solve(
+            prepared.layout,
+            solution,
+            reference,
+            frames,
+            softness=problem.softness,
+            in_order=in_order,
+            threads=threads,
+        )
     return solution

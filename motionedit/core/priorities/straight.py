@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from motionedit.core.body.bends import Bend
     from motionedit.core.body.hinges import Hinge
     from motionedit.core.priorities.frames import Run
+    from motionedit.core.priorities.groups import Asked
 
 _LITTLE = float(np.radians(1.0))
 _MISSED = 1e-4  # metres or radians
@@ -34,9 +35,9 @@ def bent_where_missed(run: Run, state: Solved) -> Solved:
     """
     body, recruited = run.asked.body, frozenset().union(*(each.joints for each in run.asked.recruits))
     bends = [bend for bend in body.bends if bend.joint in recruited and bend.straight.any()]
-    if not bends:
+    if not bends or state.left.max(initial=0.0) < _MISSED:
         return state
-    missed = np.max(_lefts(run, state.motion), axis=0) > _MISSED
+    missed = np.max(lefts_of(run.asked, state.motion), axis=0) > _MISSED
     rotations = state.motion.rotations.copy()
     again = np.zeros(len(rotations), dtype=np.bool_)
     for bend in bends:
@@ -63,10 +64,10 @@ def _is_recruited(run: Run, bend: Bend) -> BoolArray:
     return there
 
 
-def _lefts(run: Run, motion: Motion) -> list[FloatArray]:
+def lefts_of(asked: Asked, motion: Motion) -> list[FloatArray]:
     """Return what is left of each constraint at every frame, metres or radians, shape (F,); 0 where it is idle."""
     lefts = []
-    for errors, targets in zip(errors_of(run.asked, motion), run.asked.targets, strict=True):
+    for errors, targets in zip(errors_of(asked, motion), asked.targets, strict=True):
         left = np.zeros(len(motion))
         parts = [part for part in (errors.positions, errors.angles) if part is not None]
         left[targets.span] = np.max(parts, axis=0)
@@ -77,7 +78,7 @@ def _lefts(run: Run, motion: Motion) -> list[FloatArray]:
 def _is_better(run: Run, after: Motion, before: Motion) -> BoolArray:
     """Return at which frames the most important constraint that differs is nearer to its goal, shape (F,)."""
     order = np.argsort([-each.priority for each in run.asked.constraints], kind="stable")
-    gains = np.array(_lefts(run, before))[order] - np.array(_lefts(run, after))[order]
+    gains = np.array(lefts_of(run.asked, before))[order] - np.array(lefts_of(run.asked, after))[order]
     gains[np.abs(gains) < 0.1 * _MISSED] = 0.0
     first = np.argmax(gains != 0.0, axis=0)
     better: BoolArray = gains[first, np.arange(gains.shape[1])] > 0.0
@@ -105,4 +106,5 @@ def _mixed(new: Solved, old: Solved, better: BoolArray) -> Solved:
         np.where(better, new.iterations, old.iterations),
         np.where(better, new.converged, old.converged),
         np.where(better[:, None], new.ranks, old.ranks),
+        np.where(better[:, None], new.left, old.left),
     )

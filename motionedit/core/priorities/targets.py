@@ -41,13 +41,14 @@ def with_targets(
         if not free:
             return before
         own = tuple(constraints[i] for i in free), tuple(recruits[i] for i in free), tuple(found[i] for i in free)
-        alone = run_of(Asked(motion, *own, body, settings))
+        alone = run_of(Asked(motion, *own, body, settings, softness=(None,) * len(free)))
         solved = solve_frames(alone, motion, reference=motion, pull_root=False)
         return _seen(solved.motion, constraints, body)
 
     scene = Scene(before, settings.curve, _goals(constraints, found, len(motion)), others)
     targets = tuple(found[i] if i in found else each.targets(scene) for i, each in enumerate(constraints))
-    return Asked(motion, tuple(constraints), tuple(recruits), targets, body, settings)
+    none = (None,) * len(targets)
+    return Asked(motion, tuple(constraints), tuple(recruits), targets, body, settings, none)
 
 
 def errors_of(asked: Asked, motion: Motion) -> tuple[ConstraintErrors, ...]:
@@ -57,6 +58,12 @@ def errors_of(asked: Asked, motion: Motion) -> tuple[ConstraintErrors, ...]:
         each.errors(targets, after, reference=asked.motion)
         for each, targets in zip(asked.constraints, asked.targets, strict=True)
     )
+
+
+def reached(asked: Asked, i: int, motion: Motion) -> Targets:
+    """Return where a motion has a constraint's task."""
+    constraint = asked.constraints[i]
+    return constraint.reached(asked.targets[i], _seen(motion, [constraint], asked.body))
 
 
 def _seen(motion: Motion, constraints: Sequence[Constraint], body: Body) -> Sight:

@@ -69,8 +69,7 @@ def active_interval(
 ) -> tuple[int, int]:
     """Return the first and last frame at which points act: eased in and out, cut at the clip's ends.
 
-    Both are rounded to the nearest frame, halves up, as every time is. No points act over the whole clip. Frames
-    before `since`, a rest pose, are in no ease.
+    No points act over the whole clip. Frames before `since`, a rest pose, are in no ease.
 
     Raises
     ------
@@ -84,9 +83,33 @@ def active_interval(
             raise ValueError(f"'{one.text}' and '{other.text}' share a frame; both ends of an interval are in it")
     if not points:
         return 0, frames - 1
-    first = round_half_up(points[0].start - ease_in)
-    last = round_half_up(points[-1].stop + ease_out)
+    first, last = eased(points, ease_in=ease_in, ease_out=ease_out)
     return max(first, since if points[0].start >= since else 0), min(last, frames - 1)
+
+
+def eased(points: Sequence[ControlPoint], *, ease_in: float, ease_out: float) -> tuple[int, int]:
+    """Return the frames at which points begin to ease in and have eased out, also where these are beyond the clip.
+
+    Both are rounded to the nearest frame, halves up, as every time is.
+    """
+    return round_half_up(points[0].start - ease_in), round_half_up(points[-1].stop + ease_out)
+
+
+def share_of(points: Sequence[ControlPoint], *, ease_in: float, ease_out: float, frames: int) -> FloatArray:
+    """Return how far points are eased in at each frame, shape (F,), 0 to 1, with a continuous slope.
+
+    No points: all the way. A ramp that the clip's end cuts is as steep as any: what is left of it is in the clip.
+    """
+    if not points:
+        return np.ones(frames)
+    first, last = eased(points, ease_in=ease_in, ease_out=ease_out)
+    start, stop = points[0].start, points[-1].stop
+    f = np.arange(frames, dtype=np.float64)
+    rise = np.ones(frames) if start <= first else np.clip((f - first) / (start - first), 0.0, 1.0)
+    fall = np.ones(frames) if stop >= last else np.clip((last - f) / (last - stop), 0.0, 1.0)
+    t = rise * fall
+    share: FloatArray = t * t * (3.0 - 2.0 * t)
+    return share
 
 
 def position_targets(
@@ -109,7 +132,8 @@ def position_targets(
     path : shape (F, 3)
         The input's trajectory.
     ease_in, ease_out : float
-        Frames. A point at the clip's end has no ramp there: the curve starts, or ends, in place.
+        Frames. A ramp that the clip's end cuts begins, or ends, beyond it, as if the input went straight on there: the
+        curve is as steep as elsewhere, and already displaced where the clip begins.
     curve
         ``time``: S's parameter is time; ``index``: it is the knots' index, and T(t) is piecewise linear, as in the
         paper, whose speed jumps at uneven knots.
@@ -132,9 +156,10 @@ def position_targets(
     absolute = any(point.position is not None for point in points)
     # What is splined is the path where a point gives a position, else the displacement from it.
     base, slope = (np.zeros_like(path), np.zeros_like(path)) if absolute else (path, velocity)
-    for run in _runs(points, path, velocity, (first, last)):
-        between = np.arange(run[0].frame + 1, run[-1].frame)
-        targets[between] = base[between] + _splined(run, base, slope, at=between, curve=curve)
+    ramps = eased(points, ease_in=ease_in, ease_out=ease_out)
+    for run in _runs(points, _Input(path, velocity, base, slope), (first, last), ramps):
+        between = np.arange(max(run[0].frame + 1, first), min(run[-1].frame, last + 1))
+        targets[between] = base[between] + _splined(run, at=between, curve=curve)
     # Last, and not through the spline: path + (place - path) may differ from place by a rounding.
     for point in points:
         targets[point.span] = _places(point, path)
@@ -143,15 +168,37 @@ def position_targets(
 
 @dataclass(frozen=True, eq=False)
 class _Knot:
-    """A knot of a spline: where it is, and how fast (per frame), which counts where it is the first or last of a run.
+    """A knot of a spline over the base: its value, and its slope (per frame), which counts at the ends of a run.
 
     `shape` holds tension, continuity and bias.
     """
 
     frame: int
-    place: FloatArray
-    velocity: FloatArray
+    value: FloatArray
+    slope: FloatArray
     shape: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class _Input:
+    """The input's path and velocity (per frame), and the base over which is splined with its slope, shapes (F, 3)."""
+
+    path: FloatArray
+    velocity: FloatArray
+    base: FloatArray
+    slope: FloatArray
+
+    def knot(
+        self, frame: int, place: FloatArray, velocity: FloatArray, shape: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    ) -> _Knot:
+        """Return a knot at a place, passed with a velocity."""
+        return _Knot(frame, place - self.base[frame], velocity - self.slope[frame], shape)
+
+    def end(self, frame: int, inside: int) -> _Knot:
+        """Return the knot at which a ramp meets the input, whose last frame on this side is `inside`."""
+        path, velocity = self.path[inside], self.velocity[inside]
+        beyond = (frame - inside) * (velocity - self.slope[inside])
+        return _Knot(frame, path - self.base[inside] + beyond, velocity - self.slope[inside])
 
 
 def _places(point: ControlPoint, path: FloatArray) -> FloatArray:
@@ -163,39 +210,37 @@ def _places(point: ControlPoint, path: FloatArray) -> FloatArray:
 
 
 def _runs(
-    points: Sequence[ControlPoint], path: FloatArray, velocity: FloatArray, active: tuple[int, int]
+    points: Sequence[ControlPoint], given: _Input, active: tuple[int, int], ramps: tuple[int, int]
 ) -> list[list[_Knot]]:
     """Return the knots of each run of spline: from the input, or a block's last frame, to the next block, or the input.
 
     A hold or a ride is a block. A hold's two equal points of tension 1 cut the paper's one spline just there: no
     tangent passes them.
     """
-    first, last = active
     runs: list[list[_Knot]] = [[]]
-    if first < points[0].start:
-        runs[-1].append(_Knot(first, path[first], velocity[first]))
+    if ramps[0] < points[0].start:
+        runs[-1].append(given.end(ramps[0], active[0]))
     for point in points:
-        places = np.broadcast_to(_places(point, path), path[point.span].shape)
+        places = np.broadcast_to(_places(point, given.path), given.path[point.span].shape)
         if point.mode == "at":
             shape = (point.tension, point.continuity, point.bias)
-            runs[-1].append(_Knot(point.start, places[0], velocity[point.start], shape))
+            runs[-1].append(given.knot(point.start, places[0], given.velocity[point.start], shape))
             continue
         moves = 1.0 if point.mode == "during" else 0.0
-        runs[-1].append(_Knot(point.start, places[0], moves * velocity[point.start]))
-        runs.append([_Knot(point.stop, places[-1], moves * velocity[point.stop])])
-    if last > points[-1].stop:
-        runs[-1].append(_Knot(last, path[last], velocity[last]))
+        runs[-1].append(given.knot(point.start, places[0], moves * given.velocity[point.start]))
+        runs.append([given.knot(point.stop, places[-1], moves * given.velocity[point.stop])])
+    if ramps[1] > points[-1].stop:
+        runs[-1].append(given.end(ramps[1], active[1]))
     return [run for run in runs if len(run) > 1]
 
 
-def _splined(run: list[_Knot], base: FloatArray, slope: FloatArray, *, at: IntArray, curve: Curve) -> FloatArray:
+def _splined(run: list[_Knot], *, at: IntArray, curve: Curve) -> FloatArray:
     """Return the spline of a run's knots over the base, S(T(t)), at frames, shape (N, 3)."""
-    frames = [knot.frame for knot in run]
-    values = np.array([knot.place for knot in run]) - base[frames]
+    values = np.array([knot.value for knot in run])
     tension, continuity, bias = np.array([knot.shape for knot in run]).T
     # A point that ends a run, having no ramp, goes at the input's velocity as far as its tension lets it.
-    start, end = ((1.0 - tension[k]) * (run[k].velocity - slope[run[k].frame]) for k in (0, -1))
-    knots, u = np.array(frames, dtype=np.float64), at.astype(np.float64)
+    start, end = ((1.0 - tension[k]) * run[k].slope for k in (0, -1))
+    knots, u = np.array([knot.frame for knot in run], dtype=np.float64), at.astype(np.float64)
     if curve == "index":
         # T(t): time to knot index, straight between the knots; tangents are per index there.
         start, end = start * (knots[1] - knots[0]), end * (knots[-1] - knots[-2])
@@ -237,13 +282,14 @@ def rotation_targets(
     targets = rotations.copy()
     if not points:
         return first, targets
-    before, since = rotations, first
+    begin, end = eased(points, ease_in=ease_in, ease_out=ease_out)
+    before, since = rotations, begin
     for point in points:
         source = _source(point, rotations)
-        _blend(targets, before, source, since, point.start)
+        _blend(targets, before, source, (since, point.start), (first, last))
         targets[point.span] = source[point.span]
         before, since = source, point.stop
-    _blend(targets, before, rotations, since, last)
+    _blend(targets, before, rotations, (since, end), (first, last))
     return first, targets[first : last + 1]
 
 
@@ -260,15 +306,19 @@ def _source(point: ControlPoint, rotations: FloatArray) -> FloatArray:
     return source
 
 
-def _blend(targets: FloatArray, before: FloatArray, after: FloatArray, start: int, stop: int) -> None:
-    """Write the slerp from one source to another over the frames between start and stop, both left as they are."""
-    if before is after or stop - start < 2:
+def _blend(
+    targets: FloatArray, before: FloatArray, after: FloatArray, ramp: tuple[int, int], active: tuple[int, int]
+) -> None:
+    """Write the slerp from one source to another over the frames between a ramp's ends that are active."""
+    start, stop = ramp
+    inside = np.arange(max(start + 1, active[0]), min(stop, active[1] + 1))
+    if before is after or not len(inside):
         return
-    span = slice(start, stop + 1)
-    arc = _arcs(before[span], after[span])
-    t = np.linspace(0.0, 1.0, stop - start + 1)[:, None]
-    blend = rot.multiply(before[span], rot.exp(t * t * (3.0 - 2.0 * t) * arc))
-    targets[start + 1 : stop] = blend[1:-1]
+    # Of the whole ramp as far as the clip has it: the arc is chosen where it weighs most.
+    span = slice(max(start, active[0]), min(stop, active[1]) + 1)
+    arc = _arcs(before[span], after[span])[inside - span.start]
+    t = ((inside - start) / (stop - start))[:, None]
+    targets[inside] = rot.multiply(before[inside], rot.exp(t * t * (3.0 - 2.0 * t) * arc))
 
 
 def _arcs(before: FloatArray, after: FloatArray) -> FloatArray:

@@ -46,7 +46,7 @@ static void cholesky_solve(const V *L, int k, V *x)
 /* The trace of a layer's S = A~ A~^T. */
 static V remaining_trace(const Batch *batch, const Layer *layer)
 {
-    const int64_t R = batch->problem->of.rows;
+    const int64_t R = batch->rows;
     V trace = all(0.0);
     for (int r = layer->first; r < layer->first + layer->rows; r++) {
         const V *row = batch->M + r * R;
@@ -56,19 +56,27 @@ static V remaining_trace(const Batch *batch, const Layer *layer)
 }
 
 /* Cholesky of G, column by column of M, down to the last row of all. A row that is a combination of those before gets
-   no direction: a column of zeros.
+   no direction: a column of zeros; one that takes no part in any lane is passed over.
 
    Out: columns of M; B, lower triangular, the inverse of the layer's triangle: Q = B A~ is orthonormal; the layer's rank;
    dependent, shape (k,): which rows got none. Returns |B|^2. */
 static V eliminate(Batch *batch, Layer *layer, V trace, Mask *dependent)
 {
-    const int k = layer->rows, first = layer->first, R = (int)batch->problem->of.rows;
+    const int k = layer->rows, first = layer->first, R = (int)batch->rows;
     const V *G = batch->G_free;
     V *M = batch->M, inverse = all(0.0);
     layer->rank = all(0.0), layer->full = 0;
     for (int i = 0; i < k; i++) {
         const int c = first + i;
         V *row = M + c * R, *own = layer->B + i * k;
+        for (int q = 0; q < k; q++)
+            own[q] = all(0.0);
+        if (!any(batch->active[c])) {
+            dependent[i] = everywhere();
+            for (int r = c; r < R; r++)
+                M[r * R + c] = all(0.0);
+            continue;
+        }
         const V pivot = G[c * R + c] - dot_product(row, row, c);
         dependent[i] = ~less(ROUNDING * trace, pivot);
         const V scale = only(~dependent[i], 1.0 / root_of(choose(dependent[i], all(1.0), pivot)));
@@ -76,8 +84,6 @@ static V eliminate(Batch *batch, Layer *layer, V trace, Mask *dependent)
         for (int r = c + 1; r < R; r++)
             M[r * R + c] = (G[r * R + c] - dot_product(M + r * R, row, c)) * scale;
         layer->rank += only(~dependent[i], all(1.0));
-        for (int q = 0; q < k; q++)
-            own[q] = all(0.0);
         own[i] = scale;
         for (int p = 0; p < i; p++) {
             const V factor = -scale * row[first + p];
@@ -128,9 +134,10 @@ static void jacobi(double *S, int k, double *U)
 
 /* Where the rank is in doubt: the singular triples one by one, as the reference has them. For one lane: a column of M is
    s u, a row of B u / s; scratch: 2 k^2 plain numbers. */
-static void factor_by_eigenvectors(Batch *batch, Layer *layer, int lane, const V *b, V d, V *c, double *S)
+static void factor_by_eigenvectors(
+    Batch *batch, Layer *layer, int lane, const V *b, const V *pull, V d, V *c, double *S)
 {
-    const int k = layer->rows, first = layer->first, R = (int)batch->problem->of.rows;
+    const int k = layer->rows, first = layer->first, R = (int)batch->rows;
     const V *G = batch->G_free;
     V *M = batch->M;
     double *U = S + k * k, most = 0.0, inverse = 0.0;
@@ -152,19 +159,19 @@ static void factor_by_eigenvectors(Batch *batch, Layer *layer, int lane, const V
     for (int i = 0; i < k; i++)
         inverse += S[i] > tolerance ? 1.0 / (S[i] * S[i]) : 0.0;
     const V damped = damping(all(inverse > 0.0 ? 1.0 / sqrt(inverse) : INFINITY), d);
-    const double lambda = LANE(damped, lane);
+    const double soft = LANE(layer->soft, lane), square = fmax(LANE(damped, lane) * LANE(damped, lane), soft);
     layer->full = 1;
     LANE(layer->rank, lane) = 0.0;
     for (int i = 0; i < k; i++) {
         const double s = S[i];
         const int kept = s > tolerance;
-        double towards = 0.0;
+        double towards = 0.0, back = 0.0;
         for (int r = 0; r < k; r++) {
-            towards += U[r * k + i] * LANE(b[r], lane);
+            towards += U[r * k + i] * LANE(b[r], lane), back += U[r * k + i] * LANE(pull[r], lane);
             LANE(M[(first + r) * R + first + i], lane) = kept ? s * U[r * k + i] : 0.0;
             LANE(layer->B[i * k + r], lane) = kept ? U[r * k + i] / s : 0.0;
         }
-        LANE(c[i], lane) = kept ? towards * s / (s * s + lambda * lambda) : 0.0;
+        LANE(c[i], lane) = kept ? (towards * s + soft * back / s) / (s * s + square) : 0.0;
         LANE(layer->rank, lane) += kept;
     }
     for (int below = first + k; below < R; below++) { /* J_below Q */
@@ -190,10 +197,10 @@ typedef struct {
 
 static Dependent dependent_rows(const Batch *batch, const Layer *layer, const Mask *dependent, V *scratch)
 {
-    const int k = layer->rows, R = (int)batch->problem->of.rows;
+    const int k = layer->rows, R = (int)batch->rows;
     Dependent found = {.row = batch->dependent_row, .W = scratch};
     for (int r = 0; r < k; r++) {
-        if (!any(dependent[r]))
+        if (!any(dependent[r] & batch->active[layer->first + r]))
             continue;
         V *w = found.W + found.rest * k;
         const V *M = batch->M + (layer->first + r) * R + layer->first;
@@ -248,13 +255,14 @@ static void solve_undamped(const Dependent *rows, const Layer *layer, const V *b
         c[q] = dot_product(layer->B + q * k, y, q + 1);
 }
 
-/* c = (M^T M + lambda^2)^-1 M^T b; a column of zeros comes to 0. */
-static void solve_damped(const Batch *batch, const Layer *layer, const V *b, V lambda, V *c, V *N)
+/* c = (M^T M + lambda^2)^-1 (M^T b + soft Q z), Q z being B times what is left of J z, `pull`; a column of zeros comes
+   to 0. */
+static void solve_damped(const Batch *batch, const Layer *layer, const V *b, const V *pull, V square, V *c, V *N)
 {
-    const int k = layer->rows, R = (int)batch->problem->of.rows;
+    const int k = layer->rows, R = (int)batch->rows;
     const V *M = batch->M + layer->first * R + layer->first;
     for (int i = 0; i < k; i++) {
-        c[i] = all(0.0);
+        c[i] = layer->soft * dot_product(layer->B + i * k, pull, i + 1);
         for (int r = i; r < k; r++)
             c[i] += M[r * R + i] * b[r];
         for (int j = 0; j <= i; j++) {
@@ -263,7 +271,7 @@ static void solve_damped(const Batch *batch, const Layer *layer, const V *b, V l
                 sum += M[r * R + i] * M[r * R + j];
             N[i * k + j] = sum;
         }
-        N[i * k + i] += lambda * lambda;
+        N[i * k + i] += square;
         N[i * k + i] = choose(is_zero(N[i * k + i]), all(1.0), N[i * k + i]);
     }
     cholesky(N, k);
@@ -272,10 +280,10 @@ static void solve_damped(const Batch *batch, const Layer *layer, const V *b, V l
 
 /* Factor a layer, those above it being factored.
 
-   b: shape (k,). largest: b_max. Out: the layer's rank, B and columns of M, and c, shape (k,): its step is dm = Q^T c.
+   b: shape (k,). pull: what the layers above leave of J z, (k,). largest: b_max. Out: the layer's rank, B and columns of M, and c, shape (k,): its step is dm = Q^T c.
 
    d is |b| / b_max, and in a steady lane at least such that lambda^2 >= |b| limb / 2: see layers.py. */
-static void factor_layer(Batch *batch, Layer *layer, const V *b, V largest, V *c)
+static void factor_layer(Batch *batch, Layer *layer, const V *b, const V *pull, V largest, V *c)
 {
     const int k = layer->rows;
     const Constants *constants = &batch->problem->constants;
@@ -293,13 +301,14 @@ static void factor_layer(Batch *batch, Layer *layer, const V *b, V largest, V *c
     if (any(near))
         lambda = only(near, damping(1.0 / root_of(squared_inverse(&rows, layer, inverse)), d));
     solve_undamped(&rows, layer, b, c);
-    const Mask damps = less(all(0.0), lambda);
+    const V square = larger(lambda * lambda, layer->soft);
+    const Mask damps = less(all(0.0), square);
     if (any(damps)) {
-        solve_damped(batch, layer, b, lambda, damped, scratch);
+        solve_damped(batch, layer, b, pull, square, damped, scratch);
         for (int i = 0; i < k; i++)
             c[i] = choose(damps, damped[i], c[i]);
     }
     for (int lane = 0; lane < LANES && any(doubtful); lane++)
         if (MASK_LANE(doubtful, lane))
-            factor_by_eigenvectors(batch, layer, lane, b, d, c, (double *)scratch);
+            factor_by_eigenvectors(batch, layer, lane, b, pull, d, c, (double *)scratch);
 }

@@ -1,6 +1,9 @@
 /* The bodies of a batch: frames in and out of lanes, forward kinematics, the pull z of eq. (1), hinges, and the step put
    into the joints. Part of solver.c. */
 
+/* Radians: limits as far apart as this are none. */
+#define ALL_ROUND 12.0
+
 /* Put frame `at` into a lane. */
 static void load(Batch *batch, int lane, int64_t at)
 {
@@ -22,6 +25,8 @@ static void load(Batch *batch, int lane, int64_t at)
             LANE(batch->reference[4 * k + a], lane) = reference[4 * problem->node[problem->column_node[k]].joint + a];
     for (int a = 0; a < 3 && problem->pulls_root; a++)
         LANE(batch->reference_root[a], lane) = problem->reference_root[3 * own + a];
+    for (int64_t l = 0; l < problem->of.layers; l++)
+        LANE(batch->layers[l].soft, lane) = problem->softness[problem->of.layers * at + l];
     for (int64_t t = 0; t < problem->of.tasks; t++) {
         const Task *task = problem->task + t;
         for (int64_t a = 0; a < task->width; a++)
@@ -130,16 +135,19 @@ static void turn_to(const V *target, const V *local, V *out)
     q_log(turn, out);
 }
 
-/* z: the world-axis increments that bring the columns back to the reference, of a hinge its angle. */
+/* z: the world-axis increments that bring the columns back to the reference, of a hinge its angle, over their mobility. */
 static void attraction(Batch *batch)
 {
     const Problem *problem = batch->problem;
     V *root = batch->z + batch->unknowns - 3;
+    const double shift = problem->mobility[problem->of.columns];
     for (int64_t k = 0; k < problem->of.columns; k++) {
         const int64_t i = problem->column_node[k];
         const int h = batch->column_hinge[k];
         V turn[3], *z = batch->z + batch->column_unknown[k];
         turn_to(batch->reference + 4 * k, batch->local + 4 * i, turn);
+        for (int a = 0; a < 3; a++)
+            turn[a] /= problem->mobility[k];
         if (batch->column_hinges[k] == 1) {
             z[0] = along(problem->hinge[h].axis, turn);
             continue;
@@ -155,9 +163,32 @@ static void attraction(Batch *batch)
     if (problem->pulls_root && problem->of.root >= 0) {
         V back[3];
         for (int a = 0; a < 3; a++)
-            back[a] = batch->reference_root[a] - batch->offsets[3 * problem->of.root + a];
+            back[a] = (batch->reference_root[a] - batch->offsets[3 * problem->of.root + a]) / shift;
         turned(parent_rotation(batch, problem->of.root), back, root);
     }
+}
+
+/* A hinge's angle (rad): about its axis a, from u to v, atan2(a . (u x v), u . v - (a . u) (a . v)). One without limits has
+   none to look at. */
+static V hinge_angle(const Hinge *hinge, const V *local)
+{
+    V R[9], moved[3], still[3], side[3], angle = all(0.0);
+    if (hinge->limits[1] - hinge->limits[0] >= ALL_ROUND)
+        return angle;
+    matrix_of(local, R);
+    for (int a = 0; a < 3; a++)
+        still[a] = all(hinge->second ? hinge->lower[a] : hinge->upper[a]);
+    if (hinge->second)
+        for (int a = 0; a < 3; a++)
+            moved[a] = R[a] * hinge->upper[0] + R[3 + a] * hinge->upper[1] + R[6 + a] * hinge->upper[2];
+    else
+        turned_plain(R, hinge->lower, moved);
+    cross(hinge->second ? moved : still, hinge->second ? still : moved, side);
+    const V sine = along(hinge->axis, side),
+            cosine = dot(still, moved) - along(hinge->axis, still) * along(hinge->axis, moved);
+    for (int lane = 0; lane < LANES; lane++)
+        LANE(angle, lane) = atan2(LANE(sine, lane), LANE(cosine, lane));
+    return angle;
 }
 
 /* The hinges' axes in the world (a turn about an axis leaves it where the parent has it; the second of two is where the
@@ -168,11 +199,9 @@ static void hinge_state(Batch *batch)
     for (int64_t h = 0; h < problem->of.hinges; h++) {
         const Hinge *hinge = problem->hinge + h;
         const int64_t i = problem->column_node[hinge->column];
-        V turn[3];
         turned_plain(hinge->second ? batch->rotations + 9 * i : parent_rotation(batch, i), hinge->axis,
             batch->hinge_axes + 3 * h);
-        q_log(batch->local + 4 * i, turn);
-        batch->hinge_angles[h] = along(hinge->axis, turn);
+        batch->hinge_angles[h] = hinge_angle(hinge, batch->local + 4 * i);
     }
 }
 
@@ -181,10 +210,12 @@ static V apply_step(Batch *batch)
 {
     const Problem *problem = batch->problem;
     for (int64_t k = 0; k < problem->of.columns; k++) {
-        const V *w = batch->step + batch->column_unknown[k];
+        const V *y = batch->step + batch->column_unknown[k];
         const int64_t i = problem->column_node[k];
         const int h = batch->column_hinge[k];
-        V v[3], turn[4], *q = batch->local + 4 * i;
+        V w[3], v[3], turn[4], *q = batch->local + 4 * i;
+        for (int a = 0; a < (h < 0 ? 3 : batch->column_hinges[k]); a++)
+            w[a] = problem->mobility[k] * y[a];
         if (h < 0)
             turned_back(parent_rotation(batch, i), w, v);
         else
@@ -207,7 +238,9 @@ static V apply_step(Batch *batch)
         for (int a = 0; a < 4; a++)
             q[a] = choose(stays, q[a], size * turn[a]);
     }
-    const V *shift = batch->step + batch->unknowns - 3;
+    V shift[3];
+    for (int a = 0; a < 3; a++)
+        shift[a] = problem->mobility[problem->of.columns] * batch->step[batch->unknowns - 3 + a];
     if (problem->of.root >= 0) {
         V own[3];
         turned_back(parent_rotation(batch, problem->of.root), shift, own);

@@ -113,6 +113,13 @@ static inline V size_of(V a)
     return larger(a, -a);
 }
 
+/* out += factor a, of n numbers */
+static inline void add_multiple(V *out, V factor, const V *a, int n)
+{
+    for (int i = 0; i < n; i++)
+        out[i] += factor * a[i];
+}
+
 /* a where the mask says so, else 0 */
 static inline V only(Mask which, V a)
 {

@@ -25,13 +25,15 @@ typedef struct {
 typedef struct {
     int64_t kind, layer, rows, node, base; /* kind: in the table of row_kinds.c; base: a node, or -1 */
     int64_t root, base_root;               /* whether the root's translation moves the point, the base */
+    int64_t one_sided;                     /* whether its rows ask for J w >= e alone */
     int64_t axes[3];                       /* which of the targets' axes count, `rows` of them */
-    int64_t width;                         /* numbers a target has: 3 or 4 */
+    int64_t width;                         /* numbers a target has: 1, 3 or 4 */
     int64_t targets;                       /* where they begin among all targets: shape (N, width) */
     double weight;
-    double offset[3];     /* of the point, in its joint's frame */
-    double measure[3][3]; /* the axes that count, rows */
-    double axis[3];       /* what an aim looks along, in its joint's frame */
+    double offset[3];      /* of the point, in its joint's frame */
+    double base_offset[3]; /* of the point that a distance is to, in the base's frame */
+    double measure[3][3];  /* the axes that count, rows */
+    double axis[3];        /* what an aim looks along, in its joint's frame */
 } Task;
 
 /* A joint of two hinges has them one after the other: the first turns about an axis of the parent's frame, the second
@@ -39,21 +41,35 @@ typedef struct {
 typedef struct {
     int64_t column;
     int64_t second; /* whether it is the second one of its column */
-    double axis[3]; /* in its joint's frame */
+    double axis[3]; /* in the parent's frame; of a second one in its joint's */
+    double upper[3],
+        lower[3]; /* its angle is the one about the axis from `upper`, in the parent's frame, to `lower`, in
+                                  its joint's */
     double limits[2];
 } Hinge;
 
+/* A cone that a column without hinges keeps to: see cones.py. */
+typedef struct {
+    int64_t column;
+    double center[4]; /* the local rotation in its middle */
+    double along[3];  /* the bone, in the joint's frame */
+    double middle[3]; /* the bone in the middle of the cone, in the parent's frame */
+    double halves[2]; /* rad: of the swing, of the twist */
+    double least;     /* the cosine of half the lesser: a turn with a larger one is within both */
+} Limit;
+
 /* Those of core/priorities/constants.py, where each is explained. */
 typedef struct {
-    double largest_error, largest_turn, stop_step, stop_left, stop_error, largest_ratio, gain_decay, on_limit;
-    double rank_tolerance, least_scale, limb, largest_task_share, largest_factor, no_change, no_direction,
-        metres_per_radian;
-    int64_t full_gain_iterations, hasty_iterations, annealed_iterations, limit_rounds;
+    double largest_error, largest_soft_error, largest_turn, stop_step, stop_left, stop_error, largest_ratio, gain_decay,
+        on_limit;
+    double rank_tolerance, least_scale, limb, largest_task_share, largest_factor, no_change, no_direction, beyond_limit,
+        met_without_limits, metres_per_radian, on_side;
+    int64_t full_gain_iterations, hasty_iterations, annealed_iterations, limit_rounds, sided_rounds;
 } Constants;
 
 /* How many there are of what, and how frames are solved. */
 typedef struct {
-    int64_t nodes, columns, tasks, hinges, layers, joints, translated, rows, targets;
+    int64_t nodes, columns, tasks, hinges, limits, layers, joints, translated, rows, targets;
     int64_t root, moves_root, max_iterations; /* root: a node, or -1 */
     double attraction;
 } Settings;
@@ -65,19 +81,23 @@ typedef struct {
     int in_order, pulls_root;
     const Node *node;
     const int64_t *column_node; /* shape (K,) */
+    const double *mobility;     /* shape (K + 1,): of the columns, and of the root's shift */
     const Task *task;
     const Hinge *hinge;
+    const Limit *limit;
     const uint8_t *recruited;          /* shape (T, K) */
     const double *targets;             /* task by task */
     const int64_t *frames;             /* shape (N,): the motion's frames that are solved */
     const double *reference_rotations; /* shape (F, J, 4) */
     const double *reference_root;      /* shape (F, 3), where the root is pulled */
+    const double *softness; /* shape (N, L): lambda^2 of a layer that gives way, 0 of one that shall be met */
     /* in: where each frame starts; out: the solution */
     double *rotations;    /* shape (F, J, 4) */
     double *translations; /* shape (F, P, 3) */
     int64_t *iterations;  /* shape (N,) */
     uint8_t *converged;   /* shape (N,); in: frames that are left as they are */
     int64_t *ranks;       /* shape (N, L) */
+    double *left;         /* shape (N, L): the largest error of any row, its weight taken off, before the last step */
 } Problem;
 
 /* What is known of a kind of rows. */
@@ -85,7 +105,9 @@ typedef struct {
     const char *name;  /* in Python */
     int force, torque; /* whether its rows push, and twist */
     int weighs;        /* whether they pull at all that carries mass, instead of at a node's chain */
-    int measured;      /* whether they are the axes that count, one to three of them, instead of three */
+    int rows;          /* of a task; 0: the axes that count, one to three */
+    int holds;         /* whether they are all unknowns of a node's column, and nothing else */
+    int spans;         /* whether they are between two points: a base there must be */
     int width;         /* numbers of a target */
 } RowKind;
 
@@ -105,7 +127,7 @@ int solve_frames_avx2(const Problem *problem, int64_t begin, int64_t end);
 /* motion.c: whole motions */
 void world_poses(const int64_t *parents, const int64_t *places, const double *offsets, int64_t frames, int64_t joints,
     int64_t translated, const double *rotations, const double *translations, double *positions, double *world);
-int smooth_rotations(const double *before, const double *after, int64_t frames, int64_t joints, int64_t first,
-    int64_t radius, const double *taps, double none, double *out);
+int smooth_rotations(const double *before, const double *after, const double *axes, int64_t frames, int64_t joints,
+    int64_t first, int64_t radius, const double *taps, double none, double *out);
 
 #endif

@@ -54,6 +54,43 @@ static int part_columns(const Problem *problem, const Task *task, int p, int *co
     return chain(problem, task, p == 0 ? task->node : task->base, columns);
 }
 
+static double squared(double a)
+{
+    return a * a;
+}
+
+static int hinges_on(const Problem *problem, int64_t column)
+{
+    int count = 0;
+    for (int64_t h = 0; h < problem->of.hinges; h++)
+        count += problem->hinge[h].column == column;
+    return count;
+}
+
+/* So few joints are rows as others are: to take them out costs more. */
+#define FEW_JOINTS 8
+
+/* How many joints a layer holds: 0 where it is anything else but joints, each once and with one hinge at most, or few. */
+static int joints_held(const Problem *problem, int64_t layer)
+{
+    int count = 0;
+    for (int64_t t = 0; t < problem->of.tasks; t++) {
+        const Task *task = problem->task + t;
+        if (task->layer != layer)
+            continue;
+        if (!ROW_KINDS[task->kind].is.holds || task->one_sided || task->base >= 0)
+            return 0;
+        const int64_t column = problem->node[task->node].column;
+        if (column < 0 || !recruited(problem, task)[column] || hinges_on(problem, column) > 1)
+            return 0;
+        for (int64_t s = 0; s < t; s++)
+            if (problem->task[s].layer == layer && problem->task[s].node == task->node)
+                return 0;
+        count++;
+    }
+    return count < FEW_JOINTS ? 0 : count;
+}
+
 /* Whether a task's rows are the world's axes. */
 static int measures_plainly(const Task *task)
 {
@@ -114,14 +151,14 @@ static int common(const Batch *batch, const Part *a, const Part *b, int *places)
 static void list_felt(Batch *batch, int64_t h)
 {
     const Problem *problem = batch->problem;
-    int *felt = batch->hinge_felt + h * problem->of.rows, count = 0;
+    int *felt = batch->hinge_felt + h * batch->rows, count = 0;
     for (int64_t t = 0; t < problem->of.tasks; t++) {
         const Pull *pull = batch->pulls + t;
         int feels = 0;
         for (int p = 0; p < pull->parts; p++)
             for (int i = 0; i < pull->part[p].count; i++)
                 feels |= pull->part[p].columns[i] == problem->hinge[h].column;
-        for (int64_t r = 0; r < problem->task[t].rows && feels; r++)
+        for (int64_t r = 0; r < pull->rows && feels; r++)
             felt[count++] = pull->first_row + (int)r;
     }
     batch->hinge_felt_count[h] = count;
@@ -133,7 +170,7 @@ static void lay_out_tasks(Batch *batch, char **memory, size_t *needed)
     const Problem *problem = batch->problem;
     const int tasks = (int)problem->of.tasks;
     batch->pulls = take(memory, needed, sizeof *batch->pulls * tasks);
-    batch->hinge_felt = take(memory, needed, sizeof *batch->hinge_felt * problem->of.hinges * problem->of.rows);
+    batch->hinge_felt = take(memory, needed, sizeof *batch->hinge_felt * problem->of.hinges * batch->rows);
     batch->hinge_felt_count = take(memory, needed, sizeof *batch->hinge_felt_count * problem->of.hinges);
     for (int t = 0; t < tasks; t++)
         lay_out_pull(problem, problem->task + t, batch->pulls == NULL ? NULL : batch->pulls + t, memory, needed);
@@ -143,13 +180,24 @@ static void lay_out_tasks(Batch *batch, char **memory, size_t *needed)
     int *places = take(memory, needed, 2 * sizeof *places * problem->of.columns * pairs);
     if (batch->pulls == NULL)
         return;
-    for (int t = 0, row = 0; t < tasks; t++) {
-        batch->pulls[t].first_row = row;
-        row += (int)problem->task[t].rows;
+    for (int t = 0, row = 0, error = 0; t < tasks; t++) {
+        Pull *pull = batch->pulls + t;
+        const int rows = (int)problem->task[t].rows, holds = batch->layers[problem->task[t].layer].held > 0;
+        pull->first_row = holds ? error : row;
+        pull->rows = holds ? 0 : rows;
+        row += pull->rows, error += rows - pull->rows;
+        if (holds)
+            pull->parts = 0;
     }
     for (int64_t h = 0; h < problem->of.hinges; h++)
         list_felt(batch, h);
-    batch->weighs = batch->shared_count = 0;
+    batch->weighs = batch->shared_count = batch->sided = 0;
+    for (int t = 0, row = 0; t < tasks; t++)
+        for (int64_t r = 0; r < batch->pulls[t].rows; r++, row++) {
+            batch->active[row] = everywhere();
+            if (problem->task[t].one_sided)
+                batch->sided_row[batch->sided++] = row;
+        }
     for (int t = 0; t < tasks; t++)
         batch->weighs |= ROW_KINDS[problem->task[t].kind].is.weighs;
     for (int s = 0; s < tasks; s++)
@@ -161,25 +209,70 @@ static void lay_out_tasks(Batch *batch, char **memory, size_t *needed)
                     const int count = common(batch, mine, theirs, places);
                     if (count == 0 && !(mine->root && theirs->root))
                         continue;
-                    batch->shared[batch->shared_count++] = (Shared){{s, t}, {p, q}, count, places};
+                    double mobility = 0.0;
+                    for (int i = 0; i < count; i++)
+                        mobility += squared(problem->mobility[mine->columns[places[2 * i]]]);
+                    batch->shared[batch->shared_count++] = (Shared){{s, t}, {p, q}, count, places, mobility};
                     places += 2 * count;
                 }
         }
+}
+
+/* The joints that a layer holds, whose tasks these are. */
+static void lay_out_held(Batch *batch, int l, const Task *task, int error)
+{
+    const Problem *problem = batch->problem;
+    Layer *layer = batch->layers + l;
+    for (int j = 0; j < layer->held; j++, error += 3) {
+        const int column = (int)problem->node[task[j].node].column, h = batch->column_hinge[column];
+        const int first = batch->column_unknown[column], count = h < 0 ? 3 : 1;
+        const double scale = task[j].weight * problem->constants.metres_per_radian * problem->mobility[column];
+        layer->joints[j] = (Held){first, count, h, error, batch->holder[first] >= 0, scale};
+        for (int a = 0; a < count && !layer->joints[j].again; a++)
+            batch->holder[first + a] = l;
+    }
 }
 
 static void lay_out_layers(Batch *batch, char **memory, size_t *needed)
 {
     const Problem *problem = batch->problem;
     batch->layers = take(memory, needed, sizeof *batch->layers * problem->of.layers);
-    for (int64_t l = 0, t = 0, first = 0; l < problem->of.layers; l++) {
+    batch->chain = take(memory, needed, sizeof *batch->chain * (problem->of.layers + 1));
+    for (int64_t l = 0, t = 0, first = 0, error = 0; l < problem->of.layers; l++) {
+        const int64_t begin = t, held = joints_held(problem, l);
         int rows = 0;
         for (; t < problem->of.tasks && problem->task[t].layer == l; t++)
-            rows += (int)problem->task[t].rows;
+            rows += held > 0 ? 0 : (int)problem->task[t].rows;
         V *B = take(memory, needed, sizeof *B * rows * rows);
-        if (batch->layers != NULL)
-            batch->layers[l] = (Layer){.first = (int)first, .rows = rows, .B = B, .rank = all(0.0)};
-        first += rows;
+        Held *joints = take(memory, needed, sizeof *joints * held);
+        Layer *above = take(memory, needed, held > 0 ? sizeof *above : 0);
+        V *B_above = take(memory, needed, held > 0 ? sizeof *B * first * first : 0);
+        if (batch->layers != NULL) {
+            batch->layers[l] = (Layer){.first = (int)first,
+                .rows = rows,
+                .B = B,
+                .rank = all(0.0),
+                .soft = all(0.0),
+                .held = (int)held,
+                .joints = joints,
+                .above = held > 0 ? above : NULL};
+            if (held > 0)
+                *above = (Layer){.rows = (int)first, .B = B_above, .rank = all(0.0), .soft = all(0.0)};
+            lay_out_held(batch, (int)l, problem->task + begin, (int)error);
+        }
+        first += rows, error += 3 * held;
     }
+}
+
+/* How many joints layers hold, and how many rows the others have. */
+static void count_rows(Batch *batch)
+{
+    const Problem *problem = batch->problem;
+    batch->held = 0;
+    for (int64_t l = 0; l < problem->of.layers; l++)
+        batch->held += joints_held(problem, l);
+    batch->rows = (int)problem->of.rows - 3 * batch->held;
+    batch->holds = batch->held > 0;
 }
 
 /* A column's hinges, and its first unknown: a hinge has one, columns without have three. */
@@ -202,7 +295,8 @@ static void number_unknowns(Batch *batch)
 static size_t lay_out(Batch *batch, char *memory)
 {
     const Problem *problem = batch->problem;
-    const size_t nodes = problem->of.nodes, R = problem->of.rows, K = problem->of.columns, H = problem->of.hinges;
+    count_rows(batch);
+    const size_t nodes = problem->of.nodes, R = batch->rows, K = problem->of.columns, H = problem->of.hinges;
     size_t hinged = 0;
     for (size_t h = 0; h < H; h++)
         hinged += !problem->hinge[h].second;
@@ -220,18 +314,32 @@ static size_t lay_out(Batch *batch, char *memory)
     batch->mass_shares = take(from, &needed, sizeof(double) * nodes);
     batch->hinge_axes = NUMBERS(3 * H), batch->hinge_angles = NUMBERS(H), batch->hinge_rows = NUMBERS(H * R);
     batch->hinge_fixed = NUMBERS(H), batch->hinge_free = MASKS(H), batch->hinge_free_before = MASKS(H);
+    const size_t L = 2 * problem->of.limits;
+    batch->cone_turns = NUMBERS(3 * L), batch->cone_rates = NUMBERS(L), batch->cone_values = NUMBERS(L);
+    batch->cone_fixed = NUMBERS(L), batch->cone_rows = NUMBERS(L * R);
+    batch->cone_on = MASKS(L), batch->cone_before = MASKS(L);
     batch->errors = NUMBERS(R), batch->G = NUMBERS(R * R), batch->G_frozen = NUMBERS(R * R), batch->M = NUMBERS(R * R);
-    batch->c = NUMBERS(R), batch->Qz = NUMBERS(R), batch->scratch_rows = NUMBERS(5 * R);
+    batch->c = NUMBERS(R), batch->Qz = NUMBERS(R), batch->scratch_rows = NUMBERS(6 * R);
     batch->algebra = NUMBERS(factor_scratch((int)R)), batch->dependent = MASKS(R);
-    batch->dependent_row = PLACES(R);
+    batch->dependent_row = PLACES(R), batch->sided_row = PLACES(R);
+    batch->active = MASKS(R), batch->active_before = MASKS(R);
     batch->z = NUMBERS(n), batch->home = NUMBERS(n), batch->step = NUMBERS(n), batch->fast = NUMBERS(n);
     batch->home_before = NUMBERS(n), batch->step_before = NUMBERS(n);
     batch->column_hinge = PLACES(K), batch->column_hinges = PLACES(K), batch->column_unknown = PLACES(K);
+    const size_t held = batch->holds ? 1 : 0;
+    batch->held_errors = NUMBERS(3 * (size_t)batch->held), batch->holder = PLACES(n), batch->held_unknown = PLACES(n),
+    batch->base = NUMBERS(held * n);
+    batch->J = NUMBERS(held * R * n), batch->X = NUMBERS(held * R * n), batch->held_pull = NUMBERS(held * R);
+    batch->G_held = NUMBERS(held * R * R),
+    batch->held_scratch = NUMBERS(held * held_scratch((int)R, (int)n, batch->held));
 #undef NUMBERS
 #undef MASKS
 #undef PLACES
-    if (memory != NULL)
+    if (memory != NULL) {
         number_unknowns(batch);
+        for (size_t i = 0; i < n; i++)
+            batch->holder[i] = -1;
+    }
     lay_out_layers(batch, from, &needed);
     lay_out_tasks(batch, from, &needed);
     return needed;

@@ -23,25 +23,29 @@ typedef struct {
 #define NUMBER(structure, name) FIELD(structure, name, "f8")
 
 static const Field SETTINGS_FIELDS[] = {INTEGER(Settings, nodes), INTEGER(Settings, columns), INTEGER(Settings, tasks),
-    INTEGER(Settings, hinges), INTEGER(Settings, layers), INTEGER(Settings, joints), INTEGER(Settings, translated),
-    INTEGER(Settings, rows), INTEGER(Settings, targets), INTEGER(Settings, root), INTEGER(Settings, moves_root),
-    INTEGER(Settings, max_iterations), NUMBER(Settings, attraction), {0}};
-static const Field CONSTANTS_FIELDS[] = {NUMBER(Constants, largest_error), NUMBER(Constants, largest_turn),
-    NUMBER(Constants, stop_step), NUMBER(Constants, stop_left), NUMBER(Constants, stop_error),
-    NUMBER(Constants, largest_ratio), NUMBER(Constants, gain_decay), NUMBER(Constants, on_limit),
-    NUMBER(Constants, rank_tolerance), NUMBER(Constants, least_scale), NUMBER(Constants, limb),
-    NUMBER(Constants, largest_task_share), NUMBER(Constants, largest_factor), NUMBER(Constants, no_change),
-    NUMBER(Constants, no_direction), NUMBER(Constants, metres_per_radian), INTEGER(Constants, full_gain_iterations),
-    INTEGER(Constants, hasty_iterations), INTEGER(Constants, annealed_iterations), INTEGER(Constants, limit_rounds),
-    {0}};
+    INTEGER(Settings, hinges), INTEGER(Settings, limits), INTEGER(Settings, layers), INTEGER(Settings, joints),
+    INTEGER(Settings, translated), INTEGER(Settings, rows), INTEGER(Settings, targets), INTEGER(Settings, root),
+    INTEGER(Settings, moves_root), INTEGER(Settings, max_iterations), NUMBER(Settings, attraction), {0}};
+static const Field CONSTANTS_FIELDS[] = {NUMBER(Constants, largest_error), NUMBER(Constants, largest_soft_error),
+    NUMBER(Constants, largest_turn), NUMBER(Constants, stop_step), NUMBER(Constants, stop_left),
+    NUMBER(Constants, stop_error), NUMBER(Constants, largest_ratio), NUMBER(Constants, gain_decay),
+    NUMBER(Constants, on_limit), NUMBER(Constants, rank_tolerance), NUMBER(Constants, least_scale),
+    NUMBER(Constants, limb), NUMBER(Constants, largest_task_share), NUMBER(Constants, largest_factor),
+    NUMBER(Constants, no_change), NUMBER(Constants, no_direction), NUMBER(Constants, beyond_limit),
+    NUMBER(Constants, met_without_limits), NUMBER(Constants, metres_per_radian), NUMBER(Constants, on_side),
+    INTEGER(Constants, full_gain_iterations), INTEGER(Constants, hasty_iterations),
+    INTEGER(Constants, annealed_iterations), INTEGER(Constants, limit_rounds), INTEGER(Constants, sided_rounds), {0}};
 static const Field NODE_FIELDS[] = {INTEGER(Node, joint), INTEGER(Node, parent), INTEGER(Node, translation),
     INTEGER(Node, column), FIELD(Node, offset, "3f8"), NUMBER(Node, share), FIELD(Node, center, "3f8"), {0}};
 static const Field TASK_FIELDS[] = {INTEGER(Task, kind), INTEGER(Task, layer), INTEGER(Task, rows), INTEGER(Task, node),
-    INTEGER(Task, base), INTEGER(Task, root), INTEGER(Task, base_root), FIELD(Task, axes, "3i8"), INTEGER(Task, width),
-    INTEGER(Task, targets), NUMBER(Task, weight), FIELD(Task, offset, "3f8"), FIELD(Task, measure, "(3,3)f8"),
+    INTEGER(Task, base), INTEGER(Task, root), INTEGER(Task, base_root), INTEGER(Task, one_sided),
+    FIELD(Task, axes, "3i8"), INTEGER(Task, width), INTEGER(Task, targets), NUMBER(Task, weight),
+    FIELD(Task, offset, "3f8"), FIELD(Task, base_offset, "3f8"), FIELD(Task, measure, "(3,3)f8"),
     FIELD(Task, axis, "3f8"), {0}};
-static const Field HINGE_FIELDS[] = {
-    INTEGER(Hinge, column), INTEGER(Hinge, second), FIELD(Hinge, axis, "3f8"), FIELD(Hinge, limits, "2f8"), {0}};
+static const Field HINGE_FIELDS[] = {INTEGER(Hinge, column), INTEGER(Hinge, second), FIELD(Hinge, axis, "3f8"),
+    FIELD(Hinge, upper, "3f8"), FIELD(Hinge, lower, "3f8"), FIELD(Hinge, limits, "2f8"), {0}};
+static const Field LIMIT_FIELDS[] = {INTEGER(Limit, column), FIELD(Limit, center, "4f8"), FIELD(Limit, along, "3f8"),
+    FIELD(Limit, middle, "3f8"), FIELD(Limit, halves, "2f8"), NUMBER(Limit, least), {0}};
 
 static const struct {
     const char *name;
@@ -53,6 +57,7 @@ static const struct {
     {"nodes", sizeof(Node), NODE_FIELDS},
     {"tasks", sizeof(Task), TASK_FIELDS},
     {"hinges", sizeof(Hinge), HINGE_FIELDS},
+    {"limits", sizeof(Limit), LIMIT_FIELDS},
 };
 
 static int has_size(const Py_buffer *buffer, int64_t count, size_t bytes, const char *name)
@@ -65,7 +70,7 @@ static int has_size(const Py_buffer *buffer, int64_t count, size_t bytes, const 
 }
 
 /* The buffers of `solve`, by their names, held as long as it runs. */
-enum { MOST_BUFFERS = 20 };
+enum { MOST_BUFFERS = 24 };
 typedef struct {
     PyObject *given; /* a dictionary */
     Py_buffer held[MOST_BUFFERS];
@@ -122,19 +127,23 @@ static int read_problem(Problem *problem, Buffers *buffers)
     problem->count = N, problem->motion_frames = F, problem->pulls_root = pulls > 0;
     if (!(take_buffer(buffers, "nodes", of->nodes, sizeof(Node), READ, &problem->node) &&
             take_buffer(buffers, "column_nodes", of->columns, integer, READ, &problem->column_node) &&
+            take_buffer(buffers, "mobility", of->columns + 1, number, READ, &problem->mobility) &&
             take_buffer(buffers, "tasks", of->tasks, sizeof(Task), READ, &problem->task) &&
             take_buffer(buffers, "hinges", of->hinges, sizeof(Hinge), READ, &problem->hinge) &&
+            take_buffer(buffers, "limits", of->limits, sizeof(Limit), READ, &problem->limit) &&
             take_buffer(buffers, "recruited", of->tasks * of->columns, 1, READ, &problem->recruited) &&
             take_buffer(buffers, "targets", of->targets, number, READ, &problem->targets) &&
             take_buffer(buffers, "frames", N, integer, READ, &problem->frames) &&
             take_buffer(
                 buffers, "reference_rotations", 4 * F * of->joints, number, READ, &problem->reference_rotations) &&
             take_buffer(buffers, "reference_root", pulls > 0 ? 3 * F : 0, number, READ, &problem->reference_root) &&
+            take_buffer(buffers, "softness", N * of->layers, number, READ, &problem->softness) &&
             take_buffer(buffers, "rotations", 4 * F * of->joints, number, WRITE, &problem->rotations) &&
             take_buffer(buffers, "translations", 3 * F * of->translated, number, WRITE, &problem->translations) &&
             take_buffer(buffers, "iterations", N, integer, WRITE, &problem->iterations) &&
             take_buffer(buffers, "converged", N, 1, WRITE, &problem->converged) &&
-            take_buffer(buffers, "ranks", N * of->layers, integer, WRITE, &problem->ranks)))
+            take_buffer(buffers, "ranks", N * of->layers, integer, WRITE, &problem->ranks) &&
+            take_buffer(buffers, "left", N * of->layers, number, WRITE, &problem->left)))
         return 0;
     if (problem_fault(problem) != NULL)
         PyErr_SetString(PyExc_ValueError, problem_fault(problem));
@@ -220,12 +229,12 @@ static PyObject *forward_frames(PyObject *self, PyObject *arguments)
 
 static PyObject *smooth(PyObject *self, PyObject *arguments)
 {
-    enum { BEFORE, AFTER, TAPS, OUT, COUNT };
+    enum { BEFORE, AFTER, AXES, TAPS, OUT, COUNT };
     Py_buffer b[COUNT] = {{0}};
     long long frames, first;
     double none;
     (void)self;
-    if (!PyArg_ParseTuple(arguments, "y*y*y*w*LLd", b, b + 1, b + 2, b + 3, &frames, &first, &none))
+    if (!PyArg_ParseTuple(arguments, "y*y*y*y*w*LLd", b, b + 1, b + 2, b + 3, b + 4, &frames, &first, &none))
         return NULL;
     const size_t number = sizeof(double);
     const int64_t joints = frames > 0 ? b[BEFORE].len / (Py_ssize_t)(4 * number) / frames : 0;
@@ -233,12 +242,13 @@ static PyObject *smooth(PyObject *self, PyObject *arguments)
     int status = -2;
     if (has_size(b + BEFORE, 4 * joints * frames, number, "rotations before") &&
         has_size(b + AFTER, 4 * joints * frames, number, "rotations after") &&
+        has_size(b + AXES, 3 * joints, number, "axes") &&
         has_size(b + OUT, 4 * joints * frames, number, "smooth rotations")) {
         if (radius < 0 || first < 0 || frames - first <= radius)
             PyErr_SetString(PyExc_ValueError, "too few frames for the filter");
         else {
             Py_BEGIN_ALLOW_THREADS status = smooth_rotations(
-                b[BEFORE].buf, b[AFTER].buf, frames, joints, first, radius, b[TAPS].buf, none, b[OUT].buf);
+                b[BEFORE].buf, b[AFTER].buf, b[AXES].buf, frames, joints, first, radius, b[TAPS].buf, none, b[OUT].buf);
             Py_END_ALLOW_THREADS if (status < 0) PyErr_NoMemory();
         }
     }

@@ -8,6 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define PI 3.14159265358979323846
+/* Radians: a rotation vector as short as this has no direction to add a turn along. */
+#define NO_LENGTH 1e-9
+
 /* World transforms of every joint: p_j = p_parent + R_parent t_j, q_j = q_parent q_local.
 
    parents: shape (J,), -1 for the root. places: shape (J,), a joint's row of the translations, or -1. offsets: (J, 3).
@@ -65,12 +69,27 @@ static void q_exp_any(const double *v, double *out)
     out[0] = cos(0.5 * angle), out[1] = scale * v[0], out[2] = scale * v[1], out[3] = scale * v[2];
 }
 
+/* Of the rotation vectors v (1 + 2 pi k / |v|), which are one rotation, the one nearest to the frame before. */
+static void unwrap(double *v, const double *before)
+{
+    double step[3];
+    for (int a = 0; a < 3; a++)
+        step[a] = v[a] - before[a];
+    const double length = sqrt(dot(v, v));
+    if (dot(step, step) <= PI * PI || length < NO_LENGTH)
+        return;
+    const double turns = round((dot(v, before) / length - length) / (2.0 * PI));
+    for (int a = 0; a < 3; a++)
+        v[a] *= 1.0 + 2.0 * PI * turns / length;
+}
+
 /* Rotations plus their low-passed displacement, d = log(q_before^-1 q_after), joint by joint.
 
-   before, after, out: shape (frames, joints, 4). Frames before `first` keep their displacement, lend none; components
+   Joints with an axis in their parent's frame are hinges, d = a . log(q_after q_before^-1) their turns about it; an
+   axis of zeros is none. before, after, out: shape (frames, joints, 4); axes: (joints, 3). Frames before `first` keep their displacement, lend none; components
    below `none` (rad) are 0, and joints without any stay as they were before. Returns -1 where memory ran out. */
-int smooth_rotations(const double *before, const double *after, int64_t frames, int64_t joints, int64_t first,
-    int64_t radius, const double *taps, double none, double *out)
+int smooth_rotations(const double *before, const double *after, const double *axes, int64_t frames, int64_t joints,
+    int64_t first, int64_t radius, const double *taps, double none, double *out)
 {
     const int64_t count = frames - first;
     double *turns = malloc(sizeof *turns * (size_t)(3 * (2 * count + 2 * radius + first) + 1));
@@ -78,12 +97,23 @@ int smooth_rotations(const double *before, const double *after, int64_t frames, 
         return -1;
     double *padded = turns + 3 * first, *smooth = padded + 3 * (count + 2 * radius);
     for (int64_t j = 0; j < joints; j++) {
+        const double *axis = axes + 3 * j;
+        const int is_hinge = axis[0] != 0.0 || axis[1] != 0.0 || axis[2] != 0.0;
         int moves = 0;
         for (int64_t f = 0; f < frames; f++) {
             double inverse[4], turn[4], *v = f < first ? turns + 3 * f : padded + 3 * (f - first + radius);
             q_conjugate(before + 4 * (f * joints + j), inverse);
-            q_multiply(inverse, after + 4 * (f * joints + j), turn);
+            if (is_hinge)
+                q_multiply(after + 4 * (f * joints + j), inverse, turn);
+            else
+                q_multiply(inverse, after + 4 * (f * joints + j), turn);
             q_log(turn, turn);
+            if (is_hinge) {
+                const double angle = dot(axis, turn);
+                turn[0] = angle * axis[0], turn[1] = angle * axis[1], turn[2] = angle * axis[2];
+            }
+            if (f > first)
+                unwrap(turn, v - 3);
             for (int a = 0; a < 3; a++) {
                 v[a] = fabs(turn[a]) < none ? 0.0 : turn[a];
                 moves |= v[a] != 0.0;
@@ -99,7 +129,10 @@ int smooth_rotations(const double *before, const double *after, int64_t frames, 
                 continue;
             }
             q_exp_any(v, turn);
-            q_multiply(q, turn, out + 4 * (f * joints + j));
+            if (is_hinge)
+                q_multiply(turn, q, out + 4 * (f * joints + j));
+            else
+                q_multiply(q, turn, out + 4 * (f * joints + j));
         }
     }
     free(turns);

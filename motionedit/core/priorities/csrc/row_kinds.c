@@ -23,8 +23,9 @@ static void levers_to(const Batch *batch, Part *part, const V *point)
 {
     for (int i = 0; i < part->count; i++) {
         const V *place = batch->positions + 3 * batch->problem->column_node[part->columns[i]];
+        const double mobility = batch->problem->mobility[part->columns[i]];
         for (int a = 0; a < 3; a++)
-            part->levers[3 * i + a] = point[a] - place[a];
+            part->levers[3 * i + a] = mobility * (point[a] - place[a]);
     }
 }
 
@@ -61,9 +62,10 @@ static void evaluate_center_of_mass(const Batch *batch, const Task *task, Pull *
         turned_axes(task, IDENTITY, part->force);
     for (int i = 0; i < part->count; i++) {
         const int64_t node = batch->problem->column_node[part->columns[i]];
+        const double mobility = batch->problem->mobility[part->columns[i]];
         for (int a = 0; a < 3; a++)
-            part->levers[3 * i + a] =
-                batch->mass_moments[3 * node + a] - batch->mass_shares[node] * batch->positions[3 * node + a];
+            part->levers[3 * i + a] = mobility * (batch->mass_moments[3 * node + a] -
+                                                     batch->mass_shares[node] * batch->positions[3 * node + a]);
     }
 }
 
@@ -163,16 +165,43 @@ static void evaluate_aim(const Batch *batch, const Task *task, Pull *pull, const
     }
 }
 
+/* A point fixed in a node, in the world. */
+static void point_of(const Batch *batch, int64_t node, const double *offset, V *point)
+{
+    turned_plain(batch->rotations + 9 * node, offset, point);
+    add(point, batch->positions + 3 * node);
+}
+
+/* e = d - |p - q|, u (dp - dq); where two points meet, any u will do to part them: x. */
+static void evaluate_distance(const Batch *batch, const Task *task, Pull *pull, const V *target, V *e)
+{
+    static const V X[3] = {ONES, ZEROS, ZEROS};
+    const double none = batch->problem->constants.no_direction;
+    V point[3], to[3], way[3];
+    point_of(batch, task->node, task->offset, point);
+    point_of(batch, task->base, task->base_offset, to);
+    for (int a = 0; a < 3; a++)
+        way[a] = point[a] - to[a];
+    const V distance = root_of(dot(way, way)), size = larger(distance, all(none));
+    e[0] = task->weight * (target[0] - distance);
+    for (int a = 0; a < 3; a++)
+        pull->part[0].force[0][a] = task->weight * choose(less(distance, all(none)), X[a], way[a] / size);
+    negated(pull->part[0].force, pull->part[1].force);
+    levers_to(batch, pull->part, point);
+    levers_to(batch, pull->part + 1, to);
+}
+
 static const struct {
     RowKind is;
     /* errors into e, rows into the parts of the pull */
     void (*evaluate)(const Batch *batch, const Task *task, Pull *pull, const V *target, V *e);
 } ROW_KINDS[] = {
-    {{"position", .force = 1, .measured = 1, .width = 3}, evaluate_position},
-    {{"orientation", .torque = 1, .width = 4}, evaluate_orientation},
-    {{"center of mass", .force = 1, .weighs = 1, .measured = 1, .width = 3}, evaluate_center_of_mass},
-    {{"aim", .force = 1, .torque = 1, .width = 3}, evaluate_aim},
-    {{"posture", .torque = 1, .width = 4}, evaluate_posture},
+    {{"position", .force = 1, .width = 3}, evaluate_position},
+    {{"orientation", .torque = 1, .rows = 3, .width = 4}, evaluate_orientation},
+    {{"center of mass", .force = 1, .weighs = 1, .width = 3}, evaluate_center_of_mass},
+    {{"aim", .force = 1, .torque = 1, .rows = 3, .width = 3}, evaluate_aim},
+    {{"posture", .torque = 1, .rows = 3, .holds = 1, .width = 4}, evaluate_posture},
+    {{"distance", .force = 1, .rows = 1, .spans = 1, .width = 1}, evaluate_distance},
 };
 
 const RowKind *row_kind(int64_t kind)
@@ -186,6 +215,7 @@ static void evaluate_tasks(Batch *batch)
     for (int64_t t = 0; t < batch->problem->of.tasks; t++) {
         const Task *task = batch->problem->task + t;
         Pull *pull = batch->pulls + t;
-        ROW_KINDS[task->kind].evaluate(batch, task, pull, batch->targets + 4 * t, batch->errors + pull->first_row);
+        V *errors = pull->rows > 0 ? batch->errors : batch->held_errors;
+        ROW_KINDS[task->kind].evaluate(batch, task, pull, batch->targets + 4 * t, errors + pull->first_row);
     }
 }

@@ -1,17 +1,17 @@
 /* J by its levers: G = J J^T, J v and J^T y ([PRIO] 3). Part of solver.c. */
 
-/* The unknown of a step that is a hinge's turn. */
+/* The unknown of a step that is a hinge's turn, over its mobility. */
 static V *hinge_turn(const Batch *batch, V *v, int64_t h)
 {
     const Hinge *hinge = batch->problem->hinge + h;
     return v + batch->column_unknown[hinge->column] + hinge->second;
 }
 
-/* What the rows have along a hinge's axis: hinge_rows[h][r] = a . (l x f + t). */
+/* What the rows have along a hinge's axis: hinge_rows[h][r] = mobility a . (l x f + t). */
 static void hinge_rows(Batch *batch)
 {
     const Problem *problem = batch->problem;
-    for (int64_t i = 0; i < problem->of.hinges * problem->of.rows; i++)
+    for (int64_t i = 0; i < problem->of.hinges * batch->rows; i++)
         batch->hinge_rows[i] = all(0.0);
     for (int64_t t = 0; t < problem->of.tasks; t++) {
         const Pull *pull = batch->pulls + t;
@@ -20,24 +20,24 @@ static void hinge_rows(Batch *batch)
             for (int i = 0; i < part->count; i++) {
                 const int column = part->columns[i], first = batch->column_hinge[column];
                 for (int h = first; h < first + batch->column_hinges[column]; h++) {
-                    V *out = batch->hinge_rows + h * problem->of.rows + pull->first_row, lever[3];
+                    V *out = batch->hinge_rows + h * batch->rows + pull->first_row, lever[3];
                     const V *axis = batch->hinge_axes + 3 * h;
                     cross(axis, part->levers + 3 * i, lever); /* a . (l x f) = f . (a x l) */
-                    for (int64_t r = 0; r < problem->task[t].rows; r++)
-                        out[r] += dot(part->force[r], lever) + dot(part->torque[r], axis);
+                    for (int64_t r = 0; r < pull->rows; r++)
+                        out[r] += dot(part->force[r], lever) + problem->mobility[column] * dot(part->torque[r], axis);
                 }
             }
         }
     }
 }
 
-/* Sums over the columns that two parts share, l the one's levers and m the other's. */
+/* Sums over the columns that two parts share, l the one's levers and m the other's, which hold the columns' mobility. */
 typedef struct {
     V outer[3][3]; /* sum m l^T */
-    V l[3], m[3];
+    V l[3], m[3];  /* times the mobility once more */
 } Sums;
 
-static void sum_levers(const Shared *shared, const Part *a, const Part *b, Sums *sums)
+static void sum_levers(const double *mobility, const Shared *shared, const Part *a, const Part *b, Sums *sums)
 {
     const int turns = a->has_torque || b->has_torque;
     const V none = all(0.0);
@@ -46,8 +46,10 @@ static void sum_levers(const Shared *shared, const Part *a, const Part *b, Sums 
         sums->l[x] = sums->m[x] = none;
     for (int i = 0; i < shared->count; i++) {
         const V *l = a->levers + 3 * shared->places[2 * i], *m = b->levers + 3 * shared->places[2 * i + 1];
-        if (turns)
-            add(sums->l, l), add(sums->m, m);
+        if (turns) {
+            const V moves = all(mobility[a->columns[shared->places[2 * i]]]);
+            add_scaled(sums->l, moves, l), add_scaled(sums->m, moves, m);
+        }
         if (!a->has_force || !b->has_force)
             continue;
         xx += m[0] * l[0], xy += m[0] * l[1], xz += m[0] * l[2];
@@ -66,13 +68,14 @@ static void add_block(Batch *batch, const Shared *shared)
     const Part *a = mine->part + shared->part[0], *b = theirs->part + shared->part[1];
     const int64_t rows = problem->task[shared->task[0]].rows, others = problem->task[shared->task[1]].rows;
     Sums sums;
-    sum_levers(shared, a, b, &sums);
+    sum_levers(problem->mobility, shared, a, b, &sums);
     V(*outer)[3] = sums.outer;
-    const V between = outer[0][0] + outer[1][1] + outer[2][2] + (a->root && b->root ? 1.0 : 0.0);
+    const double shift = problem->mobility[problem->of.columns];
+    const V between = outer[0][0] + outer[1][1] + outer[2][2] + (a->root && b->root ? shift * shift : 0.0);
     if (a->plain && b->plain) { /* the world's axes on both sides: (l x e_r) . (m x e_s) = (l . m) [r = s] - m_r l_s */
         const V scale = a->force[0][0] * b->force[0][0];
-        V *out = batch->G + mine->first_row * problem->of.rows + theirs->first_row;
-        for (int r = 0; r < 3; r++, out += problem->of.rows)
+        V *out = batch->G + mine->first_row * batch->rows + theirs->first_row;
+        for (int r = 0; r < 3; r++, out += batch->rows)
             for (int s = 0; s < 3; s++)
                 out[s] += scale * (r == s ? between - outer[r][s] : -outer[r][s]);
         return;
@@ -80,7 +83,7 @@ static void add_block(Batch *batch, const Shared *shared)
     for (int64_t r = 0; r < rows; r++) {
         const V *f = a->force[r], *t = a->torque[r];
         V pushed[3] = {all(0.0), all(0.0), all(0.0)};
-        V *out = batch->G + (mine->first_row + r) * problem->of.rows + theirs->first_row;
+        V *out = batch->G + (mine->first_row + r) * batch->rows + theirs->first_row;
         /* (l x f) . (m x g) = (l . m) (f . g) - (m . f) (l . g) */
         for (int x = 0; x < 3 && a->has_force && b->has_force; x++)
             pushed[x] = between * f[x] - (outer[0][x] * f[0] + outer[1][x] * f[1] + outer[2][x] * f[2]);
@@ -94,7 +97,7 @@ static void add_block(Batch *batch, const Shared *shared)
         if (b->has_torque) {
             V twisted[3];
             for (int x = 0; x < 3; x++)
-                twisted[x] = shared->count * t[x];
+                twisted[x] = shared->mobility * t[x];
             if (a->has_force) {
                 V lever[3];
                 cross(sums.l, f, lever);
@@ -106,10 +109,15 @@ static void add_block(Batch *batch, const Shared *shared)
     }
 }
 
+static double hinge_mobility(const Batch *batch, int64_t h)
+{
+    return batch->problem->mobility[batch->problem->hinge[h].column];
+}
+
 /* G += factor times a hinge's rank-one part, in the rows that feel it. */
 static void add_hinge(const Batch *batch, int64_t h, V factor, V *G)
 {
-    const int64_t R = batch->problem->of.rows;
+    const int64_t R = batch->rows;
     const V *turns = batch->hinge_rows + h * R;
     const int *felt = batch->hinge_felt + h * R;
     for (int i = 0; i < batch->hinge_felt_count[h]; i++) {
@@ -124,7 +132,7 @@ static void add_hinge(const Batch *batch, int64_t h, V factor, V *G)
 static void gram(Batch *batch)
 {
     const Problem *problem = batch->problem;
-    for (int64_t i = 0; i < problem->of.rows * problem->of.rows; i++)
+    for (int64_t i = 0; i < batch->rows * batch->rows; i++)
         batch->G[i] = all(0.0);
     for (int i = 0; i < batch->shared_count; i++)
         add_block(batch, batch->shared + i);
@@ -136,9 +144,9 @@ static void gram(Batch *batch)
 /* out += factor times what the rows have of a hinge, shape (R,). */
 static void add_hinge_row(const Batch *batch, int64_t h, V factor, V *out)
 {
-    const int *felt = batch->hinge_felt + h * batch->problem->of.rows;
+    const int *felt = batch->hinge_felt + h * batch->rows;
     for (int i = 0; i < batch->hinge_felt_count[h]; i++)
-        out[felt[i]] += factor * batch->hinge_rows[h * batch->problem->of.rows + felt[i]];
+        out[felt[i]] += factor * batch->hinge_rows[h * batch->rows + felt[i]];
 }
 
 /* J v, shape (R,), of a step v, shape (n,). */
@@ -147,7 +155,7 @@ static void rows_times(const Batch *batch, const V *v, V *out)
     const Problem *problem = batch->problem;
     for (int64_t t = 0; t < problem->of.tasks; t++) {
         const Pull *pull = batch->pulls + t;
-        for (int64_t r = 0; r < problem->task[t].rows; r++)
+        for (int64_t r = 0; r < pull->rows; r++)
             out[pull->first_row + r] = all(0.0);
         for (int p = 0; p < pull->parts; p++) {
             const Part *part = pull->part + p;
@@ -169,11 +177,11 @@ static void rows_times(const Batch *batch, const V *v, V *out)
                     add(moved, lever);
                 }
                 if (part->has_torque)
-                    add(twist, w);
+                    add_scaled(twist, all(problem->mobility[column]), w);
             }
             if (part->root)
-                add(moved, v + batch->unknowns - 3);
-            for (int64_t r = 0; r < problem->task[t].rows; r++) {
+                add_scaled(moved, all(problem->mobility[problem->of.columns]), v + batch->unknowns - 3);
+            for (int64_t r = 0; r < pull->rows; r++) {
                 if (part->has_force)
                     out[pull->first_row + r] += dot(part->force[r], moved);
                 if (part->has_torque)
@@ -192,7 +200,7 @@ static void add_rows_transposed(const Batch *batch, const V *y, V *out)
         for (int p = 0; p < pull->parts; p++) {
             const Part *part = pull->part + p;
             V force[3] = {all(0.0), all(0.0), all(0.0)}, torque[3] = {all(0.0), all(0.0), all(0.0)};
-            for (int64_t r = 0; r < problem->task[t].rows; r++) {
+            for (int64_t r = 0; r < pull->rows; r++) {
                 const V of = y[pull->first_row + r];
                 if (part->has_force)
                     add_scaled(force, of, part->force[r]);
@@ -201,7 +209,9 @@ static void add_rows_transposed(const Batch *batch, const V *y, V *out)
             }
             for (int i = 0; i < part->count; i++) {
                 const int column = part->columns[i], h = batch->column_hinge[column];
-                V turn[3] = {torque[0], torque[1], torque[2]}, *to = out + batch->column_unknown[column];
+                const double mobility = problem->mobility[column];
+                V turn[3] = {mobility * torque[0], mobility * torque[1], mobility * torque[2]};
+                V *to = out + batch->column_unknown[column];
                 if (part->has_force) {
                     V lever[3];
                     cross(part->levers + 3 * i, force, lever);
@@ -213,11 +223,13 @@ static void add_rows_transposed(const Batch *batch, const V *y, V *out)
                     to[j] += dot(batch->hinge_axes + 3 * (h + j), turn);
             }
             if (part->root)
-                add(out + batch->unknowns - 3, force);
+                add_scaled(out + batch->unknowns - 3, all(problem->mobility[problem->of.columns]), force);
         }
     }
     for (int64_t h = 0; h < problem->of.hinges; h++) {
         V *turn = hinge_turn(batch, out, h);
         *turn = only(batch->hinge_free[h], *turn);
     }
+    if (keeps_limits(batch))
+        off_cones(batch, out);
 }

@@ -14,7 +14,7 @@ static int between(int64_t least, int64_t index, int64_t count)
 const char *settings_fault(const Settings *of)
 {
     const int64_t counts[] = {
-        of->nodes, of->columns, of->tasks, of->hinges, of->layers, of->joints, of->translated, of->rows};
+        of->nodes, of->columns, of->tasks, of->hinges, of->limits, of->layers, of->joints, of->translated, of->rows};
     int sense = between(0, of->targets, MOST_TARGETS) && between(-1, of->root, of->nodes);
     for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
         sense &= between(0, counts[i], MOST);
@@ -46,13 +46,15 @@ static int is_task(const Problem *problem, const Task *task)
 {
     const Settings *of = &problem->of;
     const RowKind *kind = task->kind < 0 ? 0 : row_kind(task->kind);
-    if (kind == 0 || !between(0, task->layer, of->layers) || !between(kind->measured ? 1 : 3, task->rows, 4))
+    if (kind == 0 || !between(0, task->layer, of->layers) || !between(1, task->rows, 4))
+        return 0;
+    if ((kind->rows != 0 && task->rows != kind->rows) || (kind->spans && task->base < 0))
         return 0;
     int sense = between(kind->weighs ? -1 : 0, task->node, of->nodes) && between(-1, task->base, of->nodes) &&
                 task->width == kind->width && between(0, task->targets, of->targets + 1) &&
                 task->targets + task->width * problem->count <= of->targets;
     for (int64_t r = 0; r < task->rows; r++)
-        sense &= !kind->measured || between(0, task->axes[r], 3);
+        sense &= kind->rows != 0 || between(0, task->axes[r], 3);
     return sense;
 }
 
@@ -84,6 +86,19 @@ static int are_hinges(const Problem *problem)
     return sense;
 }
 
+/* Limits are columns without hinges. */
+static int are_limits(const Problem *problem)
+{
+    int sense = 1;
+    for (int64_t c = 0; c < problem->of.limits; c++) {
+        const int64_t column = problem->limit[c].column;
+        sense &= between(0, column, problem->of.columns);
+        for (int64_t h = 0; h < problem->of.hinges; h++)
+            sense &= problem->hinge[h].column != column;
+    }
+    return sense;
+}
+
 /* Frames are the motion's, and those in order follow each other. */
 static int are_frames(const Problem *problem)
 {
@@ -103,5 +118,7 @@ const char *problem_fault(const Problem *problem)
         return "tasks that are none";
     if (!are_hinges(problem))
         return "hinges that are none";
+    if (!are_limits(problem))
+        return "limits that are none";
     return are_frames(problem) ? 0 : "frames that are none";
 }

@@ -11,16 +11,21 @@ static V length(const V *v, int n)
 /* Scratch of R numbers; layers.c uses the first two. */
 static V *scratch(const Batch *batch, int which)
 {
-    return batch->scratch_rows + (2 + which) * batch->problem->of.rows;
+    return batch->scratch_rows + (2 + which) * batch->rows;
 }
 
-/* Hinges on their limits take no part. */
-static void without_fixed_hinges(const Batch *batch, V *v)
+/* Hinges and cones on their limits take no part, nor do unknowns that are held. */
+static void without_fixed(const Batch *batch, V *v)
 {
+    for (int i = 0; i < batch->unknowns && batch->holds; i++)
+        if (batch->holder[i] >= 0)
+            v[i] = all(0.0);
     for (int64_t h = 0; h < batch->problem->of.hinges; h++) {
         V *turn = hinge_turn(batch, v, h);
         *turn = only(batch->hinge_free[h], *turn);
     }
+    if (keeps_limits(batch))
+        off_cones(batch, v);
 }
 
 /* v <- v - Q^T q; q is used up. */
@@ -28,17 +33,17 @@ static void subtract_rank_space(const Batch *batch, V *q, V *v)
 {
     V *y = scratch(batch, 0);
     out_of_rank_space(batch, q, y);
-    for (int64_t r = 0; r < batch->problem->of.rows; r++)
+    for (int64_t r = 0; r < batch->rows; r++)
         y[r] = -y[r];
-    add_rows_transposed(batch, y, v);
+    add_chain_transposed(batch, y, v);
 }
 
 /* v <- v P, what no layer sees: v - Q^T (Q v). Hinges on their limits take no part. */
 static void off_layers(const Batch *batch, V *v)
 {
     V *Jv = scratch(batch, 0), *q = scratch(batch, 1);
-    without_fixed_hinges(batch, v);
-    rows_times(batch, v, Jv);
+    without_fixed(batch, v);
+    chain_times(batch, v, Jv);
     into_rank_space(batch, Jv, q);
     subtract_rank_space(batch, q, v);
 }
@@ -48,87 +53,144 @@ static void pull_home(Batch *batch)
 {
     V *q = scratch(batch, 1);
     memcpy(batch->home, batch->z, sizeof *batch->z * batch->unknowns);
-    without_fixed_hinges(batch, batch->home);
-    memcpy(q, batch->Qz, sizeof *q * batch->problem->of.rows);
+    without_fixed(batch, batch->home);
+    memcpy(q, batch->Qz, sizeof *q * batch->rows);
     subtract_rank_space(batch, q, batch->home);
 }
 
-/* Q z with the hinges that are free, from J z with all of them: a hinge's part is its row times its turn. */
-static void pull_in_rank_space(Batch *batch, const V *Jz)
+/* J z of the hinges that are free, from J z of all of them: a hinge's part is its row times its turn. */
+static void free_pull(const Batch *batch, const V *Jz, V *free)
 {
-    V *rest = scratch(batch, 0);
-    memcpy(rest, Jz, sizeof *rest * batch->problem->of.rows);
+    memcpy(free, Jz, sizeof *free * batch->rows);
     for (int64_t h = 0; h < batch->problem->of.hinges; h++)
         if (any(~batch->hinge_free[h]))
-            add_hinge_row(batch, h, only(~batch->hinge_free[h], -*hinge_turn(batch, batch->z, h)), rest);
-    into_rank_space(batch, rest, batch->Qz);
+            add_hinge_row(batch, h, only(~batch->hinge_free[h], -*hinge_turn(batch, batch->z, h)), free);
+    for (int64_t cone = 0; cone < cones(batch); cone++)
+        if (any(batch->cone_on[cone]))
+            add_cone_row(batch, cone, only(batch->cone_on[cone], -cone_turn(batch, batch->z, cone)), free);
 }
 
-/* Where a turn takes a hinge (rad), and whether that is beyond its limits. */
+/* Where a turn over its mobility takes a hinge (rad), and whether that is beyond its limits. */
 static Mask beyond(const Batch *batch, int64_t h, V turn, V *limited)
 {
     const Constants *constants = &batch->problem->constants;
     const Hinge *hinge = batch->problem->hinge + h;
-    const V after = batch->hinge_angles[h] + turn;
+    const V after = batch->hinge_angles[h] + hinge_mobility(batch, h) * turn;
     *limited = smaller(larger(after, all(hinge->limits[0])), all(hinge->limits[1]));
     return less(all(constants->on_limit), size_of(after - *limited)) & batch->hinge_free[h];
 }
 
-/* Set on their limits the hinges that gain z + J^T y would take beyond them; returns whether there were any. */
+/* Set on their limits the hinges that the step, gain z + J^T y, would take beyond them; returns whether there were any. */
 static int set_on_limits(Batch *batch, const V *y)
 {
     const Problem *problem = batch->problem;
     int out = 0;
     for (int64_t h = 0; h < problem->of.hinges; h++) {
         V turn = batch->gain * *hinge_turn(batch, batch->z, h), limited;
-        for (int i = 0; i < batch->hinge_felt_count[h]; i++) {
-            const int r = batch->hinge_felt[h * problem->of.rows + i];
-            turn += batch->hinge_rows[h * problem->of.rows + r] * y[r];
+        if (batch->holds)
+            turn = *hinge_turn(batch, batch->step, h);
+        for (int i = 0; i < batch->hinge_felt_count[h] && !batch->holds; i++) {
+            const int r = batch->hinge_felt[h * batch->rows + i];
+            turn += batch->hinge_rows[h * batch->rows + r] * y[r];
         }
         const Mask leaves = beyond(batch, h, turn, &limited);
-        batch->hinge_fixed[h] = choose(leaves, limited - batch->hinge_angles[h], batch->hinge_fixed[h]);
+        const V onto = (limited - batch->hinge_angles[h]) / hinge_mobility(batch, h);
+        batch->hinge_fixed[h] = choose(leaves, onto, batch->hinge_fixed[h]);
         batch->hinge_free[h] &= ~leaves;
         out |= any(leaves);
     }
     return out;
 }
 
-/* Descend, and again with hinges that would leave their limits set on them; Q z and the step come out:
+/* step = base + fixed hinges + gain z + Q^T (c - gain Q z) = base + fixed hinges + gain z + J^T y */
+static void make_step(Batch *batch, const V *y)
+{
+    for (int i = 0; i < batch->unknowns; i++)
+        batch->step[i] = batch->gain * batch->z[i];
+    without_fixed(batch, batch->step);
+    add_chain_transposed(batch, y, batch->step);
+    for (int i = 0; i < batch->unknowns && batch->holds; i++)
+        batch->step[i] += batch->base[i];
+    for (int64_t h = 0; h < batch->problem->of.hinges; h++)
+        *hinge_turn(batch, batch->step, h) += batch->hinge_fixed[h];
+    if (keeps_limits(batch))
+        add_cones(batch, batch->step);
+}
 
-   step = fixed hinges + gain z + Q^T (c - gain Q z) = fixed hinges + gain z + J^T y */
+/* By how much a step violates the i-th of the one-sided rows, where that takes no part, given J step; 0 where it does
+   not. */
+static V lack(const Batch *batch, int i, const V *Jstep)
+{
+    const int r = batch->sided_row[i];
+    const V lacks = batch->errors[r] - Jstep[r];
+    return only(~batch->active[r] & less(all(batch->problem->constants.on_side), lacks), lacks);
+}
+
+/* one_sided.py: let rows take part that the step violates, the worst of each lane or `every` one; returns whether there
+   were any. */
+static int take_in(Batch *batch, int every)
+{
+    V *Jstep = scratch(batch, 3), most = all(0.0);
+    int found = 0;
+    rows_times(batch, batch->step, Jstep);
+    for (int i = 0; i < batch->sided && !every; i++)
+        most = larger(most, lack(batch, i, Jstep));
+    for (int i = 0; i < batch->sided; i++) {
+        const V lacks = lack(batch, i, Jstep);
+        const Mask new = less(all(0.0), lacks) & ~less(lacks, most);
+        batch->active[batch->sided_row[i]] |= new;
+        found |= any(new);
+    }
+    return found;
+}
+
+/* Descend, and again with hinges that would leave their limits set on them, and with the one-sided rows that would be
+   violated; Q z and the step come out. */
 static void descend_within_limits(Batch *batch)
 {
     const Constants *constants = &batch->problem->constants;
     const Problem *problem = batch->problem;
-    V *y = scratch(batch, 0), *q = scratch(batch, 1), *Jz = scratch(batch, 2), *step = batch->step;
+    const int needs_step = batch->sided > 0 || batch->holds || keeps_limits(batch);
+    const int rounds = (int)(batch->sided > 0 ? constants->sided_rounds : constants->limit_rounds);
+    V *y = scratch(batch, 0), *q = scratch(batch, 1), *Jz = scratch(batch, 2);
     for (int64_t h = 0; h < problem->of.hinges; h++)
         batch->hinge_free[h] = everywhere(), batch->hinge_fixed[h] = all(0.0);
+    no_cones_on(batch);
     rows_times(batch, batch->z, Jz);
     for (int round = 0;; round++) {
-        descend(batch);
-        pull_in_rank_space(batch, Jz);
-        for (int64_t p = 0; p < problem->of.rows; p++)
+        free_pull(batch, Jz, y);
+        descend(batch, y);
+        for (int64_t p = 0; p < batch->rows; p++)
             q[p] = batch->c[p] - batch->gain * batch->Qz[p];
         out_of_rank_space(batch, q, y);
-        if (round == constants->limit_rounds || !set_on_limits(batch, y))
+        if (needs_step || round == rounds)
+            make_step(batch, y);
+        if (round == rounds)
+            return;
+        int again = batch->sided > 0 && take_in(batch, round == rounds - 1);
+        again |= set_on_limits(batch, y);
+        again |= keeps_limits(batch) && set_on_cones(batch, batch->step);
+        if (!again)
             break;
     }
-    for (int i = 0; i < batch->unknowns; i++)
-        step[i] = batch->gain * batch->z[i];
-    add_rows_transposed(batch, y, step);
-    for (int64_t h = 0; h < problem->of.hinges; h++)
-        *hinge_turn(batch, step, h) += batch->hinge_fixed[h];
+    if (!needs_step)
+        make_step(batch, y);
 }
 
-/* The length of Q^T c and the fixed hinges, which are orthogonal. */
+/* The length of Q^T c, the base and the fixed hinges, which are orthogonal. */
 static V task_length(const Batch *batch)
 {
-    const int64_t rows = batch->problem->of.rows, hinges = batch->problem->of.hinges;
-    return root_of(
-        dot_product(batch->c, batch->c, (int)rows) + dot_product(batch->hinge_fixed, batch->hinge_fixed, (int)hinges));
+    const int hinges = (int)batch->problem->of.hinges;
+    V square = dot_product(batch->c, batch->c, batch->rows);
+    square += dot_product(batch->hinge_fixed, batch->hinge_fixed, hinges);
+    if (keeps_limits(batch))
+        square += dot_product(batch->cone_fixed, batch->cone_fixed, (int)cones(batch));
+    if (batch->holds)
+        square += dot_product(batch->base, batch->base, batch->unknowns);
+    return root_of(square);
 }
 
-/* homing.py: a secant step for the pull where it applies and leaves every hinge within its limits. */
+/* homing.py: a secant step for the pull where it applies, leaves every hinge within its limits and violates no row. */
 static void accelerate(Batch *batch, Mask usable, V task)
 {
     const Constants *constants = &batch->problem->constants;
@@ -155,6 +217,11 @@ static void accelerate(Batch *batch, Mask usable, V task)
         V limited;
         usable &= ~beyond(batch, h, *hinge_turn(batch, batch->fast, h), &limited);
     }
+    if (batch->sided > 0)
+        rows_times(batch, batch->fast, scratch(batch, 3));
+    for (int i = 0; i < batch->sided; i++)
+        usable &= is_zero(lack(batch, i, scratch(batch, 3)));
+    usable &= within_cones(batch, batch->fast);
     for (int i = 0; i < n; i++)
         batch->step[i] = choose(usable, batch->fast[i], batch->step[i]);
 }
@@ -167,7 +234,8 @@ static V bound_turns(Batch *batch)
     for (int64_t k = 0; k < batch->problem->of.columns; k++) {
         const V *w = batch->step + batch->column_unknown[k];
         const int hinges = batch->column_hinges[k];
-        largest = larger(largest, hinges == 0 ? dot(w, w) : w[0] * w[0] + (hinges == 2 ? w[1] * w[1] : all(0.0)));
+        const V squares = hinges == 0 ? dot(w, w) : w[0] * w[0] + (hinges == 2 ? w[1] * w[1] : all(0.0));
+        largest = larger(largest, squared(batch->problem->mobility[k]) * squares);
     }
     largest = root_of(largest);
     if (!any(less(all(constants->largest_turn), largest)))
@@ -193,26 +261,46 @@ static void remember(Batch *batch, V task, int has_home)
     memcpy(batch->hinge_free_before, batch->hinge_free, sizeof *batch->hinge_free * hinges);
 }
 
+/* What is left of the errors, shape (R,): nothing of one-sided rows that are on the right side. */
+static const V *left_errors(const Batch *batch)
+{
+    V *left = scratch(batch, 3);
+    if (batch->sided == 0)
+        return batch->errors;
+    memcpy(left, batch->errors, sizeof *left * batch->rows);
+    for (int i = 0; i < batch->sided; i++)
+        left[batch->sided_row[i]] = larger(left[batch->sided_row[i]], all(0.0));
+    return left;
+}
+
 /* Which lanes meet every layer. */
 static Mask are_met(const Batch *batch)
 {
     const Constants *constants = &batch->problem->constants;
+    const V *left = left_errors(batch);
     Mask met = everywhere();
     for (int l = 0; l < batch->problem->of.layers; l++)
-        met &= less(length(batch->errors + batch->layers[l].first, batch->layers[l].rows), all(constants->stop_error));
+        if (batch->layers[l].held > 0) {
+            const V *held = batch->held_errors + batch->layers[l].joints[0].error;
+            met &= less(length(held, 3 * batch->layers[l].held), all(constants->stop_error));
+        } else
+            met &= less(length(left + batch->layers[l].first, batch->layers[l].rows), all(constants->stop_error));
     return met;
 }
 
-/* Rounding is no error and no pull. */
+/* Rounding is no error and no pull; one-sided rows, none of which takes part yet, keep what they have. */
 static void drop_rounding(Batch *batch)
 {
-    const int rows = (int)batch->problem->of.rows;
+    const int rows = (int)batch->rows;
     const Mask pulls = less(all(AT_REST), length(batch->z, batch->unknowns));
-    const Mask errs = less(all(AT_REST), length(batch->errors, rows)) | pulls;
+    const V held = length(batch->held_errors, 3 * batch->held);
+    const Mask errs = less(all(AT_REST), length(left_errors(batch), rows)) | less(all(AT_REST), held) | pulls;
+    for (int r = 0; r < 3 * batch->held; r++)
+        batch->held_errors[r] = only(errs, batch->held_errors[r]);
     for (int i = 0; i < batch->unknowns; i++)
         batch->z[i] = only(pulls, batch->z[i]);
     for (int r = 0; r < rows; r++)
-        batch->errors[r] = only(errs, batch->errors[r]);
+        batch->errors[r] = only(errs | ~batch->active[r], batch->errors[r]);
 }
 
 /* Give a lane frame `at`, or none: -1. */
@@ -221,17 +309,65 @@ static void begin_frame(Batch *batch, int lane, int64_t at)
     batch->at[lane] = at, batch->iteration[lane] = 0;
     MASK_LANE(batch->nearly, lane) = MASK_LANE(batch->remembers, lane) = 0;
     LANE(batch->moved_before, lane) = 0.0;
+    for (int64_t r = 0; r < batch->rows; r++)
+        MASK_LANE(batch->active_before[r], lane) = 0;
+    MASK_LANE(batch->limited, lane) = 0, batch->before_limits[lane] = 0;
     if (at >= 0)
         load(batch, lane, at);
+}
+
+/* The largest error of any row of each of a frame's layers, its weight taken off. */
+static void largest_left(const Batch *batch, int lane, double *left)
+{
+    const Problem *problem = batch->problem;
+    memset(left, 0, sizeof *left * problem->of.layers);
+    for (int64_t t = 0; t < problem->of.tasks; t++) {
+        const Task *task = problem->task + t;
+        const Pull *pull = batch->pulls + t;
+        const V *errors = (pull->rows > 0 ? batch->errors : batch->held_errors) + pull->first_row;
+        for (int64_t r = 0; r < task->rows; r++) {
+            const double error = LANE(errors[r], lane) / task->weight;
+            left[task->layer] = fmax(left[task->layer], task->one_sided ? error : fabs(error));
+        }
+    }
+}
+
+/* Whether all layers that do not give way are met. */
+static int is_met_without_limits(const Batch *batch, int lane)
+{
+    const Problem *problem = batch->problem;
+    double *left = problem->left + batch->at[lane] * problem->of.layers;
+    largest_left(batch, lane, left);
+    for (int64_t l = 0; l < problem->of.layers; l++)
+        if (left[l] > problem->constants.met_without_limits && LANE(batch->layers[l].soft, lane) == 0.0)
+            return 0;
+    return 1;
+}
+
+/* Solve a frame on with limits, if it is solved without them and beyond any; returns whether it is. */
+static int goes_on_with_limits(Batch *batch, int lane)
+{
+    if (batch->problem->of.limits == 0 || batch->holds || MASK_LANE(batch->limited, lane) || !is_beyond(batch, lane) ||
+        !is_met_without_limits(batch, lane))
+        return 0;
+    batch->before_limits[lane] = batch->iteration[lane], batch->iteration[lane] = 0;
+    MASK_LANE(batch->limited, lane) = -1;
+    MASK_LANE(batch->nearly, lane) = MASK_LANE(batch->remembers, lane) = 0;
+    LANE(batch->moved_before, lane) = 0.0;
+    for (int64_t r = 0; r < batch->rows; r++)
+        MASK_LANE(batch->active_before[r], lane) = 0;
+    return 1;
 }
 
 static void end_frame(Batch *batch, int lane, int converged)
 {
     const Problem *problem = batch->problem;
     const int64_t at = batch->at[lane];
-    problem->converged[at] = (uint8_t)converged, problem->iterations[at] = batch->iteration[lane];
+    problem->converged[at] = (uint8_t)converged,
+    problem->iterations[at] = batch->before_limits[lane] + batch->iteration[lane];
     for (int l = 0; l < problem->of.layers; l++)
         problem->ranks[at * problem->of.layers + l] = (int64_t)LANE(batch->layers[l].rank, lane);
+    largest_left(batch, lane, problem->left + at * problem->of.layers);
     store(batch, lane);
 }
 
@@ -256,14 +392,29 @@ static V iterate(Batch *batch)
 {
     const Problem *problem = batch->problem;
     set_pace(batch);
+    if (keeps_limits(batch))
+        cone_state(batch);
     attraction(batch);
+    for (int i = 0; i < batch->sided; i++)
+        batch->active[batch->sided_row[i]] = ~everywhere();
     drop_rounding(batch);
     gram(batch);
+    if (batch->holds)
+        form_rows(batch);
     descend_within_limits(batch);
     const V task = task_length(batch);
     Mask compares = batch->remembers;
     for (int64_t h = 0; h < problem->of.hinges; h++)
         compares &= ~(batch->hinge_free[h] ^ batch->hinge_free_before[h]);
+    for (int i = 0; i < batch->sided; i++) {
+        const int r = batch->sided_row[i];
+        compares &= ~(batch->active[r] ^ batch->active_before[r]);
+        batch->active_before[r] = batch->active[r];
+    }
+    for (int64_t cone = 0; cone < cones(batch); cone++) {
+        compares &= ~(batch->cone_on[cone] ^ batch->cone_before[cone]);
+        batch->cone_before[cone] = batch->cone_on[cone];
+    }
     const int compare = any(compares);
     if (compare) {
         pull_home(batch);
@@ -321,7 +472,8 @@ static void end_before_iterating(Batch *batch)
     const Mask met = any(batch->nearly) ? batch->nearly & are_met(batch) : batch->nearly;
     for (int lane = 0; lane < LANES; lane++)
         if (batch->at[lane] >= 0 &&
-            (MASK_LANE(met, lane) || batch->iteration[lane] == batch->problem->of.max_iterations)) {
+            (MASK_LANE(met, lane) || batch->iteration[lane] == batch->problem->of.max_iterations) &&
+            !goes_on_with_limits(batch, lane)) {
             end_frame(batch, lane, MASK_LANE(met, lane) != 0);
             batch->at[lane] = -1;
         }
@@ -337,7 +489,7 @@ static void end_after_iterating(Batch *batch, V moved)
     batch->moved_before = moved;
     for (int lane = 0; lane < LANES; lane++) {
         batch->iteration[lane] += batch->at[lane] >= 0;
-        if (batch->at[lane] >= 0 && LANE(moved, lane) < constants->stop_step) {
+        if (batch->at[lane] >= 0 && LANE(moved, lane) < constants->stop_step && !goes_on_with_limits(batch, lane)) {
             end_frame(batch, lane, 1);
             batch->at[lane] = -1;
         }

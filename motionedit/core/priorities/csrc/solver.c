@@ -8,9 +8,12 @@
 #include <string.h>
 
 #include "body.c"
+#include "limits.c"
 #include "row_kinds.c"
 #include "rows.c"
 #include "algebra.c"
+#include "held_above.c"
+#include "held.c"
 #include "layers.c"
 #include "layout.c"
 #include "solve.c"

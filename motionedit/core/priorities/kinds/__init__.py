@@ -3,6 +3,8 @@
 from motionedit.core.priorities.kinds.aim import Aim
 from motionedit.core.priorities.kinds.com import CenterOfMass
 from motionedit.core.priorities.kinds.constraint import Constraint
+from motionedit.core.priorities.kinds.distance import Distance
+from motionedit.core.priorities.kinds.floor import Floor
 from motionedit.core.priorities.kinds.orientation import Orientation
 from motionedit.core.priorities.kinds.pose import Pose
 from motionedit.core.priorities.kinds.position import Position
@@ -10,5 +12,5 @@ from motionedit.core.priorities.kinds.posture import Posture
 
 # By their names in a spec.
 KINDS: dict[str, type[Constraint]] = {
-    kind.type: kind for kind in (Position, Orientation, Pose, CenterOfMass, Aim, Posture)
+    kind.type: kind for kind in (Position, Orientation, Pose, CenterOfMass, Aim, Posture, Distance, Floor)
 }

@@ -78,7 +78,7 @@ class Aim(EffectorConstraint):
         look = self.seen.directions(rot.rotate(poses.rotations[:, self.effector.joint], self.axis), poses)
         if self.target is not None:
             gaze = origin + np.linalg.norm(origin, axis=1, keepdims=True) * look
-            positions = (gaze * (1.0 - self._share(len(origin), first, last))[:, None])[first : last + 1]
+            positions = (gaze * (1.0 - self.share(len(origin)))[:, None])[first : last + 1]
             return Targets(first, last, positions)
         given = next(point.position for point in self.points if point.position is not None)
         gaze = origin + np.linalg.norm(given - origin, axis=1, keepdims=True) * look
@@ -92,22 +92,18 @@ class Aim(EffectorConstraint):
         )
         return Targets(first, last, positions @ self.measure.axes)
 
-    def _share(self, frames: int, first: int, last: int) -> FloatArray:
-        """Return how far it is eased in at each frame, 0 to 1, with a continuous slope; no points: all the way."""
-        if not self.points:
-            return np.ones(frames)
-        start, stop = self.points[0].start, self.points[-1].stop
-        f = np.arange(frames, dtype=np.float64)
-        rise = np.ones(frames) if start <= first else np.clip((f - first) / (start - first), 0.0, 1.0)
-        fall = np.ones(frames) if stop >= last else np.clip((last - f) / (last - stop), 0.0, 1.0)
-        t = rise * fall
-        share: FloatArray = t * t * (3.0 - 2.0 * t)
-        return share
-
     def task(self, targets: Targets, stage: Stage) -> AimTask:
         """Return the task of the axis."""
         positions = targets.positions_at(stage.frames)
         return AimTask(stage.point(self.effector), self.axis, positions, stage.joint(self.base))
+
+    def reached(self, targets: Targets, after: Sight) -> Targets:
+        """Return the points straight ahead, as far away as those that it shall look at."""
+        poses, base = after.poses.at(targets.span), Measure(base=self.base)
+        eye = effector_positions(poses, self.effector)
+        distance = np.linalg.norm(base.in_world(targets.all_positions, poses) - eye, axis=1, keepdims=True)
+        ahead = eye + distance * rot.rotate(poses.rotations[:, self.effector.joint], self.axis)
+        return Targets(targets.first, targets.last, base.positions(ahead, poses))
 
     def errors(self, targets: Targets, after: Sight, *, reference: Motion) -> ConstraintErrors:
         """Return the angle between the axis and the way to what is looked at, which are the `places`."""

@@ -108,6 +108,10 @@ class CenterOfMass(Constraint):
         positions = targets.positions_at(stage.frames)
         return CenterOfMassTask(stage.columns, stage.recruited, stage.masses, positions, self.measure)
 
+    def reached(self, targets: Targets, after: Sight) -> Targets:
+        """Return where the center of mass is, along the axes of its measure."""
+        return Targets(targets.first, targets.last, after.center[targets.span] @ self.measure.axes.T)
+
     def errors(self, targets: Targets, after: Sight, *, reference: Motion) -> ConstraintErrors:
         """Return the distance of the center of mass from its targets."""
         del reference

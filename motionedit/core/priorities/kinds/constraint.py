@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 
+from motionedit.core import rotations as rot
 from motionedit.core.kinematics import Effector
 from motionedit.core.priorities.points import Point, Recruited
-from motionedit.core.priorities.trajectories import active_interval
+from motionedit.core.priorities.trajectories import active_interval, share_of
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -45,12 +46,16 @@ class Movable:
 
 @dataclass(frozen=True, eq=False)
 class Targets:
-    """Where a constraint's task shall be: frames `first` to `last`; positions (n, 3), rotations (n, 4), or None."""
+    """Where a constraint's task shall be: frames `first` to `last`.
+
+    Positions (n, 3), rotations (n, 4), lengths (n,), None of what it has none of.
+    """
 
     first: int
     last: int
     positions: FloatArray | None = None
     rotations: FloatArray | None = None
+    lengths: FloatArray | None = None
 
     @property
     def span(self) -> slice:
@@ -64,6 +69,12 @@ class Targets:
             raise ValueError("these targets have no positions")
         return self.positions
 
+    def until(self, frame: int) -> Targets:
+        """Return the targets of frames before one that is after their first."""
+        count = min(self.last + 1, frame) - self.first
+        parts = (self.positions, self.rotations, self.lengths)
+        return Targets(self.first, self.first + count - 1, *(None if part is None else part[:count] for part in parts))
+
     def positions_at(self, frames: IntArray) -> FloatArray:
         """Return the positions at frames of the clip, shape (N, 3)."""
         at: FloatArray = self.all_positions[frames - self.first]
@@ -75,6 +86,44 @@ class Targets:
             raise ValueError("these targets have no rotations")
         at: FloatArray = self.rotations[frames - self.first]
         return at
+
+    @property
+    def all_lengths(self) -> FloatArray:
+        """The lengths, of targets that have them."""
+        if self.lengths is None:
+            raise ValueError("these targets have no lengths")
+        return self.lengths
+
+    def lengths_at(self, frames: IntArray) -> FloatArray:
+        """Return the lengths at frames of the clip, shape (N,)."""
+        at: FloatArray = self.all_lengths[frames - self.first]
+        return at
+
+
+def between(one: Targets, other: Targets, share: FloatArray) -> Targets:
+    """Return targets on the way from one to another of the same frames, so much of it each, shape (n,)."""
+    positions, rotations, lengths = one.positions, one.rotations, one.lengths
+    if positions is not None:
+        positions = positions + share[:, None] * (other.all_positions - positions)
+    if rotations is not None and other.rotations is not None:
+        arc = rot.log(rot.multiply(rot.conjugate(rotations), other.rotations))
+        rotations = rot.multiply(rotations, rot.exp(share[:, None] * arc))
+    if lengths is not None:
+        lengths = lengths + share * (other.all_lengths - lengths)
+    return Targets(one.first, one.last, positions, rotations, lengths)
+
+
+def moved(targets: Targets, before: Targets, after: Targets, share: FloatArray) -> Targets:
+    """Return targets moved along from where one motion has a task to where another has it, so much each, shape (n,)."""
+    positions, rotations, lengths = targets.positions, targets.rotations, targets.lengths
+    if positions is not None:
+        positions = positions + share[:, None] * (after.all_positions - before.all_positions)
+    if rotations is not None and before.rotations is not None and after.rotations is not None:
+        turn = rot.log(rot.multiply(rot.conjugate(before.rotations), after.rotations))
+        rotations = rot.multiply(rotations, rot.exp(share[:, None] * turn))
+    if lengths is not None:
+        lengths = lengths + share * (after.all_lengths - before.all_lengths)
+    return Targets(targets.first, targets.last, positions, rotations, lengths)
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,6 +205,8 @@ class Constraint(ABC):
         Frames.
     since : int
         The first frame after a rest pose, which no ease reads.
+    yields : bool
+        Nobody counts on it: where meeting it makes the motion step, it gives way.
     """
 
     type: ClassVar[str]
@@ -176,17 +227,27 @@ class Constraint(ABC):
     ease_in: float = 0.0
     ease_out: float = 0.0
     since: int = 0
+    yields: bool = False
 
     @property
     def at(self) -> Effector | None:
         """The effector that it is about; None where it is about no one point."""
         return None
 
+    @property
+    def one_sided(self) -> bool:
+        """Whether its task is a limit, met on all of one side: see `WeightedTask`."""
+        return False
+
     def active(self, frames: int) -> tuple[int, int]:
         """Return the first and last frame at which the constraint is active."""
         return active_interval(
             self.points, ease_in=self.ease_in, ease_out=self.ease_out, frames=frames, since=self.since
         )
+
+    def share(self, frames: int) -> FloatArray:
+        """Return how far it is eased in at each frame, shape (F,), 0 to 1."""
+        return share_of(self.points, ease_in=self.ease_in, ease_out=self.ease_out, frames=frames)
 
     @abstractmethod
     def recruits(self, movable: Movable) -> Recruits:
@@ -209,6 +270,11 @@ class Constraint(ABC):
     @abstractmethod
     def targets(self, scene: Scene) -> Targets:
         """Return where its task shall be."""
+
+    def reached(self, targets: Targets, after: Sight) -> Targets:
+        """Return where a motion has its task, as targets are; what has no place to go back to returns its targets."""
+        del after
+        return targets
 
     def goal(self, targets: Targets) -> tuple[int, FloatArray] | None:
         """Return the joint that it puts in a place, and where, world positions (n, 3); None where it does not."""

@@ -98,6 +98,15 @@ class EffectorConstraint(Constraint):
         poses = scene.before.poses
         return self.measure.rotations(poses.rotations[:, self.effector.joint], poses)
 
+    def reached(self, targets: Targets, after: Sight) -> Targets:
+        """Return where the effector is, and how its joint is turned, as they are measured."""
+        poses, positions, rotations = after.poses.at(targets.span), targets.positions, targets.rotations
+        if positions is not None:
+            positions = self.measure.positions(effector_positions(poses, self.effector), poses)
+        if rotations is not None:
+            rotations = self.measure.rotations(poses.rotations[:, self.effector.joint], poses)
+        return Targets(targets.first, targets.last, positions, rotations)
+
     def left(self, targets: Targets, after: Sight) -> ConstraintErrors:
         """Return how far the effector is from its targets' positions, and its joint from their rotations."""
         poses = after.poses.at(targets.span)

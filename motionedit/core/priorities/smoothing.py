@@ -1,0 +1,96 @@
+"""A solution smoothed and solved again, pass by pass: the default's continuity in time ([PRIO] section 5)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core import rotations as rot
+from motionedit.core.motion import Motion
+from motionedit.core.priorities.continuity import smoothed_displacement
+from motionedit.core.priorities.frames import Known, known_after, solve_frames
+from motionedit.core.priorities.shares import shares_of
+from motionedit.core.trace import frame_blocks
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from motionedit.core.arrays import FloatArray, IntArray
+    from motionedit.core.priorities.frames import Run, Solved
+    from motionedit.core.priorities.settings import Passes
+
+# Radians a frame at 60 frames a second: a viewer sees 10 degrees. A change that steps further gets more passes,
+_STEP, _RATE = float(np.radians(8.0)), 60.0
+# this many at most, around its frames, blended in over so many seconds.
+_MORE_PASSES, _RAMP = 8, 0.6
+# and no more once so many of them have hardly helped.
+_PATIENCE, _PROGRESS = 3, 0.95
+
+
+def in_passes(run: Run, state: Solved, smoothing: Passes, *, aimed: Callable[[Motion], Run] | None = None) -> Solved:
+    """Return a solution smoothed and solved again in all passes, and in more around frames whose change steps.
+
+    Parameters
+    ----------
+    aimed : callable, optional
+        Returns what is solved in a pass from its smoothed motion; default: the run itself.
+    """
+    motion, first, hinges = run.motion, run.asked.body.first, run.asked.body.hinges
+    for _ in range(smoothing.count):
+        smooth = smoothed_displacement(motion, state.motion, sigma=smoothing.sigma, first=first, hinges=hinges)
+        now = run if aimed is None else aimed(smooth)
+        known = known_after(run, state, smooth) if aimed is None else None
+        del state  # of a long motion no more copies are kept than are needed
+        state = solve_frames(now, smooth, reference=smooth, pull_root=True, known=known)
+        del smooth
+    found = [np.inf] * _PATIENCE
+    for _ in range(_MORE_PASSES if smoothing.count else 0):
+        steps = steps_at(run, state.motion)
+        largest = float(steps.max(initial=0.0))
+        if largest == 0.0 or largest > _PROGRESS * found[-_PATIENCE]:
+            break
+        found.append(largest)
+        share = shares_of(steps > 0.0, max(1, round(_RAMP / motion.frame_time)))
+        smooth = smoothed_displacement(motion, state.motion, sigma=smoothing.sigma, first=first, hinges=hinges)
+        smooth = _between(state.motion, smooth, share)
+        now = run if aimed is None else aimed(smooth)
+        state = solve_frames(now, smooth, reference=smooth, pull_root=True, known=Known(share == 0.0, state.ranks))
+    return state
+
+
+def steps_at(run: Run, after: Motion) -> FloatArray:
+    """Return the largest step of a joint's change into or out of each frame, rad, shape (F,).
+
+    0 where none is larger than is allowed, and than the joint's own largest step in the input.
+    """
+    before, first = run.motion, run.asked.body.first
+    joints = np.array(sorted(frozenset().union(*(each.joints for each in run.asked.recruits))), dtype=np.intp)
+    limit = _STEP * before.frame_time * _RATE
+    found = np.zeros(len(before))
+    for block in frame_blocks(len(before)):
+        frames = np.arange(max(block.start, first), min(block.stop + 1, len(before)))
+        change = _change(before, after, frames[:, None], joints)
+        # A cosine of half the step costs less than the step, and nearly all are let off by it.
+        far = np.abs(np.einsum("fji,fji->fj", change[:-1], change[1:])) < np.cos(0.5 * limit)
+        for k in np.flatnonzero(far.any(axis=0)):
+            steps = rot.angle_between(change[:-1, k], change[1:, k])
+            q = before.rotations[first:, joints[k]]
+            steps[steps <= max(limit, float(rot.angle_between(q[:-1], q[1:]).max()))] = 0.0
+            for side in (frames[:-1], frames[1:]):
+                found[side] = np.maximum(found[side], steps)
+    return found
+
+
+def _change(before: Motion, after: Motion, frames: IntArray, joints: IntArray) -> FloatArray:
+    return rot.multiply(rot.conjugate(before.rotations[frames, joints]), after.rotations[frames, joints])
+
+
+def _between(one: Motion, other: Motion, share: FloatArray) -> Motion:
+    """Return a motion on the way from one to another, so much of it at every frame, shape (F,)."""
+    rotations, frames = one.rotations.copy(), np.flatnonzero(share)
+    mine, theirs, part = one.rotations[frames], other.rotations[frames], share[frames, None, None]
+    turn = rot.log(rot.multiply(theirs, rot.conjugate(mine)))
+    rotations[frames] = rot.multiply(rot.exp(part * turn), mine)
+    translations = one.translations + share[:, None, None] * (other.translations - one.translations)
+    return Motion(one.skeleton, rotations, translations, one.frame_time)
