@@ -113,7 +113,9 @@ _BEFORE = (
 )
 _AFTER = (
     lenient_option,
-    click.option("--strict", is_flag=True, help="Exit with 3 where a goal is not met within its tolerance."),
+    click.option(
+        "--strict", is_flag=True, help="Exit with 3 where a goal is not within its tolerance or an edit is rough."
+    ),
     dry_run_option,
     click.option(
         "--verify",

@@ -51,7 +51,7 @@ def results_table(records: Sequence[dict[str, Any]], seconds: Sequence[float], *
         error = "error" + _unit([record for record, _ in shown])
         headings = (
             *("clip", "status", "worst goal", error, "tolerance", "frame"),
-            *("iterations", "foot slide", "jerk", "seconds"),
+            *("iterations", "foot slide", "jerk", "step", "seconds"),
         )
         blocks.append(text_table(headings, [_row(record, time) for record, time in shown]))
     if verbosity > 0:
@@ -82,6 +82,7 @@ def _row(record: dict[str, Any], seconds: float) -> tuple[object, ...]:
         _iterations(record),
         _change(record, "foot_slide_max"),
         _ratio(record, "jerk_rms"),
+        _step(record),
         None if record["status"] == "failed" else f"{seconds:.2f}",
     )
 
@@ -158,6 +159,12 @@ def _ratio(record: dict[str, Any], key: str) -> str | None:
     """Return a measure after over before, as ``1.04 x``."""
     found = _measures(record, key)
     return f"{found[1] / found[0]:.2f} x" if found and found[0] > 0.0 else None
+
+
+def _step(record: dict[str, Any]) -> str | None:
+    """Return the largest step of a joint's change, as ``1.2°``: in a sixtieth of a second."""
+    found = _measures(record, "step_max")
+    return found and f"{number(found[1])}°"
 
 
 def _is_number(text: str) -> bool:

@@ -10,8 +10,9 @@ from motionedit.spec.constraints import TYPES, ConstraintItem, Placed, Recruitin
 from motionedit.spec.faults import Fault, FaultyValueError, faulty, show
 from motionedit.spec.items import EffectorItem
 from motionedit.spec.model import mappings_in
-from motionedit.spec.points import SPLINE_KEYS
+from motionedit.spec.points import LENGTH_KEYS, SPLINE_KEYS
 from motionedit.spec.scalars import Vector, one_of, word
+from motionedit.spec.values import EffectorSpec, parse_effectors
 
 # Named in the contract for later work.
 LATER_TYPES = ("footplants",)
@@ -132,6 +133,60 @@ class PostureConstraint(ConstraintItem):
     def default_name(self) -> str:
         """The name of one that gives none."""
         return self.type
+
+
+class DistanceConstraint(Recruiting, EffectorItem, ConstraintItem):
+    """Two points of the body are as far from each other as asked, or not nearer, or not farther."""
+
+    point_keys = LENGTH_KEYS
+
+    type: Literal["distance"] = Field(description="The type: distance.")
+    to: Annotated[EffectorSpec, kinds.EFFECTOR] = Field(description="The point that the distance is to.")
+
+    @classmethod
+    def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
+        """Yield what is wrong between keys."""
+        yield from super().faults_between_keys(data)
+        joints = _joints_of(data.get("effector"))
+        if joints & _joints_of(data.get("to")):
+            yield Fault("is on the effector's own joint, which it never moves against; name another joint", ("to",))
+        bounds = [(i, {"at_least", "at_most"} & point.keys()) for i, point in mappings_in(data, "points")]
+        for i, bound in bounds[1:]:
+            if bound != bounds[0][1]:
+                what = "points of one constraint have at_least, or at_most, or neither, all alike"
+                yield Fault(f"{what}; make this one another constraint", ("points", i))
+
+
+def _joints_of(effector: object) -> set[str]:
+    """Return the joints of an effector or a list of them; none of a faulty one, which is refused itself."""
+    try:
+        return {each.joint for each in parse_effectors(effector)}
+    except FaultyValueError:
+        return set()
+
+
+class FloorConstraint(Recruiting, ConstraintItem):
+    """Nothing of some points of the body goes below a height, over the whole clip."""
+
+    only_warns = True
+
+    type: Literal["floor"] = Field(description="The type: floor.")
+    effector: Annotated[str | tuple[EffectorSpec, ...], kinds.BODY_POINTS] = Field(
+        default="feet",
+        description="What stays above: feet (feet and toes found in the skeleton), all (joints and end sites), or a "
+        "list of effectors, which is one constraint.",
+    )
+    height: Annotated[float, kinds.HEIGHT] = Field(default=0.0, description="The floor's height along up, clip units.")
+
+    @property
+    def default_name(self) -> str:
+        """The name of one that gives none."""
+        return self.type
+
+    @classmethod
+    def key_names(cls) -> tuple[str, ...]:
+        """Return its keys: a floor has no times."""
+        return tuple(key for key in super().key_names() if key not in ("ease_in", "ease_out", "points"))
 
 
 def _with_known_type(value: object) -> object:

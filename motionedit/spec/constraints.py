@@ -8,7 +8,7 @@ from pydantic import Field
 from motionedit.dataclass import dataclass
 from motionedit.spec import kinds
 from motionedit.spec.faults import Fault, Keys
-from motionedit.spec.items import Item
+from motionedit.spec.items import Item, measured_in_itself
 from motionedit.spec.model import Kind, SpecModel, mappings_in
 from motionedit.spec.points import Point
 from motionedit.spec.scalars import one_of
@@ -154,6 +154,7 @@ class Placed(SpecModel):
         yield from super().faults_between_keys(data)
         if data.get("frame") == "heading" and "relative_to" in data:
             yield Fault("stands beside frame: heading; give one of them", ("relative_to",))
+        yield from measured_in_itself(data)
 
 
 class Defaults(SpecModel):

@@ -8,7 +8,7 @@ from pydantic import AfterValidator, Field
 from motionedit.spec import kinds
 from motionedit.spec.document import Document
 from motionedit.spec.faults import Fault, faulty
-from motionedit.spec.items import EffectorItem, repeated_names, taken_apart
+from motionedit.spec.items import EffectorItem, measured_in_itself, repeated_names, taken_apart
 from motionedit.spec.model import Context, Kind, SpecModel, mappings_in
 from motionedit.spec.scalars import Vector, word
 from motionedit.spec.times import Time
@@ -75,6 +75,7 @@ class PcGoal(EffectorItem):
             yield Fault("belongs to position or shift; an orientation has all its axes", ("axes",))
         if data.get("frame") == "heading" and "relative_to" in data:
             yield Fault("stands beside frame: heading; give one of them", ("relative_to",))
+        yield from measured_in_itself(data)
         tolerance = data.get("tolerance")
         if isinstance(tolerance, dict):
             if "angle" in tolerance and "orientation" not in data:
@@ -95,7 +96,7 @@ class PcSolver(SpecModel):
     damping_unit: Annotated[Unit, kinds.UNIT] = Field(
         default=Unit("cm", UNITS["cm"]), description="damped only: the unit the solver works in, as unit:."
     )
-    max_iterations: Annotated[int | None, kinds.whole(at_least=1, null=True)] = Field(
+    max_iterations: Annotated[int | None, kinds.whole(at_least=1, null=True, largest=1_000_000)] = Field(
         default=1500, description="damped only: iterations at most; null for no bound."
     )
     tolerance: Annotated[float, kinds.number(above=0.0)] = Field(

@@ -1,7 +1,8 @@
 """The spec of edit-prioritized: constraints in strict layers of priority, [PRIO]."""
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, Literal
+from functools import partial
+from typing import Annotated, Any, Literal, NamedTuple
 
 from pydantic import AfterValidator, Field, ValidationInfo
 
@@ -25,14 +26,14 @@ class Smoothing(SpecModel):
         default="passes",
         description="passes: low-pass the displacement and solve again; paper: eq. (4) and a filter on the root.",
     )
-    passes: Annotated[int | None, kinds.whole(at_least=0)] = Field(
+    passes: Annotated[int | None, kinds.whole(at_least=0, largest=1000)] = Field(
         default=None, description="Passes after the first solve; default 3, with method: paper 2."
     )
     sigma: Annotated[Duration, kinds.DURATION] = Field(
         default=Duration("0.062s", 0.062, is_seconds=True),
         description="passes only: width of the Gaussian low-pass.",
     )
-    cutoff: Annotated[float, kinds.number(above=0.0)] = Field(
+    cutoff: Annotated[float, kinds.number(above=0.0, smallest=0.01)] = Field(
         default=3.0, description="paper only: cutoff of the root's low-pass, Hz."
     )
 
@@ -54,7 +55,7 @@ class Smoothing(SpecModel):
 class LayeredSolver(SpecModel):
     """Settings of the layered solver, section 3."""
 
-    max_iterations: Annotated[int, kinds.whole(at_least=1)] = Field(
+    max_iterations: Annotated[int, kinds.whole(at_least=1, largest=100_000)] = Field(
         default=40, description="Iterations at most for each frame and pass."
     )
 
@@ -69,7 +70,75 @@ def _masses(value: object, _context: Context) -> dict[str, float]:
 MASSES = Kind(
     _masses,
     "a mapping from joints to kilograms",
-    {"type": "object", "additionalProperties": {"type": "number", "minimum": 0}},
+    {"type": "object", "additionalProperties": {"type": "number", "minimum": 0, "maximum": scalars.LARGEST}},
+)
+
+
+def _stiffness(value: object, _context: Context) -> str | dict[str, float]:
+    if isinstance(value, str) and value in {"human", "none"}:
+        return str(value)
+    if not isinstance(value, dict):
+        raise faulty(f"must be human, none, or a mapping from joints to numbers, not {show(value)}")
+    found = values.read_keys(value, dict.fromkeys(value, lambda item: scalars.number(item, above=0.0)))
+    return {joint: scalars.number(stiffness) for joint, stiffness in found.items()}
+
+
+STIFFNESS = Kind(
+    _stiffness,
+    "human, none, or a mapping from joints to numbers",
+    {
+        "anyOf": [
+            {"enum": ["human", "none"]},
+            {"type": "object", "additionalProperties": {"type": "number", "exclusiveMinimum": 0}},
+        ]
+    },
+)
+
+
+class JointRange(NamedTuple):
+    """Half of a joint's range of motion, degrees."""
+
+    swing: float
+    twist: float
+
+
+_HALF_TURN = 180.0
+
+
+def _range(value: object) -> JointRange:
+    if not isinstance(value, dict):
+        raise faulty(f"must be a mapping of swing and twist in degrees, not {show(value)}")
+    angle = partial(scalars.number, at_least=0.0, at_most=_HALF_TURN)
+    found = values.read_keys(value, {"swing": angle, "twist": angle})
+    return JointRange(scalars.number(found.get("swing", _HALF_TURN)), scalars.number(found.get("twist", _HALF_TURN)))
+
+
+def _limits(value: object, _context: Context) -> str | dict[str, JointRange]:
+    if value in {"human", "off"}:
+        return str(value)
+    if not isinstance(value, dict):
+        raise faulty(f"must be human, off, or a mapping from joints to {{swing, twist}}, not {show(value)}")
+    found: dict[str, Any] = values.read_keys(value, dict.fromkeys(value, _range))
+    return found
+
+
+_HALF = {"type": "number", "minimum": 0, "maximum": _HALF_TURN}
+LIMITS = Kind(
+    _limits,
+    "human, off, or a mapping from joints to {swing, twist} in degrees",
+    {
+        "anyOf": [
+            {"enum": ["human", "off"]},
+            {
+                "type": "object",
+                "additionalProperties": {
+                    "type": "object",
+                    "properties": {"swing": _HALF, "twist": _HALF},
+                    "additionalProperties": False,
+                },
+            },
+        ]
+    },
 )
 
 
@@ -94,10 +163,19 @@ class EditPrioritizedSpec(Document):
     )
     hinges: Annotated[str | tuple[str, ...], kinds.either(("auto", "off"), kinds.JOINTS)] = Field(
         default="auto",
-        description="Joints that bend about one axis only: auto (knees and elbows that do so in the input), off, or a "
-        "list of joints.",
+        description="Joints that bend about one axis only: auto (knees and elbows), off, or a list of joints.",
     )
-    attraction: Annotated[float, kinds.number(at_least=0.0)] = Field(
+    stiffness: Annotated[str | dict[str, float], STIFFNESS] = Field(
+        default="human",
+        description="How little joints give: human (a table laid on the skeleton), none (all alike, as in the paper), "
+        "or numbers by joint: larger gives less, 1 is as the others.",
+    )
+    limits: Annotated[str | dict[str, JointRange], LIMITS] = Field(
+        default="human",
+        description="How far joints turn from where the clip has them: human (ranges laid on the skeleton, never "
+        "tighter than what the clip does), off (as in the paper), or swing and twist by joint, degrees.",
+    )
+    attraction: Annotated[float, kinds.number(at_least=0.0, largest=10.0)] = Field(
         default=1.0, description="Pull towards the input where the layers leave freedom: the vector z of eq. (1)."
     )
     smoothing: Smoothing = Field(default=Smoothing(), description="How the edit is kept continuous in time.")

@@ -79,6 +79,20 @@ class EffectorItem(Item):
             yield item
 
 
+def measured_in_itself(data: Mapping[str, Any]) -> Iterator[Fault]:
+    """Yield a fault where an item's effector is on the joint in whose frame it is measured: there it never moves."""
+    base, effectors = data.get("relative_to"), data.get("effector")
+    for effector in effectors if isinstance(effectors, list) else [effectors]:
+        joints = [effector.get(key) for key in ("joint", "end_site")] if isinstance(effector, dict) else [effector]
+        if isinstance(base, str) and base in joints:
+            yield Fault(
+                f"'{base}' is the effector itself, which never moves in its own frame; name another joint, such as one "
+                "above it, or leave it out for the world",
+                ("relative_to",),
+            )
+            return
+
+
 AnyItem = TypeVar("AnyItem", bound=Item)
 
 

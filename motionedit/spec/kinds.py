@@ -16,9 +16,10 @@ def _text(pattern: str) -> Schema:
 
 
 _NAME: Schema = {"type": "string", "minLength": 1}
-_VECTOR: Schema = {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}
+_NUMBER: Schema = {"type": "number", "minimum": -scalars.LARGEST, "maximum": scalars.LARGEST}
+_VECTOR: Schema = {"type": "array", "items": _NUMBER, "minItems": 3, "maxItems": 3}
 _JOINTS: Schema = {"type": "array", "items": _NAME, "minItems": 1, "uniqueItems": True}
-_POSITIVE: Schema = {"type": "number", "exclusiveMinimum": 0}
+_POSITIVE: Schema = {"type": "number", "exclusiveMinimum": 0, "maximum": scalars.LARGEST}
 _FRAME: Schema = {"type": "integer", "minimum": 0}
 _TIME: Schema = {"anyOf": [_FRAME, _text(grammar.TIME)]}
 _DURATION: Schema = {"anyOf": [_FRAME, _text(grammar.DURATION)]}
@@ -83,26 +84,39 @@ def _interval(value: object, context: Context) -> Interval:
     return interval
 
 
-def number(*, above: float | None = None, at_least: float | None = None, at_most: float | None = None) -> Kind:
-    """Return the kind of numbers within bounds."""
-    json: Schema = {"type": "number"}
-    bounds = {"exclusiveMinimum": above, "minimum": at_least, "maximum": at_most}
-    json |= {key: bound for key, bound in bounds.items() if bound is not None}
+def number(
+    *,
+    above: float | None = None,
+    at_least: float | None = None,
+    at_most: float | None = None,
+    smallest: float = scalars.SMALLEST,
+    largest: float = scalars.LARGEST,
+) -> Kind:
+    """Return the kind of numbers within bounds, and of sizes that make sense."""
+    lower = {"minimum": -largest if at_least is None else at_least} if above is None else {"exclusiveMinimum": above}
+    json: Schema = {"type": "number", **lower, "maximum": largest if at_most is None else at_most}
     words = f"a number {scalars.range_words(above=above, at_least=at_least, at_most=at_most)}".rstrip()
-    return Kind(
-        lambda value, _context: scalars.number(value, above=above, at_least=at_least, at_most=at_most),
-        words,
-        json,
-    )
+
+    def parse(value: object, _context: Context) -> float:
+        bounds = {"above": above, "at_least": at_least, "at_most": at_most}
+        return scalars.number(value, **bounds, smallest=smallest, largest=largest)
+
+    return Kind(parse, words, json)
 
 
-def whole(*, at_least: int | None = None, null: bool = False) -> Kind:
+def whole(*, at_least: int | None = None, null: bool = False, largest: int = int(scalars.LARGEST)) -> Kind:
     """Return the kind of whole numbers; with `null`, an empty value means no bound."""
-    json: Schema = {"type": ["integer", "null"] if null else "integer"}
-    if at_least is not None:
-        json["minimum"] = at_least
+    json: Schema = {
+        "type": ["integer", "null"] if null else "integer",
+        "minimum": -largest if at_least is None else at_least,
+        "maximum": largest,
+    }
     words = f"a whole number {scalars.range_words(at_least=at_least)}".rstrip()
-    return Kind(lambda value, _context: scalars.whole(value, at_least=at_least), words, json, null=null)
+
+    def parse(value: object, _context: Context) -> int:
+        return scalars.whole(value, at_least=at_least, largest=largest)
+
+    return Kind(parse, words, json, null=null)
 
 
 def word(*choices: str) -> Kind:
@@ -151,6 +165,12 @@ EFFECTORS = Kind(
     f"an effector: {values.EFFECTOR_WORDS}",
     {"anyOf": [*_EFFECTOR["anyOf"], {"type": "array", "items": _EFFECTOR, "minItems": 1}]},
 )
+BODY_POINTS = Kind(
+    _plainly(values.parse_body_points),
+    f"feet, all, or a list of effectors: {values.EFFECTOR_WORDS}",
+    {"anyOf": [{"enum": list(values.BODY_PARTS)}, *EFFECTORS.json["anyOf"]]},
+)
+HEIGHT = number()
 ORIENTATION = Kind(_plainly(values.parse_orientation), f"an orientation: {values.ORIENTATION_WORDS}", _ORIENTATION)
 TOLERANCE = Kind(
     _plainly(values.parse_tolerance),

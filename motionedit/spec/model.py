@@ -93,6 +93,7 @@ class SpecModel(BaseModel):
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         json = handler.resolve_ref_schema(handler(schema))
+        json["properties"] = {key: value for key, value in json["properties"].items() if key in cls.key_names()}
         rules: list[dict[str, Any]] = []
         for kind, groups in (("oneOf", cls.exactly_one), ("anyOf", cls.at_least_one)):
             rules += [{kind: [{"required": [key]} for key in group]} for group in groups]

@@ -68,10 +68,10 @@ class NormalizeSpec(Document):
     schema_id: Annotated[str, kinds.schema_id("normalize")] = Field(
         default="motionedit/normalize/v1", alias="schema", description="Which spec this is."
     )
-    frames: Annotated[int | str, kinds.either(("mean",), kinds.whole(at_least=2))] = Field(
+    frames: Annotated[int | str, kinds.either(("mean",), kinds.whole(at_least=2, largest=1_000_000))] = Field(
         default="mean", description="Frames of the normalized clips: mean (the mean duration, eq. 13) or a number."
     )
-    frame_rate: Annotated[float | None, kinds.number(above=0.0)] = Field(
+    frame_rate: Annotated[float | None, kinds.number(above=0.0, smallest=0.01, largest=1e5)] = Field(
         default=None, description="Hz of the normalized clips; default: the clips' own, an error where they differ."
     )
     align: Align = Field(default=Align(), description="Alignment on the ground; edit-pc undoes it on output.")

@@ -1,7 +1,7 @@
 """Points of a constraint: when and where an effector shall be, [PRIO] section 4.2."""
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
@@ -12,8 +12,11 @@ from motionedit.spec.scalars import Vector
 from motionedit.spec.times import Interval, Time
 from motionedit.spec.values import OrientationSpec
 
+Bound = Literal["distance", "at_least", "at_most"]
 SPLINE_KEYS = ("tension", "continuity", "bias")
 _SPLINE = kinds.number(at_least=-1.0, at_most=1.0)
+LENGTH_KEYS = ("distance", "at_least", "at_most")
+_LENGTH = kinds.number(above=0.0)
 # What a hold already is; the same value written out does no harm.
 _HELD = {"tension": 1, "continuity": 0, "bias": 0}
 
@@ -22,7 +25,7 @@ class Point(SpecModel):
     """A hold, a ride or an instant; which goals it may have depends on the constraint's type."""
 
     exactly_one = (("hold", "during", "at"),)
-    at_most_one = (("position", "shift"),)
+    at_most_one = (("position", "shift"), LENGTH_KEYS)
 
     hold: Annotated[Interval | None, kinds.INTERVAL] = Field(
         default=None, description="Stands still from a to b, [a, b]. One of hold, during, at is needed."
@@ -41,6 +44,17 @@ class Point(SpecModel):
     )
     orientation: Annotated[OrientationSpec | None, kinds.ORIENTATION] = Field(
         default=None, description="How the effector's joint shall be turned, in degrees; default: as in the input."
+    )
+    distance: Annotated[float | None, _LENGTH] = Field(
+        default=None,
+        description="distance only: how far the two points shall be from each other, in clip units; default: as in the "
+        "input (a hold: as at its start). At most one of distance, at_least, at_most.",
+    )
+    at_least: Annotated[float | None, _LENGTH] = Field(
+        default=None, description="distance only: the least that the distance may be, in clip units."
+    )
+    at_most: Annotated[float | None, _LENGTH] = Field(
+        default=None, description="distance only: the most that the distance may be, in clip units."
     )
     tension: Annotated[float, _SPLINE] = Field(
         default=0.0, description="Kochanek-Bartels tension of an instant, -1 to 1; default 0. A hold implies 1."
@@ -70,6 +84,13 @@ class Point(SpecModel):
         if self.hold is not None:
             return ("hold",)
         return ("during",) if self.during is not None else ("at",)
+
+    @property
+    def bound(self) -> tuple[Bound, float | None]:
+        """The length that is given, and whether it is the length itself or a bound."""
+        if self.at_least is not None:
+            return "at_least", self.at_least
+        return ("distance", self.distance) if self.at_most is None else ("at_most", self.at_most)
 
     @property
     def _instant(self) -> Time:

@@ -15,28 +15,51 @@ if TYPE_CHECKING:
 
 Vector = tuple[float, float, float]
 AXES = ("x", "y", "z")
+# No number of a spec is larger, or, where it is above 0, smaller: squares of such are no numbers any more, and no clip
+# has them, in whichever unit.
+LARGEST, SMALLEST = 1e9, 1e-12
+# A direction shorter than this says nothing.
+_SHORTEST = 1e-9
 
 
 def number(
-    value: object, *, above: float | None = None, at_least: float | None = None, at_most: float | None = None
+    value: object,
+    *,
+    above: float | None = None,
+    at_least: float | None = None,
+    at_most: float | None = None,
+    smallest: float = SMALLEST,
+    largest: float = LARGEST,
 ) -> float:
-    """Return a finite number within its bounds."""
+    """Return a number within its bounds, and of a size that makes sense: `smallest` is for those above 0."""
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise faulty(f"must be a number, not {show(value)}")
     if not math.isfinite(value):
         raise faulty("must be a finite number")
     _check_range(value, above=above, at_least=at_least, at_most=at_most)
+    _check_size(value, largest)
+    if above == 0.0 and value < smallest:
+        raise faulty(f"must be at least {smallest:g}, not {show(value)}")
     return float(value)
 
 
-def whole(value: object, *, at_least: int | None = None) -> int:
-    """Return a whole number within its bound; ``9.0`` is 9."""
+def whole(value: object, *, at_least: int | None = None, largest: float = LARGEST) -> int:
+    """Return a whole number within its bound, and of a size that makes sense; ``9.0`` is 9."""
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise faulty(f"must be a whole number, not {show(value)}")
     if not math.isfinite(value) or value != int(value):
         raise faulty(f"must be a whole number, not {show(value)}")
     _check_range(value, at_least=at_least)
+    _check_size(value, largest)
     return int(value)
+
+
+def _check_size(value: float, largest: float) -> None:
+    """Refuse in words what no honest use has, and what would overflow."""
+    if value > largest:
+        raise faulty(f"must be at most {largest:.10g}, not {show(value)}")
+    if value < -largest:
+        raise faulty(f"must be at least {-largest:.10g}, not {show(value)}")
 
 
 def _check_range(
@@ -128,10 +151,10 @@ def vector(value: object) -> Vector:
 
 
 def direction(value: object) -> Vector:
-    """Return three finite numbers that are not all zero."""
+    """Return three finite numbers that are not all zero, or next to it."""
     found = vector(value)
-    if not any(found):
-        raise faulty("must be a direction, not [0, 0, 0]")
+    if max(map(abs, found)) < _SHORTEST:
+        raise faulty(f"must be a direction, not {show(value) if any(found) else '[0, 0, 0]'}")
     return found
 
 

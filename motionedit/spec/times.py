@@ -232,6 +232,8 @@ def parse_duration(value: object) -> Duration:
     amount, unit = float(match[1]), match[2]
     if not math.isfinite(amount):
         raise faulty("must be a finite duration")
+    if amount > _FARTHEST:
+        raise faulty(f"must be a finite duration, of at most {_FARTHEST:.10g} frames or seconds; not {show(value)}")
     if unit != "s" and not amount.is_integer():
         raise faulty(f"must be {DURATION_WORDS}; not {show(value)}")
     return Duration(text, amount, unit == "s")

@@ -31,6 +31,8 @@ EFFECTOR_WORDS = "a joint's name, {joint: NAME, offset: [x, y, z]}, {end_site: N
 ORIENTATION_WORDS = (
     "{euler: [x, y, z], order: ZXY}, {quaternion: [w, x, y, z]} or {rotation_vector: [x, y, z]}, in degrees"
 )
+# Many points of the body in a word.
+BODY_PARTS = ("feet", "all")
 RECRUIT_WORDS = "all, {up_to: JOINT}, {levels: 3} or {joints: [...]}"
 
 # A quaternion shorter than this says nothing about a direction.
@@ -171,6 +173,11 @@ def parse_effectors(value: object) -> tuple[EffectorSpec, ...]:
     if faults:
         raise FaultyValueError(faults)
     return found
+
+
+def parse_body_points(value: object) -> str | tuple[EffectorSpec, ...]:
+    """Return ``feet``, ``all``, or the effectors of one form or of a list of them."""
+    return value if isinstance(value, str) and value in BODY_PARTS else parse_effectors(value)
 
 
 def parse_orientation(value: object) -> OrientationSpec:

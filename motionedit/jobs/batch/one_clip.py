@@ -31,7 +31,7 @@ class Outcome:
     record : dict
         The clip's entry in the report, from `message` on; plain values only.
     status : str
-        ``ok``, ``far``, ``out_of_tolerance`` or ``unreachable``; the last two are what `strict` looks at.
+        ``ok``, ``far``, ``rough``, ``out_of_tolerance`` or ``unreachable``; the last three are what `strict` counts.
     warnings : tuple of str
         One line each, without the clip's name.
     motion : Motion or None

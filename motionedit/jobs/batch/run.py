@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 Item = TypeVar("Item")
 Value = TypeVar("Value")
 
-# What --strict counts as a goal that was not met.
-_MISSED = frozenset({"out_of_tolerance", "unreachable"})
+# What --strict counts: a goal that was not met, an edit that a viewer would see.
+_MISSED = frozenset({"rough", "out_of_tolerance", "unreachable"})
 
 
 @dataclass(frozen=True)

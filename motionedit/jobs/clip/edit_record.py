@@ -10,6 +10,14 @@ from motionedit.dataclass import dataclass
 DEFAULT_TOLERANCE = 1e-3
 DEFAULT_ANGLE_TOLERANCE = 0.1
 
+# What a clip comes to, the worst last: the worst of what holds is shown.
+STATUSES = ("ok", "far", "rough", "out_of_tolerance", "unreachable")
+
+
+def worst_status(*statuses: str) -> str:
+    """Return the worst of some statuses; ``ok`` of none."""
+    return max(statuses, key=STATUSES.index, default="ok")
+
 
 @dataclass(frozen=True)
 class EditRecord:

@@ -1,4 +1,4 @@
-"""What a report says of an edit's side effects: foot sliding and jerk, before and after."""
+"""What a report says of an edit's side effects: sliding feet, jerk and steps, before and after."""
 
 from __future__ import annotations
 
@@ -8,13 +8,15 @@ import numpy as np
 
 from motionedit.core.body.contacts import plants_of
 from motionedit.core.body.quality import foot_drift, foot_slide_max
+from motionedit.core.body.steps import own_steps
 from motionedit.core.trace import Trace, trace_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from motionedit.core.body.center_of_mass import Masses
     from motionedit.core.body.contacts import Plant
+    from motionedit.core.body.steps import Steps
     from motionedit.core.kinematics import WorldPoses
     from motionedit.jobs.clip.facts import ClipFacts
 
@@ -25,7 +27,7 @@ def feet_of(facts: ClipFacts, blocks: Iterable[WorldPoses], *, masses: Masses | 
     return trace_of(blocks, points, frame_time=facts.clip.motion.frame_time, first=facts.first, masses=masses)
 
 
-def edit_metrics(facts: ClipFacts, before: Trace, after: Trace | None) -> dict[str, Any]:
+def edit_metrics(facts: ClipFacts, before: Trace, after: Trace | None, *, steps: Steps | None) -> dict[str, Any]:
     """Return the `metrics` of a clip's record.
 
     Parameters
@@ -33,19 +35,28 @@ def edit_metrics(facts: ClipFacts, before: Trace, after: Trace | None) -> dict[s
     before, after : Trace
         Of the clip and the edited motion, by `feet_of`; None where that has another timing, so that the input's plants
         say nothing of its frames.
+    steps : Steps or None
+        Of the change that the edit made, None where the edited motion has another timing.
     """
     motion = facts.clip.motion
     plants = plants_of(before.tracks, facts.anatomy, up=facts.up, first=facts.first, frame_time=motion.frame_time)
-    metrics: dict[str, Any] = {"before": _of(facts, before, plants)}
+    metrics: dict[str, Any] = {"before": clip_metrics(facts, before, plants, own_steps(motion, first=facts.first))}
     if after is None:
-        return {**metrics, "after": {"foot_slide_max": None, "jerk_rms": None}, "foot_drift_max": None}
+        return {**metrics, "after": dict.fromkeys(metrics["before"]), "foot_drift_max": None}
     drift = foot_drift(before.tracks, after.tracks, plants)
-    metrics |= {"after": _of(facts, after, plants), "foot_drift_max": drift}
+    metrics |= {"after": clip_metrics(facts, after, plants, steps), "foot_drift_max": drift}
     if before.center is not None and after.center is not None:
         metrics["com_shift_max"] = float(np.linalg.norm(after.center - before.center, axis=1).max())
     return metrics
 
 
-def _of(facts: ClipFacts, trace: Trace, plants: list[Plant]) -> dict[str, float]:
-    slide = foot_slide_max(trace.tracks, plants, up=facts.up, frame_time=facts.clip.motion.frame_time)
-    return {"foot_slide_max": slide, "jerk_rms": trace.jerk_rms}
+def clip_metrics(facts: ClipFacts, trace: Trace, plants: Sequence[Plant], steps: Steps | None) -> dict[str, Any]:
+    """Return what is measured of one motion: the clip's own, or an edited one with its change's `steps`."""
+    joint = None if steps is None else steps.joint
+    return {
+        "foot_slide_max": foot_slide_max(trace.tracks, plants, up=facts.up, frame_time=facts.clip.motion.frame_time),
+        "jerk_rms": trace.jerk_rms,
+        "step_max": None if steps is None else 0.0 if joint is None else float(steps.degrees[joint]),
+        "step_frame": None if steps is None or joint is None else int(steps.frames[joint]),
+        "step_joint": None if joint is None else facts.clip.motion.skeleton.names[joint],
+    }

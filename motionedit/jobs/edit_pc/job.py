@@ -8,6 +8,7 @@ import numpy as np
 
 from motionedit.core import kinematics
 from motionedit.core.body.ground import axis_name
+from motionedit.core.body.steps import change_steps
 from motionedit.core.bvh import edited_bytes, resampled_bytes, unedited_bytes
 from motionedit.core.coefficients.edit import edit_by_coefficients
 from motionedit.core.coefficients.projection import project, project_resampled
@@ -159,7 +160,12 @@ class _Edit:
         unit = self.loaded.model.unit
         about = {
             "unit": None if unit is None else unit.name,
-            "metrics": edit_metrics(facts, feet_of(facts, [facts.poses]), None if retimed else feet_of(facts, [after])),
+            "metrics": edit_metrics(
+                facts,
+                feet_of(facts, [facts.poses]),
+                None if retimed else feet_of(facts, [after]),
+                steps=None if retimed else change_steps(facts.clip.motion, edit.motion, first=facts.first),
+            ),
         }
         result = edit_record(self.model, projection, edit, goals, poses=after, bound=bound)
         return Outcome(

@@ -6,10 +6,14 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from motionedit.core.arrays import frozen
 from motionedit.core.body.bends import find_bends
 from motionedit.core.body.center_of_mass import Masses, find_masses
 from motionedit.core.body.hinges import OFF_AXIS_ENERGY, Hinge, channel_hinges, find_hinges, hinge_of, with_limits_of
+from motionedit.core.body.limits import Limit, Range, given_limits, human_limits
+from motionedit.core.body.stiffness import TRAVEL, human_mobility
 from motionedit.core.motion import Motion, scaled
 from motionedit.core.priorities.settings import Body
 from motionedit.core.units import STANDARD_LEG
@@ -18,6 +22,10 @@ from motionedit.errors import ClipError
 from motionedit.jobs.clip import resolve
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from motionedit.core.arrays import FloatArray
+    from motionedit.core.body.bends import Bend
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.jobs.clip.faults import Faults
     from motionedit.spec.edit_prioritized import EditPrioritizedSpec
@@ -59,11 +67,13 @@ def sized_clip(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults
         leg = anatomy.leg_length * spec.unit.metres
         warnings.append(f"a leg is {leg:.3g} m long where the unit is {spec.unit.name}: is that the clip's unit?")
     masses = _masses(loaded, facts, faults)
-    hinges = _hinges(loaded, facts, faults, warnings)
+    bends = find_bends(clip.motion.skeleton, facts.poses, anatomy, first=facts.first)
+    hinges = _hinges(loaded, facts, bends, faults, warnings)
     motion = scaled(clip.motion, scale)
     sized = replace(masses, skeleton=motion.skeleton, points=frozen(masses.points * scale))
-    bends = find_bends(clip.motion.skeleton, facts.poses, anatomy, first=facts.first)
-    body = Body(sized, tuple(hinges), facts.travel, facts.first, bends)
+    mobility, root_mobility = _mobility(loaded, facts, faults)
+    limits = _limits(loaded, facts, faults)
+    body = Body(sized, tuple(hinges), facts.travel, facts.first, bends, mobility, root_mobility, tuple(limits))
     return SizedClip(facts, motion, body, masses, scale, tuple(warnings))
 
 
@@ -81,14 +91,18 @@ def _masses(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults: F
 
 
 def _hinges(
-    loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults: Faults, warnings: list[str]
+    loaded: LoadedSpec[EditPrioritizedSpec],
+    facts: ClipFacts,
+    bends: Sequence[Bend],
+    faults: Faults,
+    warnings: list[str],
 ) -> list[Hinge]:
     """Return the hinges that the spec asks for, and those of joints that have one or two rotation channels."""
     motion, asked = facts.clip.motion, loaded.model.hinges
     by_channel = channel_hinges(motion.skeleton)
     found: dict[int, tuple[Hinge, ...]] = {}
     if asked == "auto":
-        found = {hinge.joint: (hinge,) for hinge in find_hinges(motion, facts.anatomy, first=facts.first)}
+        found = {hinge.joint: (hinge,) for hinge in find_hinges(bends)}
     elif not isinstance(asked, str):
         place = resolve.Place(loaded, ("hinges",), facts.clip.label)
         joints = [
@@ -97,11 +111,41 @@ def _hinges(
         ]
         for joint in joints:
             if joint is not None and joint not in by_channel:
-                hinge = _asked_hinge(motion, joint, facts.first, warnings)
+                known = find_hinges([bend for bend in bends if bend.joint == joint])
+                hinge = known[0] if known else _asked_hinge(motion, joint, facts.first, warnings)
                 found.update({} if hinge is None else {joint: (hinge,)})
     for joint, hinges in by_channel.items():
         found[joint] = with_limits_of(hinges, *found[joint]) if joint in found else hinges
     return [hinge for joint in sorted(found) for hinge in found[joint]]
+
+
+def _mobility(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults: Faults) -> tuple[FloatArray, float]:
+    """Return how readily the joints turn, shape (J,), and the root shifts, as the spec's stiffness has it."""
+    skeleton, asked = facts.clip.motion.skeleton, loaded.model.stiffness
+    if asked == "human":
+        return human_mobility(facts.bones, facts.anatomy, travel=facts.travel), TRAVEL
+    mobility = np.ones(len(skeleton))
+    if not isinstance(asked, str):
+        place = resolve.Place(loaded, ("stiffness",), facts.clip.label)
+        for name, stiffness in asked.items():
+            joint = faults.get(partial(resolve.joint, name, skeleton, place.at(name)), otherwise=None)
+            if joint is not None:
+                mobility[joint] = 1.0 / stiffness
+    return mobility, 1.0
+
+
+def _limits(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults: Faults) -> list[Limit]:
+    """Return the cones that joints keep to, as the spec's limits have them."""
+    motion, asked = facts.clip.motion, loaded.model.limits
+    if asked == "human":
+        return human_limits(motion, facts.poses, facts.anatomy, travel=facts.travel, first=facts.first)
+    given = {}
+    place = resolve.Place(loaded, ("limits",), facts.clip.label)
+    for name, half in {} if isinstance(asked, str) else asked.items():
+        joint = faults.get(partial(resolve.joint, name, motion.skeleton, place.at(name)), otherwise=None)
+        if joint is not None:
+            given[joint] = Range(half.swing, half.twist)
+    return given_limits(motion, facts.poses, given, first=facts.first)
 
 
 def _asked_hinge(motion: Motion, joint: int, first: int, warnings: list[str]) -> Hinge | None:

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from motionedit.core.body.bones import below
 from motionedit.core.kinematics import Effector
+from motionedit.core.measure import Level
 from motionedit.core.priorities.kinds import KINDS
 from motionedit.core.priorities.kinds.constraint import Movable
+from motionedit.core.priorities.lengths import LengthPoint
 from motionedit.core.priorities.recruiting import NotOnTheWayError, RecruitRule
 from motionedit.core.priorities.trajectories import ControlPoint, active_interval
 from motionedit.dataclass import dataclass
@@ -84,7 +88,7 @@ def clip_constraints(
         met = spec.met_within
         found.append(
             ClipConstraint(
-                constraint=constraint,
+                constraint=replace(constraint, yields=not spec.counts_for_strict),
                 tolerance=DEFAULT_TOLERANCE / scale if met.position is None else met.position,
                 angle_tolerance=DEFAULT_ANGLE_TOLERANCE if met.angle is None else met.angle,
                 may_give_way=met.off,
@@ -139,7 +143,10 @@ class _Resolver:
         if value is None:
             return None
         ways: dict[Kind, Callable[[Any, Place], object]] = {
-            kinds.EFFECTORS: self._effector,
+            kinds.EFFECTORS: lambda given, at: self._effector(given[0], at),
+            kinds.EFFECTOR: self._effector,
+            kinds.BODY_POINTS: self._body_points,
+            kinds.HEIGHT: lambda given, _place: Level(self.facts.up, given * self.scale),
             kinds.RECRUIT: self._rule,
             kinds.JOINT: self._joint,
             kinds.JOINTS: self._joints,
@@ -150,10 +157,25 @@ class _Resolver:
             return value
         return ways[kind](value, constraint.below(own.keys))
 
-    def _effector(self, effectors: Sequence[EffectorSpec], place: Place) -> Effector:
-        """Return the one effector of a loaded spec's constraint, lengths in normalised metres."""
+    def _effector(self, effector: EffectorSpec, place: Place) -> Effector:
+        """Return an effector, lengths in normalised metres."""
         skeleton, scale = self.facts.clip.motion.skeleton, self.scale
-        return self.faults.get(lambda: resolve.effector(effectors[0], skeleton, place, scale=scale), otherwise=_NOWHERE)
+        return self.faults.get(lambda: resolve.effector(effector, skeleton, place, scale=scale), otherwise=_NOWHERE)
+
+    def _body_points(self, named: str | Sequence[EffectorSpec], place: Place) -> tuple[Effector, ...]:
+        """Return the points of the body that a word or a list of effectors names, lengths in normalised metres."""
+        if not isinstance(named, str):
+            listed_at = [place.at(i) for i in range(len(named))]
+            return tuple(self._effector(each, at) for each, at in zip(named, listed_at, strict=True))
+        skeleton = self.facts.clip.motion.skeleton
+        if named == "feet":
+            feet = tuple(Effector(joint, np.zeros(3)) for _, joint in self.facts.anatomy.foot_points)
+            if not feet:
+                self.faults.add(place.error(f"no feet found in {place.clip}; list the effectors that are meant"))
+            return feet
+        moving = below(skeleton, self.facts.travel)
+        sites = [Effector(site.joint, self.scale * site.offset) for site in skeleton.end_sites if moving[site.joint]]
+        return (*(Effector(int(joint), np.zeros(3)) for joint in np.flatnonzero(moving)), *sites)
 
     def _joint(self, name: str, place: Place) -> int | None:
         return self.faults.get(lambda: resolve.joint(name, self.facts.clip.motion.skeleton, place), otherwise=None)
@@ -218,7 +240,8 @@ class _Resolver:
         else:
             start = resolve.frame(point.start, place.at(mode), frames=count, frame_time=frame_time, events=events)
             stop = start
-        return ControlPoint(
+        bound, length = point.bound
+        return LengthPoint(
             mode="at" if interval is None else "during" if point.hold is None else "hold",
             start=start,
             stop=stop,
@@ -228,4 +251,6 @@ class _Resolver:
             tension=point.tension,
             continuity=point.continuity,
             bias=point.bias,
+            length=None if length is None else length * self.scale,
+            bound=bound,
         )

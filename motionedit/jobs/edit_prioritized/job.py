@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from motionedit.core.body.steps import change_steps
 from motionedit.core.bvh import edited_pieces, unedited_bytes
 from motionedit.core.motion import Motion
 from motionedit.core.priorities.edit import PrioritizedEdit, RecruitingError, edit_by_priorities
@@ -22,8 +23,10 @@ from motionedit.jobs.clip.events import event_frames, explicit_events
 from motionedit.jobs.clip.facts import facts_of
 from motionedit.jobs.clip.faults import Faults
 from motionedit.jobs.clip.metrics import edit_metrics, feet_of
+from motionedit.jobs.clip.roughness import rough_lines
 from motionedit.jobs.edit_prioritized.body import sized_clip
 from motionedit.jobs.edit_prioritized.constraints import clip_constraints
+from motionedit.jobs.edit_prioritized.loose_feet import loose_feet
 from motionedit.jobs.edit_prioritized.record import edit_record
 from motionedit.jobs.edit_prioritized.recruits import breach_error, breach_warnings, immovable_warnings, layer_lines
 from motionedit.jobs.preview.with_page import with_page
@@ -34,8 +37,8 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import BoolArray
     from motionedit.core.body.center_of_mass import Masses
+    from motionedit.core.body.steps import Steps
     from motionedit.core.bvh import Clip
-    from motionedit.core.priorities.kinds.constraint import Constraint
     from motionedit.core.trace import Trace
     from motionedit.jobs.batch.plan import ClipTask, RunOptions
     from motionedit.jobs.batch.run import BatchResult
@@ -43,9 +46,6 @@ if TYPE_CHECKING:
     from motionedit.jobs.edit_prioritized.constraints import ClipConstraint
     from motionedit.spec.edit_prioritized import EditPrioritizedSpec
     from motionedit.spec.load import LoadedSpec
-
-# Metres at leg length 0.85 m: a visible way.
-_LOOSE = 0.01
 
 
 def run(
@@ -82,7 +82,8 @@ class EditByPriorities:
         sized, constraints = self.resolved(clip, task)
         if not constraints:
             feet = feet_of(sized.facts, blocks_of(sized.facts.poses), masses=sized.masses)
-            record = {**self._about(sized, feet, feet), "constraints": []}
+            still = change_steps(sized.motion, sized.motion, first=sized.facts.first)
+            record = {**self._about(sized, feet, feet, still), "constraints": []}
             return Outcome(
                 unedited_bytes(clip), record, warnings=sized.warnings, details=("no constraints: the same bytes",)
             )
@@ -156,9 +157,18 @@ class EditByPriorities:
         if changed:
             parts = (_in_clip_units(edit, sized, block) for block in frame_blocks(len(clip.motion)))
             after = feet_of(facts, forward_blocks(parts), masses=sized.masses)
-        result = edit_record(edit, constraints, facts, scale=sized.scale, settings=settings)
+        steps = change_steps(sized.motion, edit.motion, first=facts.first)
+        rough = rough_lines(
+            facts,
+            edit.motion,
+            touched=np.asarray(edit.touched.any(axis=0)),
+            steps=steps,
+            traces=(before, after),
+            bends=sized.body.bends,
+        )
+        result = edit_record(edit, constraints, facts, scale=sized.scale, settings=settings, rough=rough)
         about = {
-            **self._about(sized, before, after),
+            **self._about(sized, before, after, steps),
             "solver": edit.solver,
             **result.record,
             "passes": spec.smoothing.pass_count,
@@ -170,14 +180,14 @@ class EditByPriorities:
             _content(clip, edit, sized) if changed else unedited_bytes(clip),
             {"message": result.message, **about},
             result.status,
-            (*sized.warnings, *immovable, *breaches, *_loose_feet(sized, asked, about["metrics"]), *result.warnings),
+            (*sized.warnings, *immovable, *breaches, *loose_feet(sized, asked, before, after), *result.warnings),
             motion=_in_clip_units(edit, sized, slice(None)) if changed and self.verify else None,
             details=(*layer_lines(asked, edit.recruits, sized.body.hinges, facts), *breaches),
         )
 
-    def _about(self, sized: SizedClip, before: Trace, after: Trace) -> dict[str, Any]:
+    def _about(self, sized: SizedClip, before: Trace, after: Trace, steps: Steps) -> dict[str, Any]:
         unit = self.loaded.model.unit
-        metrics = edit_metrics(sized.facts, before, after)
+        metrics = edit_metrics(sized.facts, before, after, steps=steps)
         return {"unit": None if unit is None else unit.name, "metrics": metrics}
 
 
@@ -189,21 +199,6 @@ def _warnings_of(constraints: Sequence[ClipConstraint], masses: Masses) -> list[
         *(w for c in asked for w in c.warnings()),
     ]
     return list(dict.fromkeys(lines))
-
-
-def _loose_feet(sized: SizedClip, constraints: Sequence[Constraint], metrics: dict[str, Any]) -> list[str]:
-    """Return a warning where planted feet were dragged along and no constraint is about them: it is easily forgotten.
-
-    With the root recruited and nothing to hold it, the cheapest way to raise a hand is to raise the whole body.
-    """
-    facts, drift = sized.facts, metrics["foot_drift_max"]
-    ankles = {leg.ankle for leg in facts.anatomy.legs or ()}
-    skeleton = facts.clip.motion.skeleton
-    placed = [each.at.joint for each in constraints if each.places_effector and each.at is not None]
-    held = any(ankles & set(map(int, skeleton.chain(joint))) for joint in placed)
-    if held or drift is None or drift * sized.scale < _LOOSE:
-        return []
-    return [f"planted feet move by up to {drift:.3g}, and no constraint holds them"]
 
 
 def _in_clip_units(edit: PrioritizedEdit, sized: SizedClip, block: slice) -> Motion:

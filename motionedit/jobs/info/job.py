@@ -7,15 +7,19 @@ from collections import Counter
 from typing import TYPE_CHECKING, Any
 
 from motionedit.core.body import ground
-from motionedit.core.body.contacts import foot_plants, sole_tracks
+from motionedit.core.body.bends import find_bends
+from motionedit.core.body.contacts import foot_plants
 from motionedit.core.body.hinges import find_hinges
-from motionedit.core.body.quality import find_defects, foot_slide_max, jerk_rms
+from motionedit.core.body.quality import find_defects
+from motionedit.core.body.steps import own_steps
+from motionedit.core.trace import blocks_of
 from motionedit.core.units import STANDARD_LEG
 from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError, MotionEditError, together
 from motionedit.jobs.batch.one_clip import read_task
 from motionedit.jobs.batch.plan import find_clips
 from motionedit.jobs.clip.facts import ClipFacts, facts_of
+from motionedit.jobs.clip.metrics import clip_metrics, feet_of
 from motionedit.jobs.info.poses import Question, ask, poses_at
 from motionedit.jobs.info.text import describe
 from motionedit.spec.values import UNITS
@@ -179,7 +183,7 @@ def _hinges(facts: ClipFacts) -> list[dict[str, Any]]:
             "axis": hinge.axis,
             "limits": [math.degrees(limit) for limit in hinge.limits],
         }
-        for hinge in find_hinges(motion, facts.anatomy, first=facts.first)
+        for hinge in find_hinges(find_bends(motion.skeleton, facts.poses, facts.anatomy, first=facts.first))
     ]
 
 
@@ -197,13 +201,9 @@ def _defects(facts: ClipFacts) -> list[dict[str, Any]]:
     ]
 
 
-def _metrics(facts: ClipFacts) -> dict[str, float]:
-    motion, positions = facts.clip.motion, facts.poses.positions
-    tracks = sole_tracks(facts.poses, facts.anatomy)
-    return {
-        "foot_slide_max": foot_slide_max(tracks, facts.plants, up=facts.up, frame_time=motion.frame_time),
-        "jerk_rms": jerk_rms(positions, frame_time=motion.frame_time, first=facts.first),
-    }
+def _metrics(facts: ClipFacts) -> dict[str, Any]:
+    trace = feet_of(facts, blocks_of(facts.poses))
+    return clip_metrics(facts, trace, facts.plants, own_steps(facts.clip.motion, first=facts.first))
 
 
 def _contacts(facts: ClipFacts) -> list[dict[str, Any]]:

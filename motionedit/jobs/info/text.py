@@ -77,7 +77,7 @@ def _unit(unit: dict[str, Any] | None) -> str:
 
 def _quality(metrics: dict[str, float]) -> str:
     jerk, slide = metrics["jerk_rms"], metrics["foot_slide_max"]
-    return f"jerk {jerk:.6g} units/s^3, planted feet slide at up to {slide:.3g} units/s"
+    return f"jerk {jerk:.6g} units/s^3, planted feet slide at up to {slide:.4g} units/s"
 
 
 def _anatomy(anatomy: dict[str, Any]) -> Iterator[tuple[str, str]]:

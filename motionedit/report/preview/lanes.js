@@ -20,7 +20,7 @@ function buildLanes() {
 }
 
 function statusText(edit) {
-  const words = { ok: "all goals met", far: "met, far from the database", out_of_tolerance: "out of tolerance" };
+  const words = { ok: "all goals met", far: "met, far from the database", rough: "met, but seen" };
   return edit.marks.length ? words[edit.status] || edit.status.replaceAll("_", " ") : "no constraints";
 }
 

@@ -1,0 +1,76 @@
+"""Planted feet that an edit drags along while no constraint places them: it is easily forgotten.
+
+With the root recruited and nothing to hold it, the cheapest way to raise a hand is to raise the whole body.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core.body.contacts import plants_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from motionedit.core.arrays import BoolArray
+    from motionedit.core.body.anatomy import Leg
+    from motionedit.core.body.contacts import Plant
+    from motionedit.core.priorities.kinds.constraint import Constraint
+    from motionedit.core.trace import Trace
+    from motionedit.jobs.edit_prioritized.body import SizedClip
+
+# Metres at leg length 0.85 m: a visible way.
+_LOOSE = 0.01
+
+
+def loose_feet(sized: SizedClip, constraints: Sequence[Constraint], before: Trace, after: Trace) -> list[str]:
+    """Return a warning for each foot that moves while it is planted and no constraint places any part of it.
+
+    Parameters
+    ----------
+    before, after : Trace
+        By `feet_of`.
+    """
+    facts = sized.facts
+    plants = plants_of(
+        before.tracks, facts.anatomy, up=facts.up, first=facts.first, frame_time=facts.clip.motion.frame_time
+    )
+    lines = []
+    for foot, leg in zip(("left", "right"), facts.anatomy.legs or (), strict=False):
+        free = ~_placed(sized, constraints, leg)
+        found = _drift(before, after, [plant for plant in plants if plant.foot == foot], free)
+        if found is not None and found[0] * sized.scale > _LOOSE:
+            lines.append(
+                f"the {foot} foot moves by {found[0]:.3g} at frame {found[1]} while it is planted, and no constraint "
+                "holds it"
+            )
+    return lines
+
+
+def _placed(sized: SizedClip, constraints: Sequence[Constraint], leg: Leg) -> BoolArray:
+    """Return the frames at which a constraint places a leg's ankle or what hangs on it, shape (F,)."""
+    skeleton, frames = sized.motion.skeleton, len(sized.motion)
+    placed = np.zeros(frames, dtype=np.bool_)
+    for each in constraints:
+        if each.places_effector and each.at is not None and leg.ankle in skeleton.chain(each.at.joint):
+            first, last = each.active(frames)
+            placed[first : last + 1] = True
+    return placed
+
+
+def _drift(before: Trace, after: Trace, plants: Sequence[Plant], free: BoolArray) -> tuple[float, int] | None:
+    """Return how far a planted point goes from its place in the input at most, clip units, and at which frame.
+
+    Frames that are not `free`, shape (F,), do not count; None where none does.
+    """
+    worst: tuple[float, int] | None = None
+    for plant in plants:
+        span = slice(plant.start, plant.stop + 1)
+        way = np.linalg.norm(after.tracks[span, plant.point] - before.tracks[span, plant.point], axis=-1)
+        way = np.where(free[span], way, -1.0)
+        at = int(np.argmax(way))
+        if way[at] >= 0.0 and (worst is None or way[at] > worst[0]):
+            worst = float(way[at]), plant.start + at
+    return worst
