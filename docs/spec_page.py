@@ -9,6 +9,7 @@ from typing import Any
 from motionedit.spec import SPEC_COMMANDS, kinds, schema_of
 from motionedit.spec.constraints import TYPES
 from motionedit.spec.events import FRAMES
+from motionedit.spec.scalars import LARGEST
 from motionedit.spec.times import DURATION_WORDS, TIME_WORDS
 from motionedit.spec.values import EFFECTOR_WORDS, ORIENTATION_WORDS, RECRUIT_WORDS
 
@@ -21,6 +22,7 @@ NAMED = (
     (kinds.DURATION, "[duration](#forms)"),
     (kinds.EFFECTOR, "[effector](#forms)"),
     (kinds.EFFECTORS, "[effector](#forms), or a list of them"),
+    (kinds.BODY_POINTS, "`feet`, `all`, or an [effector](#forms) or a list of them"),
     (kinds.ORIENTATION, "[orientation](#forms)"),
     (kinds.TOLERANCE, "[tolerance](#forms)"),
     (kinds.UNIT, "[unit](#forms)"),
@@ -165,6 +167,9 @@ def _plain_form(value: Schema) -> str:
         case "array":
             return _list_form(value)
         case "object":
+            if "properties" in value:
+                keys = (f"`{key}`: {form(item)}" for key, item in value["properties"].items())
+                return f"a mapping of {', '.join(keys)}"
             return f"a mapping from names to: {form(value['additionalProperties'])}"
         case _:
             return "a name"
@@ -173,14 +178,15 @@ def _plain_form(value: Schema) -> str:
 def _number_form(value: Schema) -> str:
     words = "a number" if value["type"] == "number" else "a whole number"
     bounds = {"exclusiveMinimum": "above", "minimum": "from", "maximum": "to"}
-    given = [f"{word} {value[key]:g}" for key, word in bounds.items() if key in value]
+    # What any number is bounded by is said once, in conventions.md.
+    given = [f"{word} {value[key]:.9g}" for key, word in bounds.items() if abs(value.get(key, LARGEST)) < LARGEST]
     words = " ".join((words, *given))
     return f"{words}, or `null`" if isinstance(value["type"], list) else words
 
 
 def _list_form(value: Schema) -> str:
     items = value["items"]
-    if items == {"type": "number"}:
+    if items.get("type") == "number":
         return "`[x, y, z]`"
     if "enum" in items:
         return f"a list of {', '.join(f'`{item}`' for item in items['enum'])}"

@@ -25,10 +25,11 @@ DIRECTIONS = np.vstack((np.eye(3), -np.eye(3)))
 
 @dataclass(frozen=True)
 class Edited:
-    """One edited clip: the file written, its record in the report."""
+    """One edited clip: the file written, its record in the report, what was warned of."""
 
     path: Path
     record: dict[str, Any]
+    warnings: tuple[str, ...] = ()
 
 
 class Lab:
@@ -61,7 +62,7 @@ class Lab:
         return self._written(motionedit.edit_prioritized(clip, spec))
 
     def _written(self, edit: motionedit.Edited) -> Edited:
-        return Edited(edit.write(self.place()), edit.report)
+        return Edited(edit.write(self.place()), edit.report, tuple(edit.warnings))
 
     def cut(self, clip: Clip, start: int, stop: int, name: str) -> Path:
         """Return a file with frames start to stop (both in) of a clip."""

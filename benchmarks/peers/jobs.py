@@ -12,6 +12,7 @@ import numpy as np
 from benchmarks.peers.robot import mjcf
 from motionedit.core import rotations as rot
 from motionedit.core.body.anatomy import anatomy_of
+from motionedit.core.body.bends import find_bends
 from motionedit.core.body.bones import travel_joint
 from motionedit.core.body.center_of_mass import center_of_mass, find_masses
 from motionedit.core.body.hinges import find_hinges
@@ -107,7 +108,8 @@ def reach() -> Job:
     anatomy = anatomy_of(clip.motion)
     motion = scaled(clip.motion, STANDARD_LEG / anatomy.leg_length)
     masses = find_masses(motion.skeleton, anatomy_of(motion))
-    body = Body(masses, tuple(find_hinges(motion, anatomy, first=0)), travel_joint(motion), 0)
+    bends = find_bends(motion.skeleton, forward(motion), anatomy, first=0)
+    body = Body(masses, tuple(find_hinges(bends)), travel_joint(motion), 0, bends)
     here = np.zeros(3)
     feet = [Position(name=name, priority=10, effector=Effector(j, here)) for name, j in anatomy.foot_points]
     wrist = Effector(motion.skeleton.names.index("LeftHand"), here)

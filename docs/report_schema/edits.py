@@ -32,7 +32,8 @@ from report_schema.forms import (
 
 def _metrics(more: Schema) -> Schema:
     about = "{} the edit; null where it has another timing"
-    sides = {side: measures(about.format(side), number_or_null) for side in ("before", "after")}
+    steps = {"before": "a joint against its parent", "after": "the change that the edit made of such a turn"}
+    sides = {side: measures(about.format(side), number_or_null, step=step) for side, step in steps.items()}
     drift = {"foot_drift_max": number_or_null("how far a planted point of the input moved")}
     return obj("side effects of the edit", {**sides, **drift, **more})
 
@@ -138,8 +139,9 @@ _CONSTRAINT = {
 
 EDIT_PARTS: Schema = {
     "edit_status": word(
-        "all goals met; met, but far from the database; a goal missed; a goal missed because it is out of reach",
-        *("ok", "far", "out_of_tolerance", "unreachable"),
+        "all goals met; met, but far from the database; met, but a viewer would see the edit; a goal missed; a goal "
+        "missed because it is out of reach",
+        *("ok", "far", "rough", "out_of_tolerance", "unreachable"),
     ),
     "goal_status": word("met, missed, or out of reach", "ok", "out_of_tolerance", "unreachable"),
     "effector": obj(

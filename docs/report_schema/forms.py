@@ -93,13 +93,16 @@ def numbers_or_null(about: str) -> Schema:
     return or_null({"type": "array", "items": {"type": ["number", "null"]}}, about)
 
 
-def measures(about: str, form: Callable[[str], Schema]) -> Schema:
-    """Return how a motion's feet slide and how smooth it is, each a number of this form."""
+def measures(about: str, form: Callable[[str], Schema], *, step: str) -> Schema:
+    """Return how a motion's feet slide and how smooth it is, numbers of this form; `step` says whose steps are told."""
     return obj(
         about,
         {
             "foot_slide_max": form("the fastest horizontal speed of a planted ankle or toe, per second"),
             "jerk_rms": form("root mean square third difference of all joints over time, per second cubed"),
+            "step_max": form(f"the largest turn of {step} from frame to frame, degrees in a sixtieth of a second"),
+            "step_frame": or_null(INTEGER, "the frame into which it steps; null where nothing does"),
+            "step_joint": text_or_null("the joint that steps; null where none does"),
         },
     )
 

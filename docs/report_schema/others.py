@@ -116,7 +116,7 @@ _SHOWN_CLIP = {
     "channels": count("values in a row"),
     "hinges": list_of(_HINGE, "joints that bend about one axis"),
     "defects": list_of(_DEFECT, "what looks like a fault of the capture"),
-    "metrics": measures("of the clip as it is", number),
+    "metrics": measures("of the clip as it is", number, step="a joint against its parent"),
     "warnings": list_of(STRING, "one line each"),
     "contacts": list_of(_CONTACT, "with --contacts: heels and toes, each by itself"),
     "plants": list_of(_PLANT, "with --contacts: whole feet"),
