@@ -123,6 +123,8 @@ def test_fail_fast_does_not_take_the_first_clip_for_all(go):
     [
         ("ok", True, 0),
         ("far", True, 0),
+        ("rough", True, 3),
+        ("rough", False, 0),
         ("out_of_tolerance", True, 3),
         ("unreachable", True, 3),
         ("out_of_tolerance", False, 0),

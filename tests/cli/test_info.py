@@ -104,13 +104,18 @@ def test_the_facts_of_a_clip_are_told_with_their_names(run, write):
     assert fact(text, "left leg") == "LeftUpLeg > LeftLeg > LeftFoot > LeftToeBase"
     assert fact(text, "right arm") == "RightArm > RightForeArm > RightHand"
     assert fact(text, "head") == "Head"
-    assert fact(text, "hinges") == "RightForeArm about [0, 0, 1], 0 to 150 degrees"
+    assert fact(text, "hinges") == "LeftLeg about [1, 0, 0], 0 to 150 degrees"
+    assert re.findall(r"^ {14}(\S+) about (.*)$", text, flags=re.MULTILINE) == [
+        ("RightLeg", "[1, 0, 0], 0 to 150 degrees"),
+        ("LeftForeArm", "[-1, 0, 0], 0 to 150 degrees"),
+        ("RightForeArm", "[0, 0, 1], 0 to 150 degrees"),
+    ]
 
 
 def test_the_tree_has_every_joint_with_its_channels_in_their_order(run, write):
     text = run("info", write("stand.bvh", person())).stdout
     assert fact(text, "joints") == f"{len(BONES)}, {person().skeleton.channel_count} channels"
-    lines = text.splitlines()
+    lines = text[text.index("  joints ") :].splitlines()
     for name, _, offset, _ in BONES:
         (line,) = [line for line in lines if line.startswith("    ") and line.split()[0] == name]
         assert line.endswith("[" + ", ".join(map(str, offset)) + "]")
@@ -212,7 +217,8 @@ def test_the_report_says_the_same(run, write):
     assert entry["poses"][0]["world"]["position"] == pytest.approx(
         forward(person()).positions[4, INDEX["Head"]].tolist(), abs=1e-3
     )
-    assert entry["hinges"][0]["joint"] == "RightForeArm"
+    assert [each["joint"] for each in entry["hinges"]] == ["LeftLeg", "RightLeg", "LeftForeArm", "RightForeArm"]
+    assert entry["hinges"][3]["axis"] == pytest.approx([0.0, 0.0, 1.0], abs=1e-6)
     assert entry["metrics"]["foot_slide_max"] == pytest.approx(0.0, abs=1e-9)
 
 

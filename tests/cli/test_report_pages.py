@@ -61,13 +61,13 @@ def test_the_results_show_the_worst_goal_against_its_tolerance_and_the_side_effe
         goal("right", error_max=1.8, tolerance=1.0, frame=58, status="out_of_tolerance", gave_way_to=["left"]),
     ]
     metrics = {
-        "before": {"foot_slide_max": 1.25, "jerk_rms": 100.0},
-        "after": {"foot_slide_max": 1.5, "jerk_rms": 104.0},
+        "before": {"foot_slide_max": 1.25, "jerk_rms": 100.0, "step_max": 7.5},
+        "after": {"foot_slide_max": 1.5, "jerk_rms": 104.0, "step_max": 0.5},
     }
     records = [record("a.bvh", constraints=goals, metrics=metrics, unit="cm")]
     assert results_table(records, [0.123]).splitlines() == [
-        "clip   status  worst goal  error (cm)  tolerance  frame  foot slide     jerk  seconds",
-        "a.bvh  ok      right              1.8          1     58  1.25 -> 1.5  1.04 x     0.12",
+        "clip   status  worst goal  error (cm)  tolerance  frame  foot slide     jerk  step  seconds",
+        "a.bvh  ok      right              1.8          1     58  1.25 -> 1.5  1.04 x  0.5°     0.12",
     ]
     assert results_table(records, [0.1], verbosity=1).splitlines()[-3:] == [
         "a.bvh  priority  error (cm)  tolerance  frame  status            gave way to",

@@ -8,10 +8,12 @@ from motionedit.core import rotations as rot
 from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.center_of_mass import find_masses
 from motionedit.core.kinematics import Effector, WorldPoses, forward
-from motionedit.core.measure import Measure
+from motionedit.core.measure import Level, Measure
 from motionedit.core.motion import Motion
 from motionedit.core.priorities.kinds.aim import AimTask
 from motionedit.core.priorities.kinds.com import CenterOfMassTask
+from motionedit.core.priorities.kinds.distance import DistanceTask
+from motionedit.core.priorities.kinds.floor import FloorTask
 from motionedit.core.priorities.kinds.orientation import OrientationTask
 from motionedit.core.priorities.kinds.pose import PoseTask
 from motionedit.core.priorities.kinds.position import PositionTask
@@ -132,6 +134,33 @@ def test_aim_at_a_point_that_goes_with_another_joint(motion):
 def test_posture_where_it_is_met(motion):
     places = np.array([HEAD, SPINE])
     check(PostureTask(COLUMNS, places, motion.rotations[:, places]), motion)
+
+
+@pytest.mark.parametrize("bound", ["distance", "at_least", "at_most"])
+@pytest.mark.parametrize(
+    ("other", "offset"), [(FOOT, (0.0, 0.0, 0.0)), (SPINE, (0.1, 0.0, 0.3)), (HEAD, (0.0, 0.2, 0.0))]
+)
+def test_distance(motion, bound, other, offset):
+    lengths = np.array([0.3, 0.8, 1.4])
+    check(DistanceTask(point(HAND, (0.0, -0.1, 0.05)), point(other, offset), lengths, bound), motion)
+
+
+def test_no_joint_above_both_ends_of_a_distance_has_a_part_in_it(motion):
+    _, J = evaluated(DistanceTask(point(HAND), point(FOOT), np.ones(FRAMES)), motion)
+    np.testing.assert_allclose(J[..., :3], 0.0, atol=1e-12)
+    np.testing.assert_array_equal(J[..., -3:], 0.0)
+
+
+def test_two_points_that_meet_have_a_row_that_parts_them(motion):
+    other = Point(COLUMNS, Effector(HAND, np.zeros(3)), Recruited(np.zeros(len(SKELETON), dtype=bool), root=False))
+    e, J = evaluated(DistanceTask(point(HAND), other, np.full(FRAMES, 0.2)), motion)
+    np.testing.assert_array_equal(e, 0.2)
+    np.testing.assert_allclose(J, point(HAND).position_rows(forward(motion))[:, :1], atol=1e-12)
+
+
+def test_floor(motion):
+    points = (point(FOOT), point(HAND, (0.1, -0.2, 0.05)), point(HEAD))
+    check(FloorTask(points, Level(np.array([0.0, 0.6, 0.8]), 0.4), FRAMES), motion)
 
 
 def test_joints_that_are_not_recruited_have_no_part(motion):

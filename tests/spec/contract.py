@@ -113,6 +113,17 @@ constraints:
     type: posture
     joints: [Neck, Head]
     priority: 1
+  - name: floor
+    type: floor                  # one-sided: nothing of these goes below
+    effector: feet               # default: feet and toes found in the skeleton; or `all`, or a list
+    height: 0
+    priority: 9
+  - name: grip
+    type: distance               # between two points of the body, or of body and joint
+    effector: LeftHand
+    to: RightHand                # an effector
+    priority: 5
+    points: [{hold: [20, 90], distance: 32}]      # none: as in the input; {at_least: 20} or {at_most: 40} instead
 masses: {Spine: 12.5}
 hinges: auto
 attraction: 1.0

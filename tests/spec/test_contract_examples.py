@@ -71,6 +71,11 @@ FORMS = {
         "constraints: [{type: pose, effector: A, tolerance: {angle: 1}, recruit: {levels: 2}, ease_in: 40}]",
         "constraints: []\nhinges: off\nsmoothing: {method: paper, cutoff: 3.0, passes: 2}\ncurve: index",
         "constraints: []\nhinges: [LeftLeg]\nrecruiting_rule: error\nmasses: {}\nattraction: 0",
+        "constraints: [{type: distance, effector: [A, B], to: {end_site: C, index: 1}}]",
+        "constraints: [{type: distance, effector: A, to: C, points: [{during: [0, 100%], at_least: 2}]}]",
+        "constraints: [{type: distance, effector: A, to: C, points: [{at: 1}, {at: 3, distance: 1e-3}], ease_in: 4}]",
+        "constraints: [{type: floor}, {type: floor, effector: all, height: -3.5, recruit: {levels: 3}, weight: 2}]",
+        "constraints: [{type: floor, effector: [A, {joint: A, offset: [0, 1, 0]}]}, {type: floor, effector: Hand}]",
         "events: {hit: 9}\nconstraints: [{type: position, effector: A, points: [{at: hit, bias: -1}]}]",
     ],
 }
@@ -94,6 +99,9 @@ def test_every_legal_form_loads_and_is_valid_under_the_json_schema(command, text
         ("edit-pc", "goals: []\nevents: {hit: {}}"),
         ("edit-prioritized", "constraints: [{type: position, effector: A, axis: [0, 0, 1]}]"),
         ("edit-prioritized", "constraints: [{type: position, effector: A, points: [{position: [1, 2, 3]}]}]"),
+        ("edit-prioritized", "constraints: [{type: distance, effector: A}]"),
+        ("edit-prioritized", "constraints: [{type: floor, points: [{at: 3}]}]"),
+        ("edit-prioritized", "constraints: [{type: distance, effector: A, to: B, points: [{at: 3, distance: 0}]}]"),
         ("normalize", "events: {hit: {detect: null}}"),
     ],
 )
@@ -111,7 +119,7 @@ def test_the_prioritized_example_means_what_the_contract_says(load):
     spec = load(EDIT_PRIORITIZED, "edit-prioritized", head=False).model
     names = [constraint.name for constraint in spec.constraints]
     assert names[:3] == ["right-toe-steps", "left-foot-as-captured", "left-foot-as-captured-2"]
-    toe, ankle, toe_base, *_, head = spec.constraints
+    toe, ankle, toe_base, *_, head, floor, grip = spec.constraints
     assert isinstance(toe, PositionConstraint)
     assert toe.points[1].bias == 0.3
     assert toe.met_within == Tolerance(position=0.5)
@@ -119,11 +127,13 @@ def test_the_prioritized_example_means_what_the_contract_says(load):
     assert [ankle.effector.joint, toe_base.effector.joint] == ["LeftFoot", "LeftToeBase"]
     assert (ankle.keys, ankle.effector_keys) == (("constraints", 1), ("constraints", 1, "effector", 0))
     assert head.keys == ("constraints", 8)
+    assert (floor.effector, floor.height, floor.points) == ("feet", 0.0, ())
+    assert (grip.to, grip.points[0].bound) == (EffectorSpec("RightHand"), ("distance", 32.0))
     com = spec.constraints[5]
     assert isinstance(com, ComConstraint)
     assert com.axes == (0, 2)
     assert [c.name for c in spec.constraints if c.counts_for_strict] == [
-        *("right-toe-steps", "foot-planted", "elbow-near-torso", "forearm-level"),
+        *("right-toe-steps", "foot-planted", "elbow-near-torso", "forearm-level", "grip"),
     ]
     assert spec.smoothing.pass_count == 3
 

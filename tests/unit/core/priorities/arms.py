@@ -4,6 +4,7 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
+from motionedit.core.body.bends import turns_about
 from motionedit.core.kinematics import Effector, effector_positions, forward
 from motionedit.core.motion import Motion
 from motionedit.core.priorities.kinds.position import PositionTask
@@ -35,9 +36,19 @@ def arms_of(seed, frames=8):
     tasks.insert(2, point(Effector(5, np.zeros(3)), second, rng.normal(scale=0.05, size=(frames, 3))))
     axis = rng.normal(size=3)
     axis /= np.linalg.norm(axis)
-    angles = rot.log(motion.rotations[:, 4]) @ axis
+    side = np.cross(axis, np.roll(axis, 1))
+    side /= np.linalg.norm(side)
+    angles = turns_about(axis, side, rot.rotate(motion.rotations[:, 4], np.tile(side, (frames, 1))))
     limits = np.array([[angles.min() - 0.05, angles.max() + 0.05], [-3.0, 3.0]])
-    hinges = HingeColumns(np.array([3, 4]), np.stack([axis, axis]), limits, np.zeros(2, dtype=bool))
+    axes, sides = np.stack([axis, axis]), np.stack([side, side])
+    hinges = HingeColumns(np.array([3, 4]), axes, sides, sides, limits, np.zeros(2, dtype=bool))
     return Problem(
-        columns, moves_root=False, layers=(tuple(tasks),), hinges=hinges, attraction=1.0, max_iterations=12
+        columns,
+        moves_root=False,
+        layers=(tuple(tasks),),
+        hinges=hinges,
+        attraction=1.0,
+        max_iterations=12,
+        mobility=np.ones(7),
+        softness=np.zeros((frames, 1)),
     ), motion

@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
+from motionedit.core.body.bends import turns_about
 from motionedit.core.body.center_of_mass import Masses
-from motionedit.core.body.hinges import Hinge
+from motionedit.core.body.hinges import Hinge, plain_hinge
 from motionedit.core.compiled import CHOICE, compiled, solver_name
 from motionedit.core.kinematics import Effector, forward
 from motionedit.core.measure import Measure
@@ -77,9 +78,11 @@ def hinges_of(rng, skeleton, motion):
     for joint in rng.choice(len(skeleton), size=min(2, len(skeleton) - 1), replace=False):
         axis = rng.normal(size=3)
         axis /= np.linalg.norm(axis)
-        angles = rot.log(motion.rotations[:, joint]) @ axis
+        upper, lower = rng.normal(size=(2, 3))
+        angles = turns_about(axis, upper, rot.rotate(motion.rotations[:, joint], np.tile(lower, (len(motion), 1))))
         spread = rng.uniform(0.02, 1.0)
-        found.append(Hinge(int(joint), frozen(axis), (angles.min() - spread, angles.max() + spread), 0.0))
+        limits = (angles.min() - spread, angles.max() + spread)
+        found.append(Hinge(int(joint), frozen(axis), frozen(upper), frozen(lower), limits))
     return tuple(sorted(found, key=lambda hinge: hinge.joint))
 
 
@@ -182,6 +185,26 @@ def solved(problem, motion, frames, **how):
     return solve_layers(prepare_problem(problem), own, Reference(motion.rotations.copy(), None), frames, **how)
 
 
+@pytest.mark.parametrize("seed", range(10))
+def test_both_solvers_make_soft_rows_least_alike(patch, seed):
+    problem, motion = arms_of(seed)
+    rng, frames = np.random.default_rng(seed), np.arange(len(motion))
+    soft = rng.uniform(0.01, 0.3, size=(len(motion), 1)) * (rng.uniform(size=(len(motion), 1)) < 0.8)
+    problem = replace(problem, softness=soft, mobility=rng.uniform(0.3, 1.0, size=7), max_iterations=60)
+    mine, theirs = (
+        solved(problem, motion, frames),
+        by_numpy(patch, lambda: solved(problem, motion, frames)),
+    )
+    assert difference(mine, theirs) < FEASIBLE
+    np.testing.assert_array_equal(mine.ranks, theirs.ranks)
+    # Softness leaves something of the error for a shorter way.
+    hard = solved(replace(problem, softness=np.zeros_like(soft)), motion, frames)
+    far = rot.angle_between(mine.motion.rotations, motion.rotations).sum(axis=1)
+    farther = rot.angle_between(hard.motion.rotations, motion.rotations).sum(axis=1)
+    softened = soft[:, 0] > 0.0
+    assert (far[softened] < farther[softened]).all()
+
+
 @pytest.mark.parametrize("seed", range(30))
 def test_rows_that_depend_on_each_other_in_a_neighbour_alone_change_no_bit(patch, seed):
     problem, motion = arms_of(seed)
@@ -200,6 +223,7 @@ def test_no_frames_are_solved_at_once():
             tuple(replace(each, task=replace(each.task, targets=each.task.targets[:0])) for each in layer)
             for layer in problem.layers
         ),
+        softness=problem.softness[:0],
     )
     solution = solved(none, motion, np.arange(0))
     np.testing.assert_array_equal(solution.motion.rotations, motion.rotations)
@@ -253,6 +277,55 @@ def test_smoothing_is_the_same(patch, first, sigma):
     np.testing.assert_allclose(mine.translations, theirs.translations, atol=1e-13)
     still = [j for j in range(6) if j != 2]
     np.testing.assert_array_equal(mine.rotations[:, still], before.rotations[:, still])
+
+
+def two_alike(patch, before, after, **how):
+    """Return a smoothed displacement as C has it, numpy's being the same."""
+    mine = smoothed_displacement(before, after, **how)
+    theirs = by_numpy(patch, lambda: smoothed_displacement(before, after, **how))
+    np.testing.assert_allclose(mine.rotations, theirs.rotations, atol=1e-13)
+    return mine
+
+
+@pytest.mark.parametrize("first", [0, 3])
+def test_hinges_are_smoothed_about_their_axes_alike(patch, first):
+    rng = np.random.default_rng(2)
+    before = motion_of(rng, skeleton_of(rng, 6), 40)
+    axes = rng.normal(size=(2, 3))
+    axes /= np.linalg.norm(axes, axis=1, keepdims=True)
+    hinges = tuple(plain_hinge(joint, axis, (-9.0, 9.0)) for joint, axis in zip((2, 4), axes, strict=True))
+    turned = before.rotations.copy()
+    for hinge in hinges:
+        by = rng.normal(scale=0.4, size=(40, 1)) * hinge.axis
+        turned[:, hinge.joint] = rot.multiply(rot.exp(by), turned[:, hinge.joint])
+    turned[:, 3] = rot.multiply(turned[:, 3], rot.exp(rng.normal(scale=0.4, size=(40, 3))))
+    after = Motion(before.skeleton, turned, before.translations, before.frame_time)
+    smooth = two_alike(patch, before, after, sigma=2.0, first=first, hinges=hinges)
+    for hinge in hinges:
+        v = rot.log(rot.multiply(smooth.rotations[:, hinge.joint], rot.conjugate(before.rotations[:, hinge.joint])))
+        assert np.linalg.norm(np.cross(v, hinge.axis), axis=1).max() < 1e-12
+        assert 0.0 < np.abs(np.diff(v @ hinge.axis)[first:]).max() < 0.3
+    # Of a joint that is no hinge the displacement is another on that side: taking it for one would show.
+    assert (
+        rot.angle_between(smooth.rotations, two_alike(patch, before, after, sigma=2.0, first=first).rotations).max()
+        > 0.0
+    )
+
+
+@pytest.mark.parametrize("is_hinge", [False, True])
+def test_a_change_that_passes_half_a_turn_is_smoothed_through_it(patch, is_hinge):
+    rng = np.random.default_rng(3)
+    before = motion_of(rng, skeleton_of(rng, 4), 60)
+    axis = np.array([0.6, 0.0, 0.8])
+    # From 1 to 5.5 rad and on: a rotation vector would turn round at pi.
+    angles = np.linspace(1.0, 5.5, 60)
+    turned, turns = before.rotations.copy(), rot.exp(angles[:, None] * axis)
+    turned[:, 2] = rot.multiply(turns, turned[:, 2]) if is_hinge else rot.multiply(turned[:, 2], turns)
+    after = Motion(before.skeleton, turned, before.translations, before.frame_time)
+    hinges = (plain_hinge(2, axis, (-9.0, 9.0)),) if is_hinge else ()
+    smooth = two_alike(patch, before, after, sigma=2.0, first=0, hinges=hinges)
+    # A straight line stays as it is.
+    assert rot.angle_between(smooth.rotations[:, 2], turned[:, 2]).max() < 1e-7
 
 
 def test_a_variable_of_the_environment_keeps_the_compiled_part_out(patch):

@@ -21,7 +21,9 @@ def test_buffers_of_a_wrong_size_are_an_error_and_no_crash():
     with pytest.raises(ValueError, match="places has 0 bytes"):
         compiled().forward(np.array([-1]), empty, empty, empty, empty, empty, empty, 1)
     with pytest.raises(ValueError, match="rotations after"):
-        compiled().smooth(np.zeros(4), empty, np.ones(1), np.zeros(4), 1, 0, 0.0)
+        compiled().smooth(np.zeros(4), empty, np.zeros(3), np.ones(1), np.zeros(4), 1, 0, 0.0)
+    with pytest.raises(ValueError, match="axes has 0 bytes"):
+        compiled().smooth(np.zeros(4), np.zeros(4), empty, np.ones(1), np.zeros(4), 1, 0, 0.0)
 
 
 def slips():
@@ -62,9 +64,10 @@ def raw_solve(problem, motion, *, frames=tuple(range(8)), in_order=False, **slip
         "iterations": np.zeros(count, int),
         "converged": np.zeros(count, bool),
         "ranks": np.zeros((count, len(problem.layers)), int),
+        "left": np.zeros((count, len(problem.layers))),
     }
     own = {"rotations": motion.rotations.copy(), "translations": motion.translations.copy()}
-    pull = {"reference_rotations": motion.rotations, "reference_root": np.zeros(0)}
+    pull = {"reference_rotations": motion.rotations, "reference_root": np.zeros(0), "softness": problem.softness}
     compiled().solve({**buffers, **how, **own, **pull, "frames": np.array(frames)}, 0, count, in_order)
 
 
@@ -80,7 +83,7 @@ def test_frames_in_order_follow_each_other():
 def test_layers_come_one_after_the_other():
     problem, motion = arms_of(0)
     (tasks,) = problem.layers
-    two = replace(problem, layers=(tasks[:2], tasks[2:]))
+    two = replace(problem, layers=(tasks[:2], tasks[2:]), softness=np.zeros((8, 2)))
     with pytest.raises(ValueError, match="tasks that are none"):
         raw_solve(two, motion, tasks=("layer", 0, 1))
 

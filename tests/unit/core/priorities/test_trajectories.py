@@ -14,7 +14,13 @@ from motionedit.core import rotations as rot
 from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.bvh import read_clip
 from motionedit.core.kinematics import Effector, effector_positions, forward
-from motionedit.core.priorities.trajectories import ControlPoint, active_interval, position_targets, rotation_targets
+from motionedit.core.priorities.trajectories import (
+    ControlPoint,
+    active_interval,
+    eased,
+    position_targets,
+    rotation_targets,
+)
 from motionedit.core.units import STANDARD_LEG
 
 # Frames so fine that a difference between two of them is a derivative: 10 s at 1000 frames a second.
@@ -96,11 +102,18 @@ def test_the_active_interval_is_cut_at_the_clips_ends():
     assert active_interval([at(5), at(95)], ease_in=10.0, ease_out=10.0, frames=100) == (0, 99)
 
 
-def test_a_ramp_that_is_cut_begins_in_the_input_at_the_clips_first_frame():
+def test_a_ramp_that_is_cut_is_what_is_left_of_a_whole_one_and_begins_displaced():
     first, found = targets([hold(800, 900, shift=SHIFT), hold(9100, 9200, shift=SHIFT)])
     assert first == 0
     assert len(found) == FRAMES
-    np.testing.assert_array_equal(found[[0, -1]], PATH[[0, -1]])
+    # A ramp over a displacement is a cubic with a velocity at its end: that of the input, which a hold stops.
+    for cut, frames, stop in ((found[:801], slice(0, 801), 800), (found[:9199:-1], slice(None, 9199, -1), 9200)):
+        s, velocity = 1.0 - np.abs(np.arange(FRAMES)[frames] - stop)[:, None] / 1000.0, np.gradient(PATH, axis=0)[stop]
+        along = -1000.0 * velocity * (1.0 if stop == 800 else -1.0)
+        place = PATH[800 if stop == 800 else 9100] + SHIFT - PATH[stop]
+        expected = s * s * (3.0 - 2.0 * s) * place + (s - 1.0) * s * s * along
+        np.testing.assert_allclose(cut - PATH[frames], expected, atol=1e-12)
+    assert np.linalg.norm(found[0] - PATH[0]) > 0.05
     assert largest_jump(found) < 0.1
 
 
@@ -214,10 +227,11 @@ def test_a_given_end_tangent_keeps_the_velocity_where_a_ramp_leaves_the_input():
 
 def test_an_instant_in_place_of_a_splined_path_goes_at_the_inputs_velocity_and_with_tension_one_stands():
     start, stop = at(0, position=PLACE), at(10000, position=-PLACE)
-    found = whole([start, stop])
+    # Without an ease: a ramp would come from beyond the clip, and the point be inside the spline.
+    found = whole([start, stop], ease=0.0)
     np.testing.assert_allclose(found[1] - found[0], PATH[1] - PATH[0], atol=1e-5)
     np.testing.assert_allclose(found[-1] - found[-2], PATH[-1] - PATH[-2], atol=1e-5)
-    found = whole([at(0, position=PLACE, tension=1.0), at(10000, position=-PLACE, tension=1.0)])
+    found = whole([at(0, position=PLACE, tension=1.0), at(10000, position=-PLACE, tension=1.0)], ease=0.0)
     assert np.abs(np.diff(found[[0, 1, -2, -1]], axis=0)[[0, 2]]).max() < 1e-5
 
 
@@ -399,9 +413,10 @@ def test_any_targets_are_finite_meet_every_point_and_are_bounded(session, curve)
     last = active_interval(points, ease_in=ease_in, ease_out=ease_out, frames=len(path))[1]
     assert found.shape == (last - first + 1, 3)
     assert np.isfinite(found).all()
-    if first < points[0].start:
+    # A ramp that the clip does not cut meets the input.
+    if first < points[0].start and eased(points, ease_in=ease_in, ease_out=ease_out)[0] >= 0:
         np.testing.assert_array_equal(found[0], path[first])
-    if last > points[-1].stop:
+    if last > points[-1].stop and eased(points, ease_in=ease_in, ease_out=ease_out)[1] < len(path):
         np.testing.assert_array_equal(found[-1], path[last])
     for point in points:
         ride = path[point.start : point.stop + 1] if point.mode == "during" else path[point.start]

@@ -1,0 +1,83 @@
+"""Joints stay within their cones, whatever pulls at them, and both solvers keep them there alike."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from person import BODY, end, held_feet, swaying
+
+from motionedit.core import rotations as rot
+from motionedit.core.body.anatomy import find_anatomy
+from motionedit.core.body.limits import human_limits, swing_and_twist
+from motionedit.core.compiled import compiled
+from motionedit.core.kinematics import forward
+from motionedit.core.priorities.edit import edit_by_priorities, prepare
+from motionedit.core.priorities.kinds import Position
+from motionedit.core.priorities.settings import LayeredSettings, PaperFilter
+from motionedit.core.priorities.straight import lefts_of
+from motionedit.core.priorities.trajectories import ControlPoint
+
+FRAMES = 40
+MOTION = swaying(FRAMES)
+LIMITS = tuple(human_limits(MOTION, forward(MOTION), find_anatomy(MOTION.skeleton), travel=BODY.travel, first=0))
+TIGHT = tuple(replace(limit, swing=0.2, twist=0.1) for limit in LIMITS)
+HARD = LayeredSettings(smoothing=PaperFilter(0))
+
+
+def reaching(shift):
+    point = ControlPoint("hold", 15, 25, None, np.array(shift))
+    return Position(name="hand", priority=4, effector=end("RightHand"), points=(point,), ease_in=10, ease_out=10)
+
+
+def asked(shift=(0.1, 0.2, 0.25)):
+    return [*held_feet(FRAMES), reaching(shift)]
+
+
+def edit_within(limits, shift=(0.1, 0.2, 0.25), settings=HARD):
+    return edit_by_priorities(MOTION, asked(shift), replace(BODY, limits=limits), settings)
+
+
+def beyond(motion, limits):
+    """Return by how much any joint is beyond its cone, rad."""
+    over = []
+    for limit in limits:
+        q = rot.multiply(rot.conjugate(limit.center), motion.rotations[:, limit.joint])
+        swing, twist = swing_and_twist(q, limit.along)
+        over += [np.max(swing - limit.swing), np.max(np.abs(twist) - limit.twist)]
+    return max(over)
+
+
+@pytest.mark.parametrize("solver", ["", "numpy"])
+def test_joints_stay_within_their_cones_and_the_feet_stay_where_they_are(solver, monkeypatch):
+    monkeypatch.setenv("MOTIONEDIT_SOLVER", solver)
+    free, kept = edit_within(()), edit_within(TIGHT)
+    moved = [limit for limit in TIGHT if limit.joint not in {hinge.joint for hinge in BODY.hinges}]
+    assert beyond(free.motion, moved) > 0.05
+    assert beyond(kept.motion, moved) < max(2e-6, beyond(MOTION, moved) + 2e-6)
+    *feet, hand = lefts_of(kept.asked, kept.motion)
+    assert np.max(feet) < 1e-4
+    assert hand.max() < 1e-4  # other joints do what these may not
+
+
+def test_both_solvers_keep_cones_alike(monkeypatch):
+    if compiled() is None:
+        pytest.skip("no compiled solver here")
+    one = edit_within(TIGHT)
+    monkeypatch.setenv("MOTIONEDIT_SOLVER", "numpy")
+    other = edit_within(TIGHT)
+    assert one.solver == "compiled"
+    np.testing.assert_array_equal(one.iterations, other.iterations)
+    assert rot.angle_between(one.motion.rotations, other.motion.rotations).max() < 1e-9
+
+
+def test_where_no_cone_is_passed_nothing_changes_to_the_last_bit():
+    wide = tuple(replace(limit, swing=np.pi, twist=np.pi) for limit in LIMITS)
+    np.testing.assert_array_equal(edit_within(wide).motion.rotations, edit_within(()).motion.rotations)
+
+
+def test_a_hinge_has_limits_of_its_own_and_no_cone():
+    run, _ = prepare(MOTION, asked(), replace(BODY, limits=LIMITS), HARD)
+    hinged = {hinge.joint for hinge in BODY.hinges}
+    for group in run.groups:
+        columns, limits = group.problem.columns, group.problem.limits
+        assert not hinged & set(columns.joints[limits.places].tolist())

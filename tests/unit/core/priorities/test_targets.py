@@ -1,0 +1,161 @@
+"""Targets between others, targets moved along, and where a motion has the task of each kind."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from person import BODY, FEET, SKELETON, end, joint, swaying
+
+from motionedit.core import rotations as rot
+from motionedit.core.measure import Measure
+from motionedit.core.motion import Motion
+from motionedit.core.priorities.edit import prepare
+from motionedit.core.priorities.kinds import Aim, CenterOfMass, Distance, Floor, Orientation, Pose, Position, Posture
+from motionedit.core.priorities.kinds.constraint import Targets, between, moved
+from motionedit.core.priorities.lengths import LengthPoint
+from motionedit.core.priorities.settings import LayeredSettings, PaperFilter
+from motionedit.core.priorities.targets import errors_of, reached
+from motionedit.core.priorities.trajectories import ControlPoint, share_of
+
+FRAMES = 14
+MOTION = swaying(FRAMES)
+TURN = rot.exp(np.array([0.3, -0.2, 0.4]))
+HOLD = ControlPoint("hold", 4, 9, None, np.array([0.1, 0.2, 0.1]))
+TURNED = ControlPoint("hold", 4, 9, None, None, TURN)
+AHEAD = ControlPoint("hold", 4, 9, np.array([0.5, 1.5, 3.0]))
+APART = LengthPoint("hold", 4, 9, length=0.3)
+EASES = {"ease_in": 3.0, "ease_out": 3.0}
+HAND = end("RightHand", (0.0, -0.1, 0.0))
+KINDS = {
+    "position": Position(name="c", effector=HAND, points=(HOLD,), **EASES),
+    "position along two axes": Position(
+        name="c", effector=HAND, points=(HOLD,), measure=Measure(counted=(0, 2)), **EASES
+    ),
+    "position seen from a joint": Position(
+        name="c", effector=HAND, points=(HOLD,), measure=Measure(base=joint("Spine1")), **EASES
+    ),
+    "orientation": Orientation(name="c", effector=HAND, points=(TURNED,), **EASES),
+    "orientation seen from a joint": Orientation(
+        name="c", effector=HAND, points=(TURNED,), measure=Measure(base=joint("Spine1")), **EASES
+    ),
+    "pose": Pose(name="c", effector=HAND, points=(HOLD,), **EASES),
+    "aim": Aim(
+        name="c", effector=end("Head"), points=(ControlPoint("hold", 4, 9, np.array([0.5, 1.5, 3.0])),), **EASES
+    ),
+    "com": CenterOfMass(name="c", points=(ControlPoint("hold", 4, 9, None, np.array([0.1, 0.0, 0.1])),), **EASES),
+    "distance": Distance(
+        name="c",
+        effector=end("LeftHand"),
+        to=end("RightHand"),
+        points=(LengthPoint("hold", 4, 9, length=0.3),),
+        **EASES,
+    ),
+}
+
+
+def asked_of(constraint):
+    return prepare(MOTION, [constraint], BODY, LayeredSettings(smoothing=PaperFilter(0)))[0].asked
+
+
+def other_motion(seed):
+    """Return a motion of the person with every joint turned a little otherwise."""
+    rng = np.random.default_rng(seed)
+    turns = rot.exp(rng.normal(scale=0.2, size=(FRAMES, len(SKELETON), 3)))
+    shifts = rng.normal(scale=0.1, size=MOTION.translations.shape)
+    return Motion(SKELETON, rot.multiply(MOTION.rotations, turns), MOTION.translations + shifts, MOTION.frame_time)
+
+
+def errors(asked, targets, motion):
+    """Return what a motion leaves of the only constraint, with other targets, as one array."""
+    (found,) = errors_of(replace(asked, targets=(targets,)), motion)
+    return np.concatenate([part for part in (found.positions, found.angles) if part is not None])
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("seed", [0, 1])
+def test_nothing_is_left_of_a_constraint_whose_targets_are_where_a_motion_has_it(kind, seed):
+    asked, motion = asked_of(KINDS[kind]), other_motion(seed)
+    (targets,) = asked.targets
+    there = reached(asked, 0, motion)
+    assert (there.first, there.last) == (targets.first, targets.last)
+    assert errors(asked, targets, motion).max() > 0.01
+    assert errors(asked, there, motion).max() < 1e-7
+    for name in ("positions", "rotations", "lengths"):
+        assert (getattr(there, name) is None) == (getattr(targets, name) is None)
+
+
+@pytest.mark.parametrize(
+    "constraint",
+    [
+        Floor(name="c", effector=tuple(map(end, FEET)), height=None),
+        Posture(name="c", joints=(joint("Head"),)),
+    ],
+)
+def test_what_has_no_place_to_go_back_to_keeps_its_targets(constraint):
+    targets = Targets(0, FRAMES - 1)
+    assert constraint.reached(targets, None) is targets
+
+
+def random_targets(seed, n=9):
+    rng = np.random.default_rng(seed)
+    return Targets(
+        3, 2 + n, rng.normal(size=(n, 3)), rot.exp(rng.normal(scale=0.8, size=(n, 3))), rng.uniform(0.1, 2.0, size=n)
+    )
+
+
+@given(st.integers(0, 1000), st.integers(0, 1000), st.floats(0.0, 1.0))
+def test_between_two_targets_every_part_is_on_the_straight_way(one, other, share):
+    a, b = random_targets(one), random_targets(other)
+    found = between(a, b, np.full(9, share))
+    assert (found.first, found.last) == (3, 11)
+    np.testing.assert_allclose(found.positions, (1 - share) * a.positions + share * b.positions, atol=1e-12)
+    np.testing.assert_allclose(found.lengths, (1 - share) * a.lengths + share * b.lengths, atol=1e-12)
+    expected = rot.slerp(a.rotations, b.rotations, np.full(9, share))
+    assert rot.angle_between(found.rotations, expected).max() < 1e-7
+
+
+@given(st.integers(0, 1000), st.integers(0, 1000), st.integers(0, 1000))
+def test_targets_are_moved_by_so_much_of_the_way_as_their_share(wanted, one, other):
+    targets, before, after = map(random_targets, (wanted, one, other))
+    none, half, whole = (moved(targets, before, after, np.full(9, share)) for share in (0.0, 0.5, 1.0))
+    np.testing.assert_array_equal(none.positions, targets.positions)
+    np.testing.assert_allclose(half.positions - targets.positions, 0.5 * (after.positions - before.positions))
+    np.testing.assert_allclose(whole.lengths - targets.lengths, after.lengths - before.lengths)
+    turn = rot.multiply(rot.conjugate(before.rotations), after.rotations)
+    assert rot.angle_between(whole.rotations, rot.multiply(targets.rotations, turn)).max() < 1e-7
+    # What rides where the one motion has it goes to where the other has it.
+    rides = moved(before, before, after, np.ones(9))
+    np.testing.assert_allclose(rides.positions, after.positions, atol=1e-12)
+    assert rot.angle_between(rides.rotations, after.rotations).max() < 1e-7
+
+
+def test_a_share_is_all_in_the_points_and_rises_and_falls_as_hermites_cubic():
+    share = share_of([ControlPoint("hold", 20, 30)], ease_in=10.0, ease_out=5.0, frames=60)
+    np.testing.assert_array_equal(share[20:31], 1.0)
+    assert not share[:11].any()
+    assert not share[35:].any()
+    s = np.linspace(0.0, 1.0, 11)
+    np.testing.assert_allclose(share[10:21], 3 * s**2 - 2 * s**3, atol=1e-12)
+    np.testing.assert_array_equal(share_of([], ease_in=10.0, ease_out=5.0, frames=4), np.ones(4))
+
+
+def test_a_share_whose_ramps_the_clip_cuts_is_a_part_of_the_whole_one():
+    def shares(start, frames):
+        point = ControlPoint("during", start, start + 6)
+        return share_of([point], ease_in=10.0, ease_out=10.0, frames=frames)
+
+    whole = shares(20, 60)
+    np.testing.assert_allclose(shares(4, 14), whole[16:30], atol=1e-12)
+    assert 0.0 < shares(4, 14)[0] < shares(4, 14)[1]
+
+
+def test_targets_say_what_they_do_not_have():
+    empty = Targets(0, 3)
+    with pytest.raises(ValueError, match="no positions"):
+        _ = empty.all_positions
+    with pytest.raises(ValueError, match="no lengths"):
+        _ = empty.all_lengths
+    with pytest.raises(ValueError, match="no rotations"):
+        empty.rotations_at(np.arange(2))
