@@ -32,8 +32,9 @@ class Run:
 
     def aimed_at(self, targets: tuple[Targets, ...]) -> Run:
         """Return the same edit with other targets over the same frames."""
-        asked = replace(self.asked, targets=targets)
-        return replace(self, asked=asked, groups=tuple(retargeted(asked, group) for group in self.groups))
+        asked, old = replace(self.asked, targets=targets), self.asked.targets
+        changed = frozenset(i for i, (one, other) in enumerate(zip(old, targets, strict=True)) if one is not other)
+        return replace(self, asked=asked, groups=tuple(retargeted(asked, group, changed) for group in self.groups))
 
     @property
     def motion(self) -> Motion:

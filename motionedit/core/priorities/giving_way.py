@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motionedit.core.priorities.frames import run_of, solve_frames
+from motionedit.core.priorities.frames import Known, run_of, solve_frames
 from motionedit.core.priorities.kinds.constraint import between
 from motionedit.core.priorities.shares import shares_of
 from motionedit.core.priorities.smoothing import in_passes, steps_at
 from motionedit.core.priorities.straight import bent_where_missed, lefts_of
-from motionedit.core.priorities.targets import reached
+from motionedit.core.priorities.targets import reached_within
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -72,9 +72,9 @@ def within_reach(run: Run, state: Solved, smoothing: Passes) -> Reached:
         missed = _missed(asked, [here[k] for k in members], state.motion)
         if missed.any() and level != asked.levels[-1]:
             # What is below may have led it astray: whether it is out of reach shows without.
-            part = run_of(above)
-            alone = bent_where_missed(part, solve_frames(part, motion, reference=motion, pull_root=False))
-            missed = _missed(above, members, alone.motion)
+            part, known = run_of(above), Known(~np.any(missed, axis=0), state.ranks[:, : len(above.levels)])
+            alone = solve_frames(part, motion, reference=motion, pull_root=False, known=known)
+            missed &= _missed(above, members, bent_where_missed(part, alone).motion)
         if not missed.any():
             continue
         above, smooth[level] = _given_way(above, dict(zip(members, missed, strict=True)), smoothing)
@@ -174,9 +174,14 @@ def _toward(
     """Return targets on the way from the original ones to where a motion has them, so much of it each, shape (F,)."""
     found = list(original)
     for k, share in shares.items():
-        there = reached(asked, k, motion)
-        if there is not asked.targets[k]:
-            found[k] = between(original[k], there, share[original[k].span])
+        span = original[k].span
+        inside = np.flatnonzero(share[span])
+        if not len(inside):
+            continue
+        frames = slice(int(span.start + inside[0]), int(span.start + inside[-1] + 1))
+        there = reached_within(asked, k, motion, frames)
+        if there is not None:
+            found[k] = original[k].with_part(between(original[k].within(frames), there, share[frames]))
     return tuple(found)
 
 

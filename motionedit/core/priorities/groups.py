@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import chain
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.body.hinges import Hinge
     from motionedit.core.priorities.kinds.constraint import Constraint, Targets
+    from motionedit.core.priorities.problem import Task
     from motionedit.core.priorities.recruiting import Recruits
     from motionedit.core.priorities.settings import Body, LayeredSettings
 
@@ -117,7 +119,9 @@ def _nothing_is_wanted(asked: Asked) -> BoolArray:
         if targets.first >= first:
             continue
         seen = sight_of(rest, constraint.looked_at(), asked.body.masses if constraint.weighs else None)
-        errors = constraint.errors(targets.until(first), seen, reference=rest)
+        errors = constraint.errors(
+            targets.within(slice(targets.first, min(targets.last + 1, first))), seen, reference=rest
+        )
         for left in (errors.positions, errors.angles):
             if left is not None:
                 wanted[targets.first :][: len(left)] |= left > NO_DISPLACEMENT
@@ -160,11 +164,19 @@ def _group(asked: Asked, members: Sequence[int], frames: IntArray) -> Group:
     return Group(frames, np.array([levels.index(-priority) for priority, _ in order]), layers, prepare_problem(problem))
 
 
-def retargeted(asked: Asked, group: Group) -> Group:
-    """Return a group with what is asked now of the same constraints."""
+def retargeted(asked: Asked, group: Group, changed: frozenset[int]) -> Group:
+    """Return a group with what is asked now of the same constraints, of which some have `changed`."""
+    if changed.isdisjoint(chain(*group.members)):
+        return group
     problem = group.problem
-    problem = replace(problem, layers=_tasks(asked, group.members, group.frames, problem.columns))
-    return replace(group, prepared=group.prepared.with_targets_of(problem))
+    layers = tuple(
+        tuple(
+            replace(old, task=_task(asked, i, group.frames, problem.columns)) if i in changed else old
+            for i, old in zip(members, tasks, strict=True)
+        )
+        for members, tasks in zip(group.members, problem.layers, strict=True)
+    )
+    return replace(group, prepared=group.prepared.with_targets_of(replace(problem, layers=layers)))
 
 
 def _tasks(
@@ -173,15 +185,19 @@ def _tasks(
     # Weights say how a layer is shared: the step's damping and softness are in metres and radians of the largest.
     largest = [max(asked.constraints[i].weight for i in layer) for layer in layers]
     return tuple(
-        tuple(_task(asked, i, frames, columns, largest=most) for i in layer)
+        tuple(
+            WeightedTask(
+                _task(asked, i, frames, columns), asked.constraints[i].weight / most, asked.constraints[i].one_sided
+            )
+            for i in layer
+        )
         for layer, most in zip(layers, largest, strict=True)
     )
 
 
-def _task(asked: Asked, i: int, frames: IntArray, columns: Columns, *, largest: float) -> WeightedTask:
-    constraint = asked.constraints[i]
+def _task(asked: Asked, i: int, frames: IntArray, columns: Columns) -> Task:
     stage = Stage(frames, columns, asked.recruits[i], asked.body.masses, asked.motion)
-    return WeightedTask(constraint.task(asked.targets[i], stage), constraint.weight / largest, constraint.one_sided)
+    return asked.constraints[i].task(asked.targets[i], stage)
 
 
 def _mobility(body: Body, joints: IntArray) -> FloatArray:

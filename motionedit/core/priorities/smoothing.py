@@ -44,9 +44,9 @@ def in_passes(run: Run, state: Solved, smoothing: Passes, *, aimed: Callable[[Mo
         del state  # of a long motion no more copies are kept than are needed
         state = solve_frames(now, smooth, reference=smooth, pull_root=True, known=known)
         del smooth
-    found = [np.inf] * _PATIENCE
+    found, share = [np.inf] * _PATIENCE, np.ones(len(motion))
     for _ in range(_MORE_PASSES if smoothing.count else 0):
-        steps = steps_at(run, state.motion)
+        steps = steps_at(run, state.motion, within=share)
         largest = float(steps.max(initial=0.0))
         if largest == 0.0 or largest > _PROGRESS * found[-_PATIENCE]:
             break
@@ -59,17 +59,24 @@ def in_passes(run: Run, state: Solved, smoothing: Passes, *, aimed: Callable[[Mo
     return state
 
 
-def steps_at(run: Run, after: Motion) -> FloatArray:
+def steps_at(run: Run, after: Motion, *, within: FloatArray | None = None) -> FloatArray:
     """Return the largest step of a joint's change into or out of each frame, rad, shape (F,).
 
     0 where none is larger than is allowed, and than the joint's own largest step in the input.
+
+    Parameters
+    ----------
+    within : shape (F,), optional
+        Only steps among the frames at which it is not 0 are looked for.
     """
     before, first = run.motion, run.asked.body.first
     joints = np.array(sorted(frozenset().union(*(each.joints for each in run.asked.recruits))), dtype=np.intp)
     limit = _STEP * before.frame_time * _RATE
     found = np.zeros(len(before))
-    for block in frame_blocks(len(before)):
-        frames = np.arange(max(block.start, first), min(block.stop + 1, len(before)))
+    looked = np.arange(first, len(before)) if within is None else first + np.flatnonzero(within[first:])
+    start, stop = (int(looked[0]), int(looked[-1]) + 1) if len(looked) else (0, 0)
+    for block in frame_blocks(stop - start):
+        frames = np.arange(start + block.start, min(start + block.stop + 1, stop))
         change = _change(before, after, frames[:, None], joints)
         # A cosine of half the step costs less than the step, and nearly all are let off by it.
         far = np.abs(np.einsum("fji,fji->fj", change[:-1], change[1:])) < np.cos(0.5 * limit)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.motion import Motion
 from motionedit.core.priorities.frames import run_of, solve_frames
 from motionedit.core.priorities.groups import Asked
 from motionedit.core.priorities.kinds.constraint import Scene, Targets
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from motionedit.core.arrays import FloatArray
-    from motionedit.core.motion import Motion
     from motionedit.core.priorities.kinds.constraint import Constraint, ConstraintErrors
     from motionedit.core.priorities.recruiting import Recruits
     from motionedit.core.priorities.settings import Body, LayeredSettings
@@ -64,6 +64,14 @@ def reached(asked: Asked, i: int, motion: Motion) -> Targets:
     """Return where a motion has a constraint's task."""
     constraint = asked.constraints[i]
     return constraint.reached(asked.targets[i], _seen(motion, [constraint], asked.body))
+
+
+def reached_within(asked: Asked, i: int, motion: Motion, frames: slice) -> Targets | None:
+    """Return where a motion has a constraint's task at some frames; None where that is no place to go back to."""
+    constraint, here = asked.constraints[i], asked.targets[i].within(frames).since(frames.start)
+    part = Motion(motion.skeleton, motion.rotations[frames], motion.translations[frames], motion.frame_time)
+    there = constraint.reached(here, _seen(part, [constraint], asked.body))
+    return None if there is here else there.since(-frames.start)
 
 
 def _seen(motion: Motion, constraints: Sequence[Constraint], body: Body) -> Sight:

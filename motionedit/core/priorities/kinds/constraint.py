@@ -69,11 +69,28 @@ class Targets:
             raise ValueError("these targets have no positions")
         return self.positions
 
-    def until(self, frame: int) -> Targets:
-        """Return the targets of frames before one that is after their first."""
-        count = min(self.last + 1, frame) - self.first
-        parts = (self.positions, self.rotations, self.lengths)
-        return Targets(self.first, self.first + count - 1, *(None if part is None else part[:count] for part in parts))
+    @property
+    def parts(self) -> tuple[FloatArray | None, FloatArray | None, FloatArray | None]:
+        """Positions, rotations and lengths."""
+        return self.positions, self.rotations, self.lengths
+
+    def within(self, frames: slice) -> Targets:
+        """Return the targets at some of their frames."""
+        here = slice(frames.start - self.first, frames.stop - self.first)
+        return Targets(frames.start, frames.stop - 1, *(None if part is None else part[here] for part in self.parts))
+
+    def since(self, frame: int) -> Targets:
+        """Return the same targets of a motion that begins at a frame of this one."""
+        return Targets(self.first - frame, self.last - frame, *self.parts)
+
+    def with_part(self, part: Targets) -> Targets:
+        """Return the targets with those at some of their frames replaced."""
+        here = slice(part.first - self.first, part.last + 1 - self.first)
+        parts = [None if own is None else own.copy() for own in self.parts]
+        for own, new in zip(parts, part.parts, strict=True):
+            if own is not None and new is not None:
+                own[here] = new
+        return Targets(self.first, self.last, *parts)
 
     def positions_at(self, frames: IntArray) -> FloatArray:
         """Return the positions at frames of the clip, shape (N, 3)."""
