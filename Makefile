@@ -49,7 +49,7 @@ test: $(STAMP)  ## run the tests that take less than two minutes, and the linter
 	$(BIN)/python .ci/changelog.py
 
 test-numpy: $(STAMP)  ## run the same tests without the compiled solver, as where there is no C compiler
-	MOTIONEDIT_SOLVER=numpy $(BIN)/python -m pytest -n $(JOBS) -m 'not slow'
+	MOTIONEDIT_SOLVER=numpy $(BIN)/python -m pytest -n $(JOBS) -m 'not slow and not compiled'
 
 sanitize: $(STAMP)  ## run the compiled part's tests under the address and undefined-behaviour sanitizers (gcc)
 	bash tests/sanitize.sh $(abspath $(BIN)/python)

@@ -106,6 +106,7 @@ def test_a_floor_lifts_what_is_below_it_by_the_legs_alone_where_those_are_recrui
     np.testing.assert_array_equal(hips, before)
 
 
+@pytest.mark.compiled
 def test_a_floor_under_all_knows_every_joint_and_end_site(edit):
     low = {"name": "low", "type": "position", "effector": {"end_site": "RightHandIndex1"}, "priority": 2}
     reach = low | {"points": [{"hold": [60, 70], "shift": [0, -300, 0]}]}

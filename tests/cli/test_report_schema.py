@@ -90,6 +90,7 @@ def test_edit_prioritized(report, name):
     assert found["clips"][0]["constraints"]
 
 
+@pytest.mark.compiled
 def test_edit_prioritized_that_misses_fails_or_has_nothing_to_do(report, bad, copy_spec):
     report("edit-prioritized", WALK, bad, "-s", copy_spec, "-o", "out", "--verify", exit_code=1)
     spec = ROOT / "configs" / "karate.yaml"

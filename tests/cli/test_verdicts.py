@@ -143,6 +143,7 @@ def error_of(record, name, frame):
     return one["frames"]["error"][frame - one["first_frame"]]
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize(
     ("asked", "smoothing"),
     [
@@ -207,7 +208,7 @@ def test_an_up_that_is_given_against_plain_evidence_warns(edit):
 @pytest.mark.parametrize(
     ("constraint", "keys"),
     [
-        (hand([1e9, -1e9, 0]), {}),
+        pytest.param(hand([1e9, -1e9, 0]), {}, marks=pytest.mark.compiled),
         (hand([0, 5, 0], tolerance=1e-12, ease_in="1e9s", ease_out=10**9), {}),
         (hand([0, 5, 0], effector={"joint": "LeftHand", "offset": [0, 1e9, 0]}), {}),
         (hand([0, 5, 0]), {"smoothing": {"sigma": "1e9s"}, "attraction": 10, "masses": {"Head": 1e9}}),

@@ -54,6 +54,7 @@ def block(text, language, name):
     return found.group(1)
 
 
+@pytest.mark.compiled
 @pytest.mark.skipif(shutil.which("make") is None, reason="no make on this machine")
 def test_the_makefile_passes_until_a_motion_changes_and_again_when_it_is_accepted(text, shell, other_spec, tmp_path):
     (tmp_path / "motions.mk").write_text(block(text, "make", "motions.mk"), encoding="utf-8")
@@ -83,6 +84,7 @@ def run_job(steps, shell):
     return failed, ran
 
 
+@pytest.mark.compiled
 def test_the_job_passes_where_motions_are_the_same_and_shows_them_where_they_are_not(text, shell, other_spec, tmp_path):
     job = yaml.safe_load(block(text, "yaml", "motions.yml"))["jobs"]["motions"]["steps"]
     uploaded = job[-1]["with"]["path"].split()

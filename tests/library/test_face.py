@@ -97,6 +97,7 @@ def test_nothing_is_printed_and_the_environment_stays(fitted, capsys):
     assert dict(os.environ) == before
 
 
+@pytest.mark.compiled
 def test_a_mapping_says_what_a_file_says(mapping):
     spec = mapping("stairs")
     from_file = motionedit.edit_prioritized("data/walk.bvh", "configs/stairs.yaml")

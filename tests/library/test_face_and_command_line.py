@@ -49,7 +49,7 @@ def test_an_edit_by_a_model_is_that_of_the_command_line(command_line, tmp_path, 
     assert list(result.warnings) == command_line.warnings
 
 
-@pytest.mark.parametrize("spec", ["stairs", "reach"])
+@pytest.mark.parametrize("spec", [pytest.param("stairs", marks=pytest.mark.compiled), "reach"])
 def test_an_edit_by_priorities_is_that_of_the_command_line(command_line, tmp_path, spec):
     spec = f"configs/{spec}.yaml"
     report = command_line("edit-prioritized", "data/walk.bvh", "-s", spec, "-o", tmp_path / "a.bvh", report="edit")

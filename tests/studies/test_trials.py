@@ -134,11 +134,13 @@ def tried(tmp_path_factory):
     return get
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize(("clip", "edit"), cases("strict", ("far", "at the limit", "wall", "both high")))
 def test_a_constraint_is_not_moved_by_one_below_it(tried, clip, edit):
     assert tried(clip, edit).strict <= STRICT_MOST
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize(
     ("clip", "edit"), cases("jerk", ("at the limit", "beyond", "fixed point", "long hold", "wall"))
 )
@@ -146,21 +148,25 @@ def test_where_a_goal_gives_way_the_motion_stays_smooth(tried, clip, edit):
     assert tried(clip, edit).measured.jerk <= GIVING_WAY_JERK
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize(("clip", "edit"), cases("jerk", SWITCHING))
 def test_where_constraints_switch_the_motion_stays_smooth(tried, clip, edit):
     assert tried(clip, edit).measured.jerk <= SWITCHING_JERK
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize(("clip", "edit"), cases("pops", SWITCHING))
 def test_where_constraints_switch_no_joint_pops(tried, clip, edit):
     assert tried(clip, edit).measured.pop == 0.0
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize(("clip", "edit"), cases("back", ("far", "beyond", "wall", "both high", "crouch")))
 def test_no_knee_and_no_elbow_is_bent_back(tried, clip, edit):
     assert tried(clip, edit).measured.back <= BACK_MOST
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize(
     ("clip", "edit"), cases("seen", ("near", "far", "at the limit", "wall", "gaze", "ends", "step"))
 )
@@ -176,6 +182,7 @@ def test_everyday_edits_of_a_walk_are_ok_and_seen_by_no_one(tried, edit):
     assert not one.measured.is_seen
 
 
+@pytest.mark.compiled
 def test_the_table_and_the_summary_say_what_was_measured(tried):
     one = tried("walk", "beyond")
     assert line(one).startswith("walk      beyond ")
