@@ -56,7 +56,8 @@ def run_of(asked: Asked) -> Run:
 class Solved:
     """A motion whose frames are solved in place, and how it went: iterations (F,), converged (F,), ranks (F, L).
 
-    `left` (F, L) is what was left of each layer before the last step, as `LayeredSolution` has it.
+    `left` (F, L) is what was left of each layer before the last step, as `LayeredSolution` has it. `steps`: whether
+    its change still steps after all passes.
     """
 
     motion: Motion
@@ -64,6 +65,7 @@ class Solved:
     converged: BoolArray
     ranks: IntArray
     left: FloatArray
+    steps: bool = False
 
 
 @dataclass(frozen=True, eq=False)

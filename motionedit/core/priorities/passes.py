@@ -10,7 +10,6 @@ from motionedit.core.priorities.frames import Run, Solved, known_after, run_of, 
 from motionedit.core.priorities.giving_way import within_reach, without_steps
 from motionedit.core.priorities.recruiting import Recruits
 from motionedit.core.priorities.settings import PaperFilter, Passes
-from motionedit.core.priorities.smoothing import steps_at
 from motionedit.core.priorities.straight import bent_where_missed
 from motionedit.dataclass import dataclass
 
@@ -38,7 +37,7 @@ def solve_in_passes(run: Run, smoothing: Passes) -> Passed:
     state = bent_where_missed(run, solve_frames(run, motion, reference=motion, pull_root=False))
     iterations = state.iterations.copy()
     found = within_reach(run, state, smoothing)
-    calm = run.calm or bool(smoothing.count and steps_at(run, found.state.motion).any())
+    calm = run.calm or found.state.steps
     return Passed(without_steps(found, smoothing) if calm else found.state, iterations, calm)
 
 

@@ -45,10 +45,11 @@ def in_passes(run: Run, state: Solved, smoothing: Passes, *, aimed: Callable[[Mo
         state = solve_frames(now, smooth, reference=smooth, pull_root=True, known=known)
         del smooth
     found, share = [np.inf] * _PATIENCE, np.ones(len(motion))
-    for _ in range(_MORE_PASSES if smoothing.count else 0):
+    for more in range(_MORE_PASSES + 1 if smoothing.count else 0):
         steps = steps_at(run, state.motion, within=share)
         largest = float(steps.max(initial=0.0))
-        if largest == 0.0 or largest > _PROGRESS * found[-_PATIENCE]:
+        state.steps = largest > 0.0
+        if largest == 0.0 or more == _MORE_PASSES or largest > _PROGRESS * found[-_PATIENCE]:
             break
         found.append(largest)
         share = shares_of(steps > 0.0, max(1, round(_RAMP / motion.frame_time)))
