@@ -98,6 +98,7 @@ def solve(
     *,
     softness: FloatArray,
     in_order: bool,
+    gives_up: bool,
     threads: int,
 ) -> None:
     """Solve those `frames` of a motion that are not converged from where they are, as `solve_layers`."""
@@ -119,7 +120,7 @@ def solve(
     bounds = [count * i // shares for i in range(shares + 1)]
 
     def run(share: int) -> None:
-        compiled().solve(buffers, bounds[share], bounds[share + 1], in_order)
+        compiled().solve(buffers, bounds[share], bounds[share + 1], in_order, gives_up)
 
     if shares == 1:
         run(0)

@@ -76,7 +76,9 @@ class Known:
     ranks: IntArray
 
 
-def solve_frames(run: Run, start: Motion, *, reference: Motion, pull_root: bool, known: Known | None = None) -> Solved:
+def solve_frames(
+    run: Run, start: Motion, *, reference: Motion, pull_root: bool, known: Known | None = None, gives_up: bool = False
+) -> Solved:
     """Return the motion with every frame solved from `start`, attracted to `reference`.
 
     Parameters
@@ -85,11 +87,13 @@ def solve_frames(run: Run, start: Motion, *, reference: Motion, pull_root: bool,
         Whether the root's translation is attracted, too.
     known : Known, optional
         What is known from the solve before.
+    gives_up : bool
+        Whether it is asked alone what can be reached, as `solve_layers` has it.
     """
     solved = _unsolved(run, start)
     for group in run.groups:
         done = None if known is None else known.done[group.frames]
-        _solve(run, solved, group, reference, done=done, pull_root=pull_root)
+        _solve(run, solved, group, reference, done=done, pull_root=pull_root, gives_up=gives_up)
     if known is not None:
         solved.ranks[known.done] = known.ranks[known.done]
     return solved
@@ -142,6 +146,7 @@ def _solve(
     pull_root: bool,
     done: BoolArray | None = None,
     in_order: bool = False,
+    gives_up: bool = False,
 ) -> None:
     """Solve a group's frames of `solved` from where they are, in place."""
     travels = bool(run.motion.translations.shape[1])
@@ -153,6 +158,7 @@ def _solve(
         group.frames,
         done=done,
         in_order=in_order,
+        gives_up=gives_up,
         threads=run.asked.settings.threads,
     )
     solved.iterations[group.frames], solved.converged[group.frames] = solution.iterations, solution.converged

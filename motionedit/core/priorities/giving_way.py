@@ -17,8 +17,8 @@ from motionedit.core.priorities.frames import Known, run_of, solve_frames
 from motionedit.core.priorities.kinds.constraint import between
 from motionedit.core.priorities.shares import shares_of
 from motionedit.core.priorities.smoothing import in_passes, steps_at
-from motionedit.core.priorities.straight import bent_where_missed, lefts_of
-from motionedit.core.priorities.targets import reached_within
+from motionedit.core.priorities.straight import bent_where_missed
+from motionedit.core.priorities.targets import lefts_of, reached_within
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -73,14 +73,16 @@ def within_reach(run: Run, state: Solved, smoothing: Passes) -> Reached:
         if missed.any() and level != asked.levels[-1]:
             # What is below may have led it astray: whether it is out of reach shows without.
             part, known = run_of(above), Known(~np.any(missed, axis=0), state.ranks[:, : len(above.levels)])
-            alone = solve_frames(part, motion, reference=motion, pull_root=False, known=known)
+            alone = solve_frames(part, motion, reference=motion, pull_root=False, known=known, gives_up=True)
             missed &= _missed(above, members, bent_where_missed(part, alone).motion)
         if not missed.any():
             continue
         above, smooth[level] = _given_way(above, dict(zip(members, missed, strict=True)), smoothing)
         asked = _with_paths(asked, above, here)
         run = run_of(asked)
-        state = bent_where_missed(run, solve_frames(run, motion, reference=motion, pull_root=False))
+        is_last = level == asked.levels[-1]
+        state = solve_frames(run, motion, reference=motion, pull_root=False, gives_up=not is_last)
+        state = bent_where_missed(run, state)
     smooth[asked.levels[-1]] = in_passes(run, state, smoothing)
     return Reached(run, smooth)
 

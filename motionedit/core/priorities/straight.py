@@ -15,14 +15,12 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.motion import Motion
 from motionedit.core.priorities.frames import Known, Solved, solve_frames
-from motionedit.core.priorities.targets import errors_of
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray
     from motionedit.core.body.bends import Bend
     from motionedit.core.body.hinges import Hinge
     from motionedit.core.priorities.frames import Run
-    from motionedit.core.priorities.groups import Asked
 
 _LITTLE = float(np.radians(1.0))
 _MISSED = 1e-4  # metres or radians
@@ -37,7 +35,7 @@ def bent_where_missed(run: Run, state: Solved) -> Solved:
     bends = [bend for bend in body.bends if bend.joint in recruited and bend.straight.any()]
     if not bends or state.left.max(initial=0.0) < _MISSED:
         return state
-    missed = np.max(lefts_of(run.asked, state.motion), axis=0) > _MISSED
+    missed = state.left.max(axis=1) > _MISSED
     rotations = state.motion.rotations.copy()
     again = np.zeros(len(rotations), dtype=np.bool_)
     for bend in bends:
@@ -51,7 +49,7 @@ def bent_where_missed(run: Run, state: Solved) -> Solved:
         return state
     start = Motion(state.motion.skeleton, rotations, state.motion.translations, state.motion.frame_time)
     solved = solve_frames(run, start, reference=run.motion, pull_root=False, known=Known(~again, state.ranks))
-    better = again & _is_better(run, solved.motion, state.motion)
+    better = again & _is_better(solved, state)
     return _mixed(solved, state, better)
 
 
@@ -64,24 +62,12 @@ def _is_recruited(run: Run, bend: Bend) -> BoolArray:
     return there
 
 
-def lefts_of(asked: Asked, motion: Motion) -> list[FloatArray]:
-    """Return what is left of each constraint at every frame, metres or radians, shape (F,); 0 where it is idle."""
-    lefts = []
-    for errors, targets in zip(errors_of(asked, motion), asked.targets, strict=True):
-        left = np.zeros(len(motion))
-        parts = [part for part in (errors.positions, errors.angles) if part is not None]
-        left[targets.span] = np.max(parts, axis=0)
-        lefts.append(left)
-    return lefts
-
-
-def _is_better(run: Run, after: Motion, before: Motion) -> BoolArray:
-    """Return at which frames the most important constraint that differs is nearer to its goal, shape (F,)."""
-    order = np.argsort([-each.priority for each in run.asked.constraints], kind="stable")
-    gains = np.array(lefts_of(run.asked, before))[order] - np.array(lefts_of(run.asked, after))[order]
+def _is_better(after: Solved, before: Solved) -> BoolArray:
+    """Return at which frames the most important layer that differs is nearer to its goals, shape (F,)."""
+    gains = before.left - after.left
     gains[np.abs(gains) < 0.1 * _MISSED] = 0.0
-    first = np.argmax(gains != 0.0, axis=0)
-    better: BoolArray = gains[first, np.arange(gains.shape[1])] > 0.0
+    first = np.argmax(gains != 0.0, axis=1)
+    better: BoolArray = gains[np.arange(len(gains)), first] > 0.0
     return better
 
 

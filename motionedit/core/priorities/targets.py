@@ -60,6 +60,17 @@ def errors_of(asked: Asked, motion: Motion) -> tuple[ConstraintErrors, ...]:
     )
 
 
+def lefts_of(asked: Asked, motion: Motion) -> list[FloatArray]:
+    """Return what is left of each constraint at every frame, metres or radians, shape (F,); 0 where it is idle."""
+    lefts = []
+    for errors, targets in zip(errors_of(asked, motion), asked.targets, strict=True):
+        left = np.zeros(len(motion))
+        parts = [part for part in (errors.positions, errors.angles) if part is not None]
+        left[targets.span] = np.max(parts, axis=0)
+        lefts.append(left)
+    return lefts
+
+
 def reached(asked: Asked, i: int, motion: Motion) -> Targets:
     """Return where a motion has a constraint's task."""
     constraint = asked.constraints[i]

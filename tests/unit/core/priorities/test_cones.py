@@ -14,7 +14,7 @@ from motionedit.core.kinematics import forward
 from motionedit.core.priorities.edit import edit_by_priorities, prepare
 from motionedit.core.priorities.kinds import Position
 from motionedit.core.priorities.settings import LayeredSettings, PaperFilter
-from motionedit.core.priorities.straight import lefts_of
+from motionedit.core.priorities.targets import lefts_of
 from motionedit.core.priorities.trajectories import ControlPoint
 
 FRAMES = 40

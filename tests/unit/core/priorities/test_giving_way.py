@@ -15,7 +15,7 @@ from motionedit.core.priorities.kinds import CenterOfMass, Position
 from motionedit.core.priorities.numpy_solver import attraction
 from motionedit.core.priorities.problem import Reference
 from motionedit.core.priorities.settings import LayeredSettings, Passes
-from motionedit.core.priorities.straight import lefts_of
+from motionedit.core.priorities.targets import lefts_of
 from motionedit.core.priorities.trajectories import ControlPoint
 
 FRAMES = 90
