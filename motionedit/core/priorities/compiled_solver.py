@@ -98,7 +98,6 @@ def solve(
     *,
     softness: FloatArray,
     in_order: bool,
-    gives_up: bool,
     threads: int,
 ) -> None:
     """Solve those `frames` of a motion that are not converged from where they are, as `solve_layers`."""
@@ -120,7 +119,7 @@ def solve(
     bounds = [count * i // shares for i in range(shares + 1)]
 
     def run(share: int) -> None:
-        compiled().solve(buffers, bounds[share], bounds[share + 1], in_order, gives_up)
+        compiled().solve(buffers, bounds[share], bounds[share + 1], in_order)
 
     if shares == 1:
         run(0)

@@ -17,9 +17,6 @@ FULL_GAIN_ITERATIONS = 8
 GAIN_DECAY = 0.85
 # After so many iterations what is left may be out of reach, and steps are kept from swinging.
 HASTY_ITERATIONS = 8
-# Where it is asked alone whether goals can be reached, frames end at which a layer is farther than this from its own,
-# metres or radians, and after so many iterations more than a share of what it was before; those above are not.
-STUCK_ERROR, STUCK_SHARE, STUCK_ITERATIONS = 1e-2, 0.8, 4
 # Over so many last iterations the lower layers' largest error and the gain are halved each time.
 ANNEALED_ITERATIONS = 10
 # A hinge that leaves its limits is set on them and leaves the system; this many times at most.

@@ -76,9 +76,7 @@ class Known:
     ranks: IntArray
 
 
-def solve_frames(
-    run: Run, start: Motion, *, reference: Motion, pull_root: bool, known: Known | None = None, gives_up: bool = False
-) -> Solved:
+def solve_frames(run: Run, start: Motion, *, reference: Motion, pull_root: bool, known: Known | None = None) -> Solved:
     """Return the motion with every frame solved from `start`, attracted to `reference`.
 
     Parameters
@@ -87,13 +85,11 @@ def solve_frames(
         Whether the root's translation is attracted, too.
     known : Known, optional
         What is known from the solve before.
-    gives_up : bool
-        Whether it is asked alone what can be reached, as `solve_layers` has it.
     """
     solved = _unsolved(run, start)
     for group in run.groups:
         done = None if known is None else known.done[group.frames]
-        _solve(run, solved, group, reference, done=done, pull_root=pull_root, gives_up=gives_up)
+        _solve(run, solved, group, reference, done=done, pull_root=pull_root)
     if known is not None:
         solved.ranks[known.done] = known.ranks[known.done]
     return solved
@@ -146,7 +142,6 @@ def _solve(
     pull_root: bool,
     done: BoolArray | None = None,
     in_order: bool = False,
-    gives_up: bool = False,
 ) -> None:
     """Solve a group's frames of `solved` from where they are, in place."""
     travels = bool(run.motion.translations.shape[1])
@@ -158,7 +153,6 @@ def _solve(
         group.frames,
         done=done,
         in_order=in_order,
-        gives_up=gives_up,
         threads=run.asked.settings.threads,
     )
     solved.iterations[group.frames], solved.converged[group.frames] = solution.iterations, solution.converged

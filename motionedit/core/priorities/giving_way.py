@@ -73,16 +73,14 @@ def within_reach(run: Run, state: Solved, smoothing: Passes) -> Reached:
         if missed.any() and level != asked.levels[-1]:
             # What is below may have led it astray: whether it is out of reach shows without.
             part, known = run_of(above), Known(~np.any(missed, axis=0), state.ranks[:, : len(above.levels)])
-            alone = solve_frames(part, motion, reference=motion, pull_root=False, known=known, gives_up=True)
+            alone = solve_frames(part, motion, reference=motion, pull_root=False, known=known)
             missed &= _missed(above, members, bent_where_missed(part, alone).motion)
         if not missed.any():
             continue
         above, smooth[level] = _given_way(above, dict(zip(members, missed, strict=True)), smoothing)
         asked = _with_paths(asked, above, here)
         run = run_of(asked)
-        is_last = level == asked.levels[-1]
-        state = solve_frames(run, motion, reference=motion, pull_root=False, gives_up=not is_last)
-        state = bent_where_missed(run, state)
+        state = bent_where_missed(run, solve_frames(run, motion, reference=motion, pull_root=False))
     smooth[asked.levels[-1]] = in_passes(run, state, smoothing)
     return Reached(run, smooth)
 

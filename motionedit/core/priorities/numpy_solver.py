@@ -28,9 +28,6 @@ from motionedit.core.priorities.constants import (
     STOP_ERROR,
     STOP_LEFT,
     STOP_STEP,
-    STUCK_ERROR,
-    STUCK_ITERATIONS,
-    STUCK_SHARE,
 )
 from motionedit.core.priorities.hinged import Hinges
 from motionedit.core.priorities.homing import Memory, accelerated, attraction
@@ -51,37 +48,23 @@ BLOCK = 1024
 
 
 def solve(
-    problem: Problem,
-    solution: LayeredSolution,
-    reference: Reference,
-    frames: IntArray,
-    *,
-    in_order: bool,
-    gives_up: bool,
+    problem: Problem, solution: LayeredSolution, reference: Reference, frames: IntArray, *, in_order: bool
 ) -> None:
     """Solve those `frames` of a motion that are not converged from where they are, as `solve_layers`."""
     whole = solution.motion
     part = Motion(whole.skeleton, whole.rotations[frames], whole.translations[frames], whole.frame_time)
     root = None if reference.root is None else reference.root[frames]
-    _solve(
-        problem,
-        replace(solution, motion=part),
-        Reference(reference.rotations[frames], root),
-        in_order=in_order,
-        gives_up=gives_up,
-    )
+    _solve(problem, replace(solution, motion=part), Reference(reference.rotations[frames], root), in_order=in_order)
     whole.rotations[frames], whole.translations[frames] = part.rotations, part.translations
 
 
-def _solve(
-    problem: Problem, solution: LayeredSolution, reference: Reference, *, in_order: bool, gives_up: bool
-) -> None:
+def _solve(problem: Problem, solution: LayeredSolution, reference: Reference, *, in_order: bool) -> None:
     """Solve every frame of `solution` that is not converged, in place."""
     count = len(solution.iterations)
     if not in_order:
         for block in range(0, count, BLOCK):
             frames = np.arange(block, min(block + BLOCK, count))
-            _within_limits(problem, solution, reference, frames[~solution.converged[frames]], gives_up=gives_up)
+            _within_limits(problem, solution, reference, frames[~solution.converged[frames]])
         return
     columns, motion = problem.columns, solution.motion
     root = int(np.searchsorted(columns.skeleton.translated, columns.root))
@@ -90,14 +73,12 @@ def _solve(
             motion.rotations[frame, columns.joints] = motion.rotations[frame - 1, columns.joints]
             if problem.moves_root:
                 motion.translations[frame, root] = motion.translations[frame - 1, root]
-        _within_limits(problem, solution, reference, np.array([frame]), gives_up=gives_up)
+        _within_limits(problem, solution, reference, np.array([frame]))
 
 
-def _within_limits(
-    problem: Problem, solution: LayeredSolution, reference: Reference, frames: IntArray, *, gives_up: bool
-) -> None:
+def _within_limits(problem: Problem, solution: LayeredSolution, reference: Reference, frames: IntArray) -> None:
     """Solve frames without limits of joints, and those whose solutions are beyond them on with these."""
-    _iterate(problem, solution, reference, frames, limited=False, gives_up=gives_up)
+    _iterate(problem, solution, reference, frames, limited=False)
     joints = problem.columns.joints[problem.limits.places]
     if not len(joints) or not len(frames):
         return
@@ -106,7 +87,7 @@ def _within_limits(
     beyond = frames[passed & (left <= MET_WITHOUT_LIMITS)]
     before = solution.iterations[beyond]
     solution.converged[beyond] = False
-    _iterate(problem, solution, reference, beyond, limited=True, gives_up=gives_up)
+    _iterate(problem, solution, reference, beyond, limited=True)
     solution.iterations[beyond] += before
 
 
@@ -143,21 +124,13 @@ class _Pose:
 
     def at(self, these: BoolArray) -> _Pose:
         """Return some of the frames."""
-        if these.all():
-            return self
         motion, world = self.motion, self.world
         part = Motion(motion.skeleton, motion.rotations[these], motion.translations[these], motion.frame_time)
         return _Pose(self.frames[these], part, WorldPoses(world.positions[these], world.rotations[these]))
 
 
 def _iterate(
-    problem: Problem,
-    solution: LayeredSolution,
-    reference: Reference,
-    frames: IntArray,
-    *,
-    limited: bool,
-    gives_up: bool,
+    problem: Problem, solution: LayeredSolution, reference: Reference, frames: IntArray, *, limited: bool
 ) -> None:
     columns, state = problem.columns, solution.motion
     root = int(np.searchsorted(columns.skeleton.translated, columns.root))
@@ -166,17 +139,9 @@ def _iterate(
     first, count = int(frames[0]), int(frames[-1] - frames[0]) + 1
     block = _Block(problem, reference, Memory.empty(count, columns.size), Sides(count), first, root, limited)
     memory, moved_before = block.memory, np.zeros(count)
-    left_before = np.full((count, len(problem.layers)), np.inf)
     for iteration in range(problem.max_iterations):
-        pose = _Pose.of(state, frames)
-        if gives_up and iteration >= HASTY_ITERATIONS and iteration % STUCK_ITERATIONS == 0:
-            left = solution.left[frames] = _largest_left(problem, pose)
-            stuck = _are_stuck(left, left_before[frames - block.first], problem.softness[frames])
-            left_before[frames - block.first] = left
-            pose, frames = pose.at(~stuck), frames[~stuck]
-            if not len(frames):
-                return
         here = frames - block.first
+        pose = _Pose.of(state, frames)
         hinges = Hinges(problem, pose.motion.rotations, pose.world)
         step, descent = _step(block, pose, hinges, iteration)
         turns = (step * block.mobility)[:, :-3].reshape(len(frames), -1, 3)
@@ -219,18 +184,6 @@ def _largest_left(problem: Problem, pose: _Pose) -> FloatArray:
             found = _evaluated([replace(each, weight=1.0)], pose).left
             left[:, level] = np.maximum(left[:, level], np.abs(found).max(axis=1, initial=0.0))
     return left
-
-
-def _are_stuck(left: FloatArray, before: FloatArray, softness: FloatArray) -> BoolArray:
-    """Return which frames come no nearer to a goal that is far, from what is left of layers now and before, (N, L).
-
-    Nobody waits for layers that give way, nor for those below one that is stuck.
-    """
-    left = np.where(softness > 0.0, 0.0, left)
-    far = left > STUCK_ERROR
-    first = np.argmax(far, axis=1)[:, None]
-    stuck: BoolArray = np.take_along_axis(far & (left > STUCK_SHARE * before), first, axis=1)[:, 0]
-    return stuck
 
 
 def _are_met(problem: Problem, solution: LayeredSolution, frames: IntArray) -> BoolArray:

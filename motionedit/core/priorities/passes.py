@@ -34,8 +34,7 @@ def solve(run: Run, smoothing: Passes | PaperFilter) -> Passed:
 def solve_in_passes(run: Run, smoothing: Passes) -> Passed:
     """Return the motion solved, smoothed and solved again."""
     motion = run.motion
-    state = solve_frames(run, motion, reference=motion, pull_root=False, gives_up=True)
-    state = bent_where_missed(run, state)
+    state = bent_where_missed(run, solve_frames(run, motion, reference=motion, pull_root=False))
     iterations = state.iterations.copy()
     found = within_reach(run, state, smoothing)
     calm = run.calm or found.state.steps

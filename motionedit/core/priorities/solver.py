@@ -57,7 +57,6 @@ def solve_layers(
     *,
     done: BoolArray | None = None,
     in_order: bool = False,
-    gives_up: bool = False,
     threads: int = 1,
 ) -> LayeredSolution:
     """Move frames of a motion so that the layers are met, each as far as those above it allow.
@@ -75,8 +74,6 @@ def solve_layers(
     in_order : bool
         The frames follow each other without a gap, none is `done`, and each begins where the one before ended, in what
         the columns move: eq. (4).
-    gives_up : bool
-        Frames that are stuck far from a goal end there, and are not converged.
     threads : int
         Frames are shared out among so many threads where the compiled solver runs; the result does not depend on it.
     """
@@ -91,7 +88,7 @@ def solve_layers(
     if prepared.layout is None or compiled() is None:
         from motionedit.core.priorities import numpy_solver
 
-        numpy_solver.solve(problem, solution, reference, frames, in_order=in_order, gives_up=gives_up)
+        numpy_solver.solve(problem, solution, reference, frames, in_order=in_order)
     else:
         compiled_solver.solve(
             prepared.layout,
@@ -100,7 +97,6 @@ def solve_layers(
             frames,
             softness=problem.softness,
             in_order=in_order,
-            gives_up=gives_up,
             threads=threads,
         )
     return solution

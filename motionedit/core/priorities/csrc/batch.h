@@ -95,7 +95,6 @@ typedef struct {
     V *cone_rows;                 /* shape (2 C, R), of those that are on their limits in some lane */
     Mask *cone_on, *cone_before;  /* shape (2 C,): which are on their limits, and were in the iteration before */
     int64_t before_limits[LANES]; /* iterations without them */
-    double *left_before;          /* shape (LANES, L): see is_stuck */
     Layer *layers;
     Layer **chain; /* the layers that make up rank space, from the first row on */
     int chain_count;

@@ -30,23 +30,11 @@ typedef int64_t Mask;
 #define ZEROS 0.0
 #define ONES 1.0
 #elif defined(FOUR_LANES)
-#define ZEROS                                                                                                          \
-    {                                                                                                                  \
-        0.0, 0.0, 0.0, 0.0                                                                                             \
-    }
-#define ONES                                                                                                           \
-    {                                                                                                                  \
-        1.0, 1.0, 1.0, 1.0                                                                                             \
-    }
+#define ZEROS {0.0, 0.0, 0.0, 0.0}
+#define ONES {1.0, 1.0, 1.0, 1.0}
 #else
-#define ZEROS                                                                                                          \
-    {                                                                                                                  \
-        0.0, 0.0                                                                                                       \
-    }
-#define ONES                                                                                                           \
-    {                                                                                                                  \
-        1.0, 1.0                                                                                                       \
-    }
+#define ZEROS {0.0, 0.0}
+#define ONES {1.0, 1.0}
 #endif
 
 /* One lane of a V or a Mask, to read or to write. */

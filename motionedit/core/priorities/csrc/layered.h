@@ -63,8 +63,8 @@ typedef struct {
     double largest_error, largest_soft_error, largest_turn, stop_step, stop_left, stop_error, largest_ratio, gain_decay,
         on_limit;
     double rank_tolerance, least_scale, limb, largest_task_share, largest_factor, no_change, no_direction, beyond_limit,
-        met_without_limits, metres_per_radian, on_side, stuck_error, stuck_share;
-    int64_t full_gain_iterations, hasty_iterations, annealed_iterations, limit_rounds, sided_rounds, stuck_iterations;
+        met_without_limits, metres_per_radian, on_side;
+    int64_t full_gain_iterations, hasty_iterations, annealed_iterations, limit_rounds, sided_rounds;
 } Constants;
 
 /* How many there are of what, and how frames are solved. */
@@ -77,8 +77,8 @@ typedef struct {
 typedef struct {
     Settings of;
     Constants constants;
-    int64_t count, motion_frames;       /* N, F */
-    int in_order, gives_up, pulls_root; /* gives_up: frames that are stuck far from a goal end there */
+    int64_t count, motion_frames; /* N, F */
+    int in_order, pulls_root;
     const Node *node;
     const int64_t *column_node; /* shape (K,) */
     const double *mobility;     /* shape (K + 1,): of the columns, and of the root's shift */

@@ -323,7 +323,6 @@ static size_t lay_out(Batch *batch, char *memory)
     batch->algebra = NUMBERS(factor_scratch((int)R)), batch->dependent = MASKS(R);
     batch->dependent_row = PLACES(R), batch->sided_row = PLACES(R);
     batch->active = MASKS(R), batch->active_before = MASKS(R);
-    batch->left_before = take(from, &needed, sizeof(double) * LANES * problem->of.layers);
     batch->z = NUMBERS(n), batch->home = NUMBERS(n), batch->step = NUMBERS(n), batch->fast = NUMBERS(n);
     batch->home_before = NUMBERS(n), batch->step_before = NUMBERS(n);
     batch->column_hinge = PLACES(K), batch->column_hinges = PLACES(K), batch->column_unknown = PLACES(K);

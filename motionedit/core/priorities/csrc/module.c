@@ -18,10 +18,7 @@ typedef struct {
     size_t offset;
 } Field;
 
-#define FIELD(structure, name, format)                                                                                 \
-    {                                                                                                                  \
-#name, format, offsetof(structure, name)                                                                       \
-    }
+#define FIELD(structure, name, format) {#name, format, offsetof(structure, name)}
 #define INTEGER(structure, name) FIELD(structure, name, "i8")
 #define NUMBER(structure, name) FIELD(structure, name, "f8")
 
@@ -36,9 +33,8 @@ static const Field CONSTANTS_FIELDS[] = {NUMBER(Constants, largest_error), NUMBE
     NUMBER(Constants, limb), NUMBER(Constants, largest_task_share), NUMBER(Constants, largest_factor),
     NUMBER(Constants, no_change), NUMBER(Constants, no_direction), NUMBER(Constants, beyond_limit),
     NUMBER(Constants, met_without_limits), NUMBER(Constants, metres_per_radian), NUMBER(Constants, on_side),
-    NUMBER(Constants, stuck_error), NUMBER(Constants, stuck_share), INTEGER(Constants, full_gain_iterations),
-    INTEGER(Constants, hasty_iterations), INTEGER(Constants, annealed_iterations), INTEGER(Constants, limit_rounds),
-    INTEGER(Constants, sided_rounds), INTEGER(Constants, stuck_iterations), {0}};
+    INTEGER(Constants, full_gain_iterations), INTEGER(Constants, hasty_iterations),
+    INTEGER(Constants, annealed_iterations), INTEGER(Constants, limit_rounds), INTEGER(Constants, sided_rounds), {0}};
 static const Field NODE_FIELDS[] = {INTEGER(Node, joint), INTEGER(Node, parent), INTEGER(Node, translation),
     INTEGER(Node, column), FIELD(Node, offset, "3f8"), NUMBER(Node, share), FIELD(Node, center, "3f8"), {0}};
 static const Field TASK_FIELDS[] = {INTEGER(Task, kind), INTEGER(Task, layer), INTEGER(Task, rows), INTEGER(Task, node),
@@ -160,7 +156,7 @@ static PyObject *solve_with(int (*solver)(const Problem *, int64_t, int64_t), Py
     Problem problem = {0};
     long long begin, end;
     int status = -2;
-    if (!PyArg_ParseTuple(arguments, "OLLpp", &buffers.given, &begin, &end, &problem.in_order, &problem.gives_up))
+    if (!PyArg_ParseTuple(arguments, "OLLp", &buffers.given, &begin, &end, &problem.in_order))
         return NULL;
     if (!PyDict_Check(buffers.given))
         PyErr_SetString(PyExc_TypeError, "buffers come in a dictionary");

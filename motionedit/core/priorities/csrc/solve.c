@@ -466,29 +466,7 @@ static int active(const Batch *batch)
     return count;
 }
 
-/* Whether a lane's frame is far from a goal and comes no nearer: see numpy_solver.py. */
-static int is_stuck(Batch *batch, int lane)
-{
-    const Problem *problem = batch->problem;
-    const Constants *constants = &problem->constants;
-    const int64_t iteration = batch->iteration[lane];
-    double *before = batch->left_before + lane * problem->of.layers;
-    double *left = problem->left + batch->at[lane] * problem->of.layers;
-    int stuck = 0, waits = 0;
-    if (!problem->gives_up || iteration < constants->hasty_iterations || iteration % constants->stuck_iterations)
-        return 0;
-    largest_left(batch, lane, left);
-    for (int64_t l = 0; l < problem->of.layers && !stuck && !waits; l++) {
-        if (LANE(batch->layers[l].soft, lane) != 0.0)
-            continue;
-        stuck = left[l] > constants->stuck_error && left[l] > constants->stuck_share * before[l];
-        waits = !stuck && left[l] > constants->stuck_error;
-    }
-    memcpy(before, left, sizeof *before * problem->of.layers);
-    return stuck && iteration > constants->hasty_iterations;
-}
-
-/* End the frames that turn out to be met, have had all their iterations, or are stuck. */
+/* End the frames that turn out to be met, or have had all their iterations. */
 static void end_before_iterating(Batch *batch)
 {
     const Mask met = any(batch->nearly) ? batch->nearly & are_met(batch) : batch->nearly;
@@ -497,9 +475,6 @@ static void end_before_iterating(Batch *batch)
             (MASK_LANE(met, lane) || batch->iteration[lane] == batch->problem->of.max_iterations) &&
             !goes_on_with_limits(batch, lane)) {
             end_frame(batch, lane, MASK_LANE(met, lane) != 0);
-            batch->at[lane] = -1;
-        } else if (batch->at[lane] >= 0 && is_stuck(batch, lane)) {
-            end_frame(batch, lane, 0);
             batch->at[lane] = -1;
         }
 }
