@@ -154,11 +154,15 @@ def _iterate(
         moved = np.maximum(np.minimum(largest, LARGEST_TURN), np.linalg.norm((step * block.mobility)[:, -3:], axis=1))
         done = moved < STOP_STEP
         nearly = np.flatnonzero(~done & (_left(moved, moved_before[here]) < STOP_LEFT))
+        if done.any():
+            solution.left[frames[done]] = _largest_left(problem, pose.at(done))
         if len(nearly):
-            done[nearly[_are_met(problem, solution, frames[nearly])]] = True
+            now = _Pose.of(state, frames[nearly])
+            met = _are_met(problem, now)
+            solution.left[frames[nearly]] = _largest_left(problem, now)
+            done[nearly[met]] = True
         moved_before[here] = moved
         solution.converged[frames[done]] = True
-        solution.left[frames[done]] = _largest_left(problem, pose.at(done))
         frames = frames[~done]
         if not len(frames):
             return
@@ -186,9 +190,8 @@ def _largest_left(problem: Problem, pose: _Pose) -> FloatArray:
     return left
 
 
-def _are_met(problem: Problem, solution: LayeredSolution, frames: IntArray) -> BoolArray:
+def _are_met(problem: Problem, pose: _Pose) -> BoolArray:
     """Return which frames meet every layer, shape (N,)."""
-    pose = _Pose.of(solution.motion, frames)
     errors = [_evaluated(layer, pose).left for layer in problem.layers]
     met: BoolArray = np.all([np.linalg.norm(e, axis=1) < STOP_ERROR for e in errors], axis=0)
     return met

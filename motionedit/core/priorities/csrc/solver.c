@@ -16,4 +16,6 @@
 #include "held.c"
 #include "layers.c"
 #include "layout.c"
+#include "descent.c"
+#include "homing.c"
 #include "solve.c"
