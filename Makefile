@@ -18,7 +18,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 export OMP_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install demo test test-numpy sanitize test-all changelog release-check lint types docs docs-check golden bench bench-peers bench-scale figures trials paper data clean
+.PHONY: help install demo test test-numpy sanitize test-all changelog release-check lint types docs docs-check golden bench bench-peers bench-scale figures pictures trials paper data clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -99,6 +99,9 @@ bench-scale: $(STAMP)  ## measure many and long clips: their time and peak memor
 
 figures: $(STAMP)  ## print the accuracy figures that the documentation quotes
 	$(BIN)/python -m studies.figures
+
+pictures: $(STAMP)  ## draw the pictures of docs/giving-way.md anew
+	$(BIN)/python -m studies.giving_way
 
 trials: $(STAMP)  ## measure many edits of many clips from outside: strict, smooth, believable
 	$(BIN)/python -m studies.trials.run

@@ -114,7 +114,7 @@ def _range(value: object) -> JointRange:
 
 
 def _limits(value: object, _context: Context) -> str | dict[str, JointRange]:
-    if value in {"human", "off"}:
+    if isinstance(value, str) and value in {"human", "off"}:
         return str(value)
     if not isinstance(value, dict):
         raise faulty(f"must be human, off, or a mapping from joints to {{swing, twist}}, not {show(value)}")

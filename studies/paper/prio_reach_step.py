@@ -10,7 +10,7 @@ from studies.demonstrations import config, foot_plants, reach, step
 from studies.paper.comparison import SECONDS, timed
 from studies.paper.drawing import BLUE, GREY, ORANGE, Camera, Stage, new_figure
 from studies.paper.prio_clips import Shown, stand_over
-from studies.paper.study import ROOT, Findings, Table
+from studies.paper.study import AS_PRIO, ROOT, Findings, Table
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -63,7 +63,9 @@ def _variants(lab: Study, clip: Path, specs: dict[str, Spec]) -> tuple[dict[str,
     """Return the clips that specs lead to, the input last, and the seconds each took."""
     clips, seconds = {}, {}
     for name, spec in specs.items():
-        edit, seconds[name] = timed(lambda spec=spec: lab.lab.edit_prioritized(clip, spec), rounds=lab.rounds)
+        edit, seconds[name] = timed(
+            lambda spec=spec: lab.lab.edit_prioritized(clip, {**spec, **AS_PRIO}), rounds=lab.rounds
+        )
         clips[name] = Shown(edit.path)
     return {**clips, INPUT: Shown(clip)}, seconds
 

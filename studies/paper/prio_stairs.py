@@ -12,7 +12,7 @@ from studies.figures_prioritized import measured
 from studies.paper.comparison import SECONDS, timed
 from studies.paper.drawing import GREY, GROUND, ORANGE, Camera, Stage, new_figure
 from studies.paper.prio_clips import Shown
-from studies.paper.study import ROOT, Findings, Table
+from studies.paper.study import AS_PRIO, ROOT, Findings, Table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -31,8 +31,8 @@ def study(lab: Study) -> Findings:
     """Climb as the config says, and smoothed as in the paper; and on a real walk."""
     walk, spec = ROOT / "data" / "walk.bvh", config("stairs")
     edit, seconds = timed(lambda: lab.lab.edit_prioritized(walk, spec), rounds=lab.rounds)
-    paper = {**spec, "smoothing": {"method": "paper", "passes": 2}}
-    single = {**spec, "smoothing": {"method": "paper", "passes": 1}}
+    paper = {**spec, **AS_PRIO}
+    single = {**paper, "smoothing": {"method": "paper", "passes": 1}}
     edits: dict[str, tuple[Edited, float]] = {"the default, 3 passes": (edit, seconds)}
     if not lab.quick:
         edits["the paper's FIR, 1 pass"] = timed(lambda: lab.lab.edit_prioritized(walk, single), rounds=lab.rounds)
@@ -95,6 +95,6 @@ def _real(lab: Study) -> list[Table]:
     if clip is None or not clip.exists() or lab.quick:
         return []
     constraints = stairs(clip)
-    made = lab.lab.edit_prioritized(clip, {"constraints": constraints})
+    made = lab.lab.edit_prioritized(clip, {**AS_PRIO, "constraints": constraints})
     rows = (_kept(MEASURES), _kept(measured("CMU 07_04", clip, made, constraints)))
     return [Table("prio-stairs-real", "Climbing on a real walk (at a leg of 0.85 m)", rows, quoted=True)]
