@@ -45,3 +45,8 @@ def test_a_joint_that_the_clip_does_not_have_is_an_error_with_its_line(turned):
     assert result.exit_code == 2
     assert "s.yaml:1: limits.LeftArn: no joint 'LeftArn'" in result.stderr
     assert "'LeftArm'" in result.stderr
+
+
+def test_a_limit_of_a_knee_that_is_a_hinge_is_said_to_say_nothing(turned):
+    _, result = turned({"LeftForeArm": {"swing": 20}})
+    assert "limits of LeftForeArm say nothing: it bends about an axis" in result.stderr

@@ -88,7 +88,8 @@ def within_reach(run: Run, state: Solved, smoothing: Passes) -> Reached:
 def without_steps(found: Reached, smoothing: Passes) -> Solved:
     """Return a solution in which constraints that yield do so where meeting them makes the motion step.
 
-    Layer by layer from the top: what steps with a layer, and does not without it, that layer is to blame for.
+    Layer by layer from the top: what steps with a layer, and does not without it, that layer is to blame for. The most
+    important one yields to nothing.
     """
     run, asked, smooth = found.run, found.run.asked, dict(found.smooth)
     before = np.zeros(len(run.motion), dtype=np.bool_)
@@ -99,7 +100,7 @@ def without_steps(found: Reached, smoothing: Passes) -> Solved:
             smooth[level] = _solved(run_of(above), smoothing)
         steps = steps_at(run, smooth[level].motion) > 0.0
         new, before = steps & ~before, steps
-        members = [k for k in _members(level, above) if above.constraints[k].yields]
+        members = [k for k in _members(level, above) if above.constraints[k].yields and level != asked.levels[0]]
         stepping = {k: _within(new, above.targets[k]) for k in members}
         if any(frames.any() for frames in stepping.values()):
             above, state = _given_way(above, stepping, smoothing)

@@ -72,7 +72,7 @@ def sized_clip(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults
     motion = scaled(clip.motion, scale)
     sized = replace(masses, skeleton=motion.skeleton, points=frozen(masses.points * scale))
     mobility, root_mobility = _mobility(loaded, facts, faults)
-    limits = _limits(loaded, facts, faults)
+    limits = _limits(loaded, facts, hinges, faults, warnings)
     body = Body(sized, tuple(hinges), facts.travel, facts.first, bends, mobility, root_mobility, tuple(limits))
     return SizedClip(facts, motion, body, masses, scale, tuple(warnings))
 
@@ -134,7 +134,13 @@ def _mobility(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults:
     return mobility, 1.0
 
 
-def _limits(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults: Faults) -> list[Limit]:
+def _limits(
+    loaded: LoadedSpec[EditPrioritizedSpec],
+    facts: ClipFacts,
+    hinges: Sequence[Hinge],
+    faults: Faults,
+    warnings: list[str],
+) -> list[Limit]:
     """Return the cones that joints keep to, as the spec's limits have them."""
     motion, asked = facts.clip.motion, loaded.model.limits
     if asked == "human":
@@ -145,6 +151,8 @@ def _limits(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults: F
         joint = faults.get(partial(resolve.joint, name, motion.skeleton, place.at(name)), otherwise=None)
         if joint is not None:
             given[joint] = Range(half.swing, half.twist)
+        if joint in {hinge.joint for hinge in hinges}:
+            warnings.append(f"limits of {name} say nothing: it bends about an axis, within its hinge's own range")
     return given_limits(motion, facts.poses, given, first=facts.first)
 
 
