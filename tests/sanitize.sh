@@ -20,4 +20,5 @@ cd "$folder"
 "$python" -c "from motionedit.core import _compiled"  # else the tests would be skipped
 "$python" -m pytest -q -p no:cacheprovider -n 0 tests/unit/core/priorities/test_compiled.py \
   tests/unit/core/priorities/test_compiled_buffers.py tests/unit/core/priorities/test_few_channels.py \
-  tests/unit/core/priorities/test_compiled_one_sided.py tests/unit/core/priorities/test_compiled_postures.py
+  tests/unit/core/priorities/test_compiled_one_sided.py tests/unit/core/priorities/test_compiled_postures.py \
+  tests/properties/test_compiled_text.py

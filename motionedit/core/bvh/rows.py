@@ -10,6 +10,7 @@ import numpy as np
 from motionedit.core.arrays import frozen
 from motionedit.core.bvh.parse import FaultyWord, parse_block
 from motionedit.core.bvh.scan import line_blocks, line_breaks, quoted, refusal, words_between
+from motionedit.core.compiled import compiled
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -94,11 +95,14 @@ def read_rows(
         if not lenient and count > expected:
             surplus += _rows_within(data, begin, end)
             continue
-        words = _words(data, begin, end, columns, label, frame=count)
-        room = len(words[0]) // columns + 1
+        # A value and its blank take two bytes.
+        room = (end - begin + 1) // 2 // columns + 1
         if len(scratch) < room:
             scratch = np.empty((room, columns))
-        block = _read_block(data, begin, end, words, scratch, label, frame=count, lenient=lenient)
+        block = _whole_rows(data, begin, end, scratch)
+        if block is None:
+            words = _words(data, begin, end, columns, label, frame=count)
+            block = _read_block(data, begin, end, words, scratch, label, frame=count, lenient=lenient)
         rows = len(block.starts)
         take(count, scratch[: rows if lenient else max(min(rows, expected - count), 0)])
         # Copies, for a slice would keep the places of all values.
@@ -110,17 +114,34 @@ def read_rows(
     return Rows(frozen(np.concatenate(starts)), frozen(np.concatenate(stops)), decimals, cut_off, count + surplus)
 
 
-def values_between(data: bytes, rows: Rows, start: int, stop: int) -> FloatArray:
-    """Return the values of rows that were read, from frame start up to stop, shape (stop - start, C)."""
+def values_between(data: bytes, rows: Rows, start: int, stop: int, *, columns: int) -> FloatArray:
+    """Return the values of rows that were read, from frame start up to stop, shape (stop - start, C = columns)."""
     blocks = []
     step = max(BLOCK_BYTES * len(rows.starts) // len(data), 1)
     for first in range(start, stop, step):
         last = min(first + step, stop)
-        words = words_between(data, int(rows.starts[first]), int(rows.stops[last - 1]))
-        values = np.empty((last - first, len(words[0]) // (last - first)))
-        parse_block(data, *words, out=values.reshape(-1))
+        begin, end = int(rows.starts[first]), int(rows.stops[last - 1])
+        values = np.empty((last - first, columns))
+        if _whole_rows(data, begin, end, values) is None:
+            parse_block(data, *words_between(data, begin, end), out=values.reshape(-1))
         blocks.append(values)
     return np.concatenate(blocks)
+
+
+def _whole_rows(data: bytes, begin: int, end: int, out: FloatArray) -> _Block | None:
+    """Read whole rows into `out`, shape (room, C); None where other things stand there, and without a compiler."""
+    kernel = compiled()
+    if kernel is None:
+        return None
+    starts, stops = np.empty((2, len(out)), np.int64)
+    found = kernel.rows_from_text(memoryview(data)[begin:end], out.shape[1], out, starts, stops)
+    if found is None:
+        return None
+    count, decimals = found
+    starts, stops = starts[:count], stops[:count]
+    starts += begin
+    stops += begin
+    return _Block(starts, stops, decimals)
 
 
 def _ends_text(data: bytes, at: int) -> bool:

@@ -11,7 +11,8 @@ import numpy as np
 from motionedit.core.bvh.format import format_fixed, place
 from motionedit.core.bvh.rows import BLOCK_BYTES
 from motionedit.core.bvh.scan import words_between
-from motionedit.core.bvh.write import check_finite, decimals_of_edits, head_bytes, rows_text
+from motionedit.core.bvh.write import LONGEST_WHOLE, check_finite, decimals_of_edits, head_bytes, rows_text
+from motionedit.core.compiled import compiled
 from motionedit.core.euler import joint_pieces, piece_angles, runs
 from motionedit.core.motion import position_columns
 from motionedit.dataclass import dataclass
@@ -186,8 +187,17 @@ def _spliced(
 ) -> NDArray[np.uint8]:
     """Return the text of the rows in a span of bytes, with the touched cells of some columns replaced."""
     data, (begin, end) = clip.text.data, span
-    starts, stops = words_between(data, begin, end)
     width = clip.text.motion.skeleton.channel_count
+    kernel = compiled()
+    if kernel is not None:
+        every = np.zeros((len(values) // len(columns), width), dtype=np.bool_)
+        given = np.empty(every.shape)
+        every[:, columns], given[:, columns] = cells.reshape(-1, len(columns)), values.reshape(-1, len(columns))
+        text = np.empty(end - begin + every.size * (decimals + LONGEST_WHOLE), np.uint8)
+        length = kernel.splice(memoryview(data)[begin:end], every, given, decimals, text)
+        if length >= 0:
+            return text[:length]
+    starts, stops = words_between(data, begin, end)
     word = (np.arange(0, len(starts), width)[:, None] + columns).reshape(-1)
     if not cells.all():
         word, values = word[cells], values[cells]

@@ -31,7 +31,8 @@ class BvhText:
 
     def values_between(self, start: int, stop: int) -> FloatArray:
         """Return the channel values of the frames from start up to stop, shape (stop - start, C)."""
-        return values_between(self.data, self.rows, start, stop)
+        columns = self.header.skeleton.channel_count
+        return values_between(self.data, self.rows, start, stop, columns=columns)
 
 
 class Written(Protocol):

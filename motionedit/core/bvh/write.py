@@ -9,6 +9,7 @@ import numpy as np
 
 from motionedit.core.bvh.format import format_fixed, place
 from motionedit.core.bvh.rows import BLOCK_BYTES
+from motionedit.core.compiled import compiled
 from motionedit.core.euler import joint_angles
 from motionedit.errors import BvhError
 
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
     from motionedit.core.skeleton import Skeleton
 
 FEWEST_DECIMALS = 6
+# The characters of a number but its decimals: a sign, 16 digits, a point, and the blank after it.
+LONGEST_WHOLE = 19
 # A double below 10 carries no more.
 MOST_DECIMALS = 17
 
@@ -93,6 +96,12 @@ def head_bytes(clip: Written, *, frames: int, frame_time: float | None = None) -
 
 def rows_text(values: FloatArray, *, decimals: int, ending: bytes) -> bytes:
     """Return rows of values with a blank between two and the line ending after each."""
+    kernel = compiled()
+    if kernel is not None:
+        text = np.empty(values.size * (decimals + LONGEST_WHOLE) + len(values) * len(ending), np.uint8)
+        length = kernel.rows_to_text(np.ascontiguousarray(values), values.shape[1], decimals, ending, text)
+        if length >= 0:
+            return text[:length].tobytes()
     ends = np.full(values.shape[1], ord(" "), np.uint8)
     ends[-1] = ord("\n")
     step = max(BLOCK_BYTES // (10 * values.shape[1]), 1)
