@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.coefficients.edit import GoalRequest
+from motionedit.core.coefficients.goal_chains import GoalRequest
 from motionedit.core.kinematics import effector_positions
 from motionedit.core.timeline import round_half_up
 from motionedit.core.timeline.warp import make_warp
@@ -98,7 +98,7 @@ def _request(goal: PcGoal, facts: ClipFacts, place: Place, *, frame: int, poses:
     if goal.shift is not None:
         position = seen(poses, frame, effector, measure)[0] + np.array(goal.shift)
     rotation = None if goal.orientation is None else axes.rotation(resolve.orientation(goal.orientation))
-    return GoalRequest(frame, effector, position, rotation, goal.weight, measure)
+    return GoalRequest(frame, effector, position, rotation, goal.weight, measure, goal.priority)
 
 
 def _clip_goal(goal: PcGoal, request: GoalRequest, *, least_tolerance: float) -> ClipGoal:

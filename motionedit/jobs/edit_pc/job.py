@@ -11,6 +11,7 @@ from motionedit.core.body.ground import axis_name
 from motionedit.core.body.steps import change_steps
 from motionedit.core.bvh import edited_bytes, resampled_bytes, unedited_bytes
 from motionedit.core.coefficients.edit import edit_by_coefficients
+from motionedit.core.coefficients.planted_feet import planted_feet
 from motionedit.core.coefficients.projection import project, project_resampled
 from motionedit.core.pca.fit import components_for
 from motionedit.core.pca.model_file import read_model
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
+    from motionedit.core.arrays import FloatArray
     from motionedit.core.bvh import Clip
     from motionedit.core.coefficients.edit import CoefficientEdit
     from motionedit.core.coefficients.projection import Projection
@@ -116,11 +118,19 @@ class _Edit:
             projection,
             model,
             [goal.request for goal in goals],
-            solver=chosen_solver(spec, model, bound=bound),
+            solver=chosen_solver(spec, model, bound=bound, feet=self._feet(facts, projection)),
             residual="keep" if spec.residual == "keep" else "drop",
             first=facts.first if spec.timing == "original" else 0,
+            per_goal=spec.coefficients == "per_goal",
         )
         return self._outcome(facts, projection, edit, goals, before=poses, bound=bound)
+
+    def _feet(self, facts: ClipFacts, projection: Projection) -> FloatArray | None:
+        """Return what planted feet cost a change of coefficients; None where they are left alone."""
+        if self.loaded.model.feet_in_force == "off":
+            return None
+        points = [point.effector for point in facts.anatomy.sole_points]
+        return planted_feet(projection, self.model, poses=facts.poses, plants=facts.plants, points=points)
 
     def _projection(self, facts: ClipFacts, task: ClipTask) -> tuple[Projection, dict[str, float]]:
         """Return a clip in the model's coordinates, and the frames of its events."""

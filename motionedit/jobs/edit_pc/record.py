@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from motionedit.jobs.clip.edit_record import EditRecord
+from motionedit.jobs.clip.edit_record import EditRecord, worst_status
 from motionedit.jobs.clip.effector_record import effector_record
 from motionedit.jobs.edit_pc.goals import ClipGoal, goal_place, goal_record, is_met
 from motionedit.jobs.edit_pc.solver import largest_norm
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from motionedit.core.arrays import FloatArray
     from motionedit.core.coefficients.edit import CoefficientEdit
@@ -43,34 +43,35 @@ def edit_record(
     before = float(model.mahalanobis(projection.coefficients))
     after = float(model.mahalanobis(edit.coefficients))
     largest = largest_norm(model)
-    status = _mark(records, edit.solution.reason, is_far=after > FAR * largest)
+    # By a prior the change itself is measured; without one all that is known is where the coefficients end.
+    status = _mark(records, edit.reasons, is_far=(after if edit.norm is None else edit.norm) > FAR * largest)
+    solutions = [change.solution for change in edit.changes]
     record = {
         "goals": records,
-        "iterations": edit.solution.iterations,
-        "stopped": edit.solution.reason,
-        "history": [error / model.space.scale for error in edit.solution.history],
+        "iterations": sum(solution.iterations for solution in solutions),
+        "stopped": next((s.reason for s in solutions if s.reason != "converged"), "converged"),
+        "history": [error / model.space.scale for solution in solutions for error in solution.history],
         "alpha": {"before": projection.coefficients, "after": edit.coefficients},
         "mahalanobis": {"before": before, "after": after, "bound": bound, "database_max": largest},
+        "change": edit.norm,
         "nearest": {
             "before": _nearest(model, projection.coefficients),
             "after": _nearest(model, edit.coefficients),
         },
     }
-    missed = [_missed(each, edit.solution.reason) for each in records if each["status"] != "ok"]
+    missed = [_missed(each, edit.reasons[i]) for i, each in enumerate(records) if each["status"] != "ok"]
     far = [] if status != "far" else ["met, but far from what the database does: look at it before you use it"]
     message = "; ".join((*missed, *far)) or None
     return EditRecord(status, message, (*missed, *far, *_crowding(model, goals)), record)
 
 
-def _mark(records: Sequence[dict[str, Any]], reason: str, *, is_far: bool) -> str:
+def _mark(records: Sequence[dict[str, Any]], reasons: Mapping[int, str], *, is_far: bool) -> str:
     """Set each goal's status, and return the clip's."""
-    missed = "unreachable" if reason in {"bound", "stalled"} else "out_of_tolerance"
-    for record in records:
+    for i, record in enumerate(records):
         if not is_met(record):
-            record["status"] = missed
-    if any(record["status"] != "ok" for record in records):
-        return missed
-    return "far" if records and is_far else "ok"
+            record["status"] = "unreachable" if reasons[i] in {"bound", "stalled"} else "out_of_tolerance"
+    missed = worst_status(*(record["status"] for record in records))
+    return "far" if missed == "ok" and records and is_far else missed
 
 
 def _nearest(model: MotionModel, coefficients: FloatArray) -> str:
@@ -97,6 +98,7 @@ def _crowding(model: MotionModel, goals: Sequence[ClipGoal]) -> list[str]:
 _WHY = {
     "bound": "out of reach of the database's motions",
     "stalled": "out of reach of the database's motions",
+    "gave way": "it gave way to goals of higher priority",
     "iterations": "the iterations ran out",
     "converged": "the solver's own tolerance is wider",
 }

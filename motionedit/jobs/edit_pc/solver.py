@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from motionedit.core.coefficients.edit import Damped, GaussNewton
+from motionedit.core.coefficients.edit import Damped, GaussNewton, Likeliest
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
@@ -12,8 +12,17 @@ if TYPE_CHECKING:
     from motionedit.spec.edit_pc import EditPcSpec
 
 
-def chosen_solver(spec: EditPcSpec, model: MotionModel, *, bound: float | None) -> GaussNewton | Damped:
-    """Return the solver; `bound` is the largest Mahalanobis norm, by `plausibility_bound`."""
+# Half of what the database does not explain of its own clips may leave the components, within these limits: a database
+# that explains nearly all still needs room for its noise, and one that explains nothing still knows a style.
+_LEAST_SHARE, _MOST_SHARE = 0.05, 0.6
+# A model that was made before its left-out error was kept: a share between that of clean sets and that of real strokes.
+_UNKNOWN_SHARE = 0.25
+
+
+def chosen_solver(
+    spec: EditPcSpec, model: MotionModel, *, bound: float | None, feet: FloatArray | None
+) -> Likeliest | GaussNewton | Damped:
+    """Return the solver; `bound` is the largest norm, by `plausibility_bound`, `feet` as of `Likeliest`."""
     if spec.solver.method == "damped":
         return Damped(
             damping=spec.solver.damping,
@@ -21,13 +30,31 @@ def chosen_solver(spec: EditPcSpec, model: MotionModel, *, bound: float | None) 
             max_iterations=spec.solver.max_iterations,
             unit=_damping_unit(spec) * model.space.scale,
         )
-    return GaussNewton(bound)
+    if spec.solver.method == "gauss-newton":
+        return GaussNewton(bound)
+    return Likeliest(residual_share(spec, model), bound, feet)
+
+
+def residual_share(spec: EditPcSpec, model: MotionModel) -> float:
+    """Return g, the share of a change's variance that may leave the components."""
+    if not isinstance(spec.residual_share, str):
+        return spec.residual_share
+    left_out = model.components.left_out
+    if left_out is None:
+        return _UNKNOWN_SHARE
+    return min(max(0.5 * left_out.share, _LEAST_SHARE), _MOST_SHARE)
 
 
 def plausibility_bound(spec: EditPcSpec, model: MotionModel, coefficients: FloatArray) -> float | None:
-    """Return the largest Mahalanobis norm that an edit may reach, never below the input's own; None for no bound."""
+    """Return the largest norm that an edit may reach: of the change, or of where it leads, never below the input's own.
+
+    None for no bound.
+    """
     factor = spec.plausibility_bound
-    return None if factor is None else max(factor * largest_norm(model), float(model.mahalanobis(coefficients)))
+    if factor is None:
+        return None
+    largest = factor * largest_norm(model)
+    return largest if spec.solver.method == "map" else max(largest, float(model.mahalanobis(coefficients)))
 
 
 def largest_norm(model: MotionModel) -> float:
