@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.coefficients.goal_chains import GoalRequest
+    from motionedit.core.coefficients.planted_feet import PlantedFoot
     from motionedit.core.motion import Motion
     from motionedit.core.pca.model import MotionModel
 
@@ -51,13 +52,13 @@ class Likeliest:
         g, the share of a change's variance that may leave the components.
     bound : float or None
         Largest norm of the change, in the database's standard deviations.
-    feet : shape (m, m) or None
-        Of `planted_feet`.
+    feet : tuple of PlantedFoot
+        Points that stand, and are rather not moved.
     """
 
     share: float
     bound: float | None
-    feet: FloatArray | None = None
+    feet: tuple[PlantedFoot, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -160,6 +161,8 @@ def edit_by_coefficients(
     frames = sorted({request.frame for request in requests})
     groups = [[i for i in places if requests[i].frame == frame] for frame in frames] if per_goal else [places]
     columns = columns_behind(projection, requests)
+    if isinstance(solver, Likeliest) and solver.feet:
+        columns = np.unique(np.concatenate([columns, *(foot.columns for foot in solver.feet)]))
     given = _Given(projection, model, rows, smoothing, columns, solver)
     changes = tuple(_solve(given, requests, group) for group in groups) or (_solve(given, requests, places),)
     displacement = _displacement(given, changes)

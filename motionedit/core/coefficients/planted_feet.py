@@ -1,4 +1,4 @@
-"""How much a change of coefficients moves feet that stand: the mean of J^T J over planted frames."""
+"""How a change of pose moves feet that stand: Jacobians of heels and toes at frames of their plants."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.coefficients.chain import exp_and_left_jacobian
-from motionedit.core.kinematics import effector_positions
+from motionedit.core.kinematics import WorldPoses, effector_positions
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -16,65 +17,79 @@ if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.body.contacts import Plant
     from motionedit.core.coefficients.projection import Projection
-    from motionedit.core.kinematics import Effector, WorldPoses
-    from motionedit.core.pca.model import MotionModel
+    from motionedit.core.kinematics import Effector
+    from motionedit.core.pca.model import PoseSpace
 
 # Frames of a plant that are looked at, evenly spread: a foot that stands moves alike in the frames between.
-_LOOKS = 12
+_LOOKS = 8
+
+
+@dataclass(frozen=True, eq=False)
+class PlantedFoot:
+    """A point of a foot at N frames of a plant.
+
+    Attributes
+    ----------
+    frames : shape (N,)
+    columns : shape (c,)
+        Of Theta, those that move it.
+    rows : shape (N, 3, c)
+        d(position) / d Theta, metres at leg length 0.85 m, along the world's axes.
+    share : float
+        Of all planted frames, those that each of the N stands for.
+    """
+
+    frames: IntArray
+    columns: IntArray
+    rows: FloatArray
+    share: float
 
 
 def planted_feet(
     projection: Projection,
-    model: MotionModel,
+    space: PoseSpace,
     *,
     poses: WorldPoses,
     plants: Sequence[Plant],
     points: Sequence[Effector],
-) -> FloatArray | None:
-    """Return the mean of J^T J, shape (m, m), square metres at leg length 0.85 m; None where nothing stands.
+) -> tuple[PlantedFoot, ...]:
+    """Return the points of feet that stand, one for each plant.
 
     Parameters
     ----------
     poses : WorldPoses
         Of the projected motion.
-    plants : sequence of Plant
     points : sequence of Effector
         Heels and toes, as the plants number them.
     """
-    total, count = np.zeros((len(model.component_rows),) * 2), 0
+    total = sum(plant.frames for plant in plants)
+    feet = []
     for plant in plants:
         frames = np.unique(np.linspace(plant.start, plant.stop, min(plant.frames, _LOOKS)).astype(np.intp))
-        J = _point_rows(projection, model, poses, points[plant.point], frames).reshape(-1, len(total))
-        # Each plant by its frames, not by how many of them are looked at.
-        total += (plant.frames / len(frames)) * (J.T @ J)
-        count += plant.frames
-    return total / count if count else None
+        columns, rows = _point_rows(projection, space, poses, points[plant.point], frames)
+        feet.append(PlantedFoot(frames, columns, rows, plant.frames / (total * len(frames))))
+    return tuple(feet)
 
 
 def _point_rows(
-    projection: Projection, model: MotionModel, poses: WorldPoses, point: Effector, frames: IntArray
-) -> FloatArray:
-    """Return d(position) / d beta of a point at some frames, shape (N, 3, m), metres.
+    projection: Projection, space: PoseSpace, poses: WorldPoses, point: Effector, frames: IntArray
+) -> tuple[IntArray, FloatArray]:
+    """Return the columns of Theta that move a point, and d(position) / d Theta at some frames.
 
     A change dv of a joint's rotation vector is the world-axis increment R_j J_l(v)^T dv, as in `chain.evaluate`.
     """
-    scale, motion = model.space.scale, projection.motion
-    column_of = {int(j): k for k, j in enumerate(projection.joints)}
-    joints = [int(j) for j in motion.skeleton.chain(point.joint) if int(j) in column_of]
-    if not joints:
-        return np.zeros((len(frames), 3, len(model.component_rows)))
-    columns = [column_of[j] for j in joints]
-    places = np.floor(projection.places[frames] + 0.5).astype(np.intp)
-    rows = np.moveaxis(model.component_rows[:, places], 0, -1)
-    turns = rows[:, 3:].reshape(len(frames), -1, 3, rows.shape[-1])[:, columns]
-    v = projection.rows[frames, 3:].reshape(len(frames), -1, 3)[:, columns]
+    chain = projection.motion.skeleton.chain(point.joint)
+    known = np.flatnonzero(np.isin(projection.joints, chain))
+    joints = projection.joints[known]
+    v = projection.rows[frames, 3:].reshape(len(frames), -1, 3)[:, known]
     _, jacobians = exp_and_left_jacobian(v.reshape(-1, 3))
-    R = rot.to_matrix(poses.rotations[frames][:, joints])
-    increments = R @ jacobians.reshape(*v.shape, 3).swapaxes(-1, -2)
-    end = effector_positions(poses.at(slice(None)), point)[frames] if point.offset.any() else poses.positions[frames, point.joint]
-    levers = rot.skew(poses.positions[frames][:, joints] - end[:, None]) * scale
-    moved: FloatArray = ((levers @ increments) @ turns).sum(axis=1)
-    if projection.travel in joints:
-        to_world = rot.to_matrix(rot.conjugate(projection.alignment.rotation))
-        moved = moved + to_world @ rows[:, :3] / model.space.root_weight
-    return moved
+    here = WorldPoses(poses.positions[frames], poses.rotations[frames])
+    increments = rot.to_matrix(here.rotations[:, joints]) @ jacobians.reshape(*v.shape, 3).swapaxes(-1, -2)
+    levers = rot.skew(here.positions[:, joints] - effector_positions(here, point)[:, None])
+    turns = np.swapaxes(space.scale * (levers @ increments), 1, 2).reshape(len(frames), 3, -1)
+    columns = (3 + 3 * known[:, None] + np.arange(3)).ravel()
+    if projection.travel not in chain:
+        return columns, turns
+    to_world = rot.to_matrix(rot.conjugate(projection.alignment.rotation)) / space.root_weight
+    travel = np.broadcast_to(to_world, (len(frames), 3, 3))
+    return np.concatenate((np.arange(3), columns)), np.concatenate((travel, turns), axis=2)

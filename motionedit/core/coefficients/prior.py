@@ -10,6 +10,7 @@ mapped to beta and rho, so that the least |y| is the likeliest change.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,55 +22,63 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from motionedit.core.arrays import FloatArray, IntArray
+    from motionedit.core.coefficients.planted_feet import PlantedFoot
     from motionedit.core.coefficients.projection import Projection
     from motionedit.core.pca.model import MotionModel
 
 # Seconds: left-out residuals of six sets of real strokes correlate in time like a Gaussian of this width.
 FADE = 0.15
+# Of the standard deviation of the travel, the share that may come and go so fast: where a body stands differs between
+# takes far more than it can step aside and back meanwhile.
+_TRAVEL_SHARE = 0.5
 # Metres at leg length 0.85 m: a planted foot that would move by so much counts as one standard deviation.
-FOOT_DEVIATION = 0.1
+FOOT_DEVIATION = 0.03
 # Beside 1 on the diagonal of K: frames next to each other are nearly one.
 _JITTER = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
 class ChangePrior:
-    """How y, shape (m + K d,), makes a change: m components, d columns of Theta at K frames.
+    """How y makes a change: z = root y, shape (m + K d,); z makes beta, and a residual of d columns of Theta at K frames.
 
     Attributes
     ----------
-    spread : shape (m, m)
-        beta = spread @ y[:m].
+    deviations : shape (m,)
+        sqrt((1 - g) lambda): beta = deviations * z[:m].
     columns : shape (d,)
         Columns of Theta that the residual may change.
-    deviations : shape (d,)
+    residual_deviations : shape (d,)
         sqrt(g D) of each.
     frames : shape (K,)
         The goals' frames, increasing.
-    root : shape (K, K)
-        L, lower triangular, with K(T, T) = L L^T: rho(T) = L @ (y[m:] as (K, d)) * deviations.
+    kernel_root : shape (K, K)
+        L, lower triangular, with K(T, T) = L L^T: rho(T) = L @ (z[m:] as (K, d)) * residual_deviations.
+    root : shape (m + K d, m + K d)
+        Makes z of y; not the identity where planted feet make some changes less likely than others.
     """
 
-    spread: FloatArray
-    columns: IntArray
     deviations: FloatArray
+    columns: IntArray
+    residual_deviations: FloatArray
     frames: IntArray
+    kernel_root: FloatArray
     root: FloatArray
 
     @property
     def size(self) -> int:
         """How many numbers y has."""
-        return len(self.spread) + len(self.frames) * len(self.columns)
+        return len(self.root)
 
     def coefficients(self, y: FloatArray) -> FloatArray:
         """Return beta, shape (m,)."""
-        beta: FloatArray = self.spread @ y[: len(self.spread)]
+        count = len(self.deviations)
+        beta: FloatArray = self.deviations * (self.root[:count] @ y)
         return beta
 
     def residual(self, y: FloatArray) -> FloatArray:
         """Return rho, what leaves the components at the goals' frames, shape (K, d)."""
-        parts = y[len(self.spread) :].reshape(len(self.frames), len(self.columns))
-        rho: FloatArray = (self.root @ parts) * self.deviations
+        parts = (self.root[len(self.deviations) :] @ y).reshape(len(self.frames), len(self.columns))
+        rho: FloatArray = (self.kernel_root @ parts) * self.residual_deviations
         return rho
 
     def rows_of(self, component_rows: FloatArray, columns: IntArray, frame: int) -> FloatArray:
@@ -80,11 +89,16 @@ class ChangePrior:
         component_rows : shape (len(columns), m)
             The components there.
         """
+        here = int(np.searchsorted(self.frames, frame))
+        rows: FloatArray = self._plain_rows(component_rows, columns, self.kernel_root[here]) @ self.root
+        return rows
+
+    def _plain_rows(self, component_rows: FloatArray, columns: IntArray, weights: FloatArray) -> FloatArray:
+        """Return d Theta / dz; `weights` (K,) are those of the residual's frames."""
         own = np.zeros((len(columns), len(self.frames), len(self.columns)))
         at, place = np.nonzero(columns[:, None] == self.columns)
-        here = int(np.searchsorted(self.frames, frame))
-        own[at, :, place] = self.root[here] * self.deviations[place, None]
-        return np.concatenate((component_rows @ self.spread, own.reshape(len(columns), -1)), axis=1)
+        own[at, :, place] = weights * self.residual_deviations[place, None]
+        return np.concatenate((component_rows * self.deviations, own.reshape(len(columns), -1)), axis=1)
 
 
 def change_prior(
@@ -94,39 +108,49 @@ def change_prior(
     frames: Sequence[int],
     columns: IntArray,
     share: float,
-    feet: FloatArray | None = None,
+    feet: Sequence[PlantedFoot] = (),
 ) -> ChangePrior:
     """Return the prior for goals at some frames.
 
     Parameters
     ----------
     columns : shape (d,)
-        Of Theta, those behind the goals' effectors.
+        Of Theta, those that the residual may change.
     share : float
         g, 0 to 1: the share of a change's variance that may leave the components.
-    feet : shape (m, m), optional
-        The mean of J^T J of planted feet, square metres: beta's precision grows by it over `FOOT_DEVIATION` squared.
+    feet : sequence of PlantedFoot
+        Points that stand: moved by `FOOT_DEVIATION`, the mean over their frames, they count as one standard deviation.
     """
     at = np.unique(np.asarray(frames, dtype=np.intp))
-    variance = model.components.explained_variance
-    spread = np.diag(np.sqrt((1.0 - share) * variance))
-    if feet is not None:
-        precision = np.eye(len(variance)) + spread @ feet @ spread / FOOT_DEVIATION**2
-        spread = spread @ _inverse_root(precision)
-    return ChangePrior(
-        spread=frozen(spread),
+    kernel_root = np.linalg.cholesky(_kernel(at, at, projection.motion.frame_time))
+    size = len(model.components.explained_variance) + len(at) * len(columns)
+    prior = ChangePrior(
+        deviations=frozen(np.sqrt((1.0 - share) * model.components.explained_variance)),
         columns=columns,
-        deviations=frozen(np.sqrt(share * _pose_variance(model, projection.places[at], columns))),
+        residual_deviations=frozen(np.sqrt(share * _pose_variance(model, projection.places[at], columns))),
         frames=frozen(at),
-        root=frozen(np.linalg.cholesky(_kernel(at, at, projection.motion.frame_time))),
+        kernel_root=frozen(kernel_root),
+        root=frozen(np.eye(size)),
     )
+    return replace(prior, root=frozen(_root(prior, projection, model, feet))) if feet else prior
 
 
-def _inverse_root(A: FloatArray) -> FloatArray:
-    """Return the symmetric A^-1/2 of a positive definite matrix."""
-    values, vectors = np.linalg.eigh(A)
-    root: FloatArray = (vectors / np.sqrt(values)) @ vectors.T
-    return root
+def _root(
+    prior: ChangePrior, projection: Projection, model: MotionModel, feet: Sequence[PlantedFoot]
+) -> FloatArray:
+    """Return the root of the covariance of z, (I + A^T A)^-1, where A z is how far planted feet are moved."""
+    precision = np.eye(prior.size)
+    for foot in feet:
+        near = _kernel(foot.frames, prior.frames, projection.motion.frame_time)
+        fade = np.linalg.solve(prior.kernel_root, near.T).T
+        places = np.floor(projection.places[foot.frames] + 0.5).astype(np.intp)
+        for components, weights, rows in zip(
+            np.moveaxis(model.component_rows[:, places][:, :, foot.columns], 0, -1), fade, foot.rows, strict=True
+        ):
+            A = rows @ prior._plain_rows(components, foot.columns, weights)
+            precision += (foot.share / FOOT_DEVIATION**2) * (A.T @ A)
+    # z^T P z = |L^T z|^2 with P = L L^T, so y = L^T z.
+    return np.linalg.inv(np.linalg.cholesky(precision)).T
 
 
 def _pose_variance(model: MotionModel, places: FloatArray, columns: IntArray) -> FloatArray:
@@ -136,7 +160,7 @@ def _pose_variance(model: MotionModel, places: FloatArray, columns: IntArray) ->
     near = np.flatnonzero(apart <= max(FADE, float(apart.min())))
     rows = model.component_rows[:, near][:, :, columns]
     variance: FloatArray = np.einsum("m,mfd->d", model.components.explained_variance, rows**2) / len(near)
-    return variance
+    return np.where(columns < 3, _TRAVEL_SHARE**2, 1.0) * variance
 
 
 def interpolated(rho: FloatArray, at: IntArray, frames: int, frame_time: float) -> FloatArray:

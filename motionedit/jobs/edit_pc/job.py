@@ -125,12 +125,12 @@ class _Edit:
         )
         return self._outcome(facts, projection, edit, goals, before=poses, bound=bound)
 
-    def _feet(self, facts: ClipFacts, projection: Projection) -> FloatArray | None:
-        """Return what planted feet cost a change of coefficients; None where they are left alone."""
+    def _feet(self, facts: ClipFacts, projection: Projection) -> tuple[PlantedFoot, ...]:
+        """Return the points of feet that stand; none where they are left alone."""
         if self.loaded.model.feet_in_force == "off":
-            return None
+            return ()
         points = [point.effector for point in facts.anatomy.sole_points]
-        return planted_feet(projection, self.model, poses=facts.poses, plants=facts.plants, points=points)
+        return planted_feet(projection, self.model.space, poses=facts.poses, plants=facts.plants, points=points)
 
     def _projection(self, facts: ClipFacts, task: ClipTask) -> tuple[Projection, dict[str, float]]:
         """Return a clip in the model's coordinates, and the frames of its events."""

@@ -20,7 +20,7 @@ _UNKNOWN_SHARE = 0.25
 
 
 def chosen_solver(
-    spec: EditPcSpec, model: MotionModel, *, bound: float | None, feet: FloatArray | None
+    spec: EditPcSpec, model: MotionModel, *, bound: float | None, feet: tuple[PlantedFoot, ...]
 ) -> Likeliest | GaussNewton | Damped:
     """Return the solver; `bound` is the largest norm, by `plausibility_bound`, `feet` as of `Likeliest`."""
     if spec.solver.method == "damped":
