@@ -177,7 +177,7 @@ class EditPcSpec(Document):
         return None if isinstance(self.plausibility, str) else self.plausibility
 
     @property
-    def feet_in_force(self) -> str:
+    def feet_in_force(self) -> Literal["keep", "move", "off"]:
         """What becomes of planted feet: keep, move or off."""
         if self.feet is not None:
             return self.feet

@@ -28,15 +28,17 @@ from motionedit.jobs.edit_pc.goals import clip_goals
 from motionedit.jobs.edit_pc.model_events import events_for_model, refuse_unknown_events
 from motionedit.jobs.edit_pc.record import edit_record, goal_line
 from motionedit.jobs.edit_pc.solver import chosen_solver, plausibility_bound
+from motionedit.jobs.edit_pc.standing import edit_standing
 from motionedit.jobs.preview.with_page import with_page
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from motionedit.core.arrays import FloatArray
     from motionedit.core.bvh import Clip
     from motionedit.core.coefficients.edit import CoefficientEdit
+    from motionedit.core.coefficients.goal_chains import GoalRequest
+    from motionedit.core.coefficients.planted_feet import PlantedFoot
     from motionedit.core.coefficients.projection import Projection
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.pca.model import MotionModel
@@ -114,15 +116,21 @@ class _Edit:
         poses = kinematics.forward(projection.motion) if spec.timing == "normalized" else facts.poses
         goals = clip_goals(self.loaded, model, facts, events=events, poses=poses)
         bound = plausibility_bound(spec, model, projection.coefficients)
-        edit = edit_by_coefficients(
-            projection,
-            model,
-            [goal.request for goal in goals],
-            solver=chosen_solver(spec, model, bound=bound, feet=self._feet(facts, projection)),
-            residual="keep" if spec.residual == "keep" else "drop",
-            first=facts.first if spec.timing == "original" else 0,
-            per_goal=spec.coefficients == "per_goal",
-        )
+        solver = chosen_solver(spec, model, bound=bound, feet=self._feet(facts, projection))
+
+        def solve(requests: Sequence[GoalRequest]) -> CoefficientEdit:
+            return edit_by_coefficients(
+                projection,
+                model,
+                requests,
+                solver=solver,
+                residual="keep" if spec.residual == "keep" else "drop",
+                first=facts.first if spec.timing == "original" else 0,
+                per_goal=spec.coefficients == "per_goal",
+            )
+
+        requests, feet = [goal.request for goal in goals], spec.feet_in_force
+        edit = solve(requests) if feet == "off" else edit_standing(solve, requests, facts, places=feet)
         return self._outcome(facts, projection, edit, goals, before=poses, bound=bound)
 
     def _feet(self, facts: ClipFacts, projection: Projection) -> tuple[PlantedFoot, ...]:
