@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from motionedit.core.arrays import frozen
-from motionedit.core.coefficients.goal_chains import columns_behind, goal_of
+from motionedit.core.coefficients.goal_chains import columns_behind, columns_of, goal_of
 from motionedit.core.coefficients.likeliest import likeliest_change
 from motionedit.core.coefficients.prior import change_prior, interpolated
 from motionedit.core.coefficients.projection import Projection, with_rows
@@ -54,11 +54,14 @@ class Likeliest:
         Largest norm of the change, in the database's standard deviations.
     feet : tuple of PlantedFoot
         Points that stand, and are rather not moved.
+    still : tuple of int
+        Joints that the residual leaves alone.
     """
 
     share: float
     bound: float | None
     feet: tuple[PlantedFoot, ...] = ()
+    still: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -161,8 +164,9 @@ def edit_by_coefficients(
     frames = sorted({request.frame for request in requests})
     groups = [[i for i in places if requests[i].frame == frame] for frame in frames] if per_goal else [places]
     columns = columns_behind(projection, requests)
-    if isinstance(solver, Likeliest) and solver.feet:
+    if isinstance(solver, Likeliest):
         columns = np.unique(np.concatenate([columns, *(foot.columns for foot in solver.feet)]))
+        columns = columns[~np.isin(columns, columns_of(projection, solver.still))]
     given = _Given(projection, model, rows, smoothing, columns, solver)
     changes = tuple(_solve(given, requests, group) for group in groups) or (_solve(given, requests, places),)
     displacement = _displacement(given, changes)

@@ -103,9 +103,15 @@ def goal_of(
 def columns_behind(projection: Projection, requests: Sequence[GoalRequest]) -> IntArray:
     """Return the columns of Theta that move the effectors of requests, or what they are measured in, increasing."""
     skeleton = projection.motion.skeleton
-    moving = {int(j) for request in requests for end, _ in _ends(request) for j in skeleton.chain(end)}
-    known = np.flatnonzero(np.isin(projection.joints, list(moving)))
-    travel = np.arange(3 if projection.travel in moving else 0)
+    return columns_of(
+        projection, [int(j) for request in requests for end, _ in _ends(request) for j in skeleton.chain(end)]
+    )
+
+
+def columns_of(projection: Projection, joints: Sequence[int]) -> IntArray:
+    """Return the columns of Theta that hold joints' rotations, with the travel where its joint is among them."""
+    known = np.flatnonzero(np.isin(projection.joints, list(joints)))
+    travel = np.arange(3 if projection.travel in joints else 0)
     return np.concatenate((travel, (3 + 3 * known[:, None] + np.arange(3)).ravel())).astype(np.intp)
 
 

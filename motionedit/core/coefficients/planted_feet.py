@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from motionedit.core.kinematics import Effector
     from motionedit.core.pca.model import PoseSpace
 
-# Frames of a plant that are looked at, evenly spread: a foot that stands moves alike in the frames between.
-_LOOKS = 8
+# Seconds between the frames of a plant that are looked at: a foot that stands moves alike in the frames between.
+_LOOKS = 0.05
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,14 +35,14 @@ class PlantedFoot:
         Of Theta, those that move it.
     rows : shape (N, 3, c)
         d(position) / d Theta, metres at leg length 0.85 m, along the world's axes.
-    share : float
-        Of all planted frames, those that each of the N stands for.
+    seconds : float
+        For how long each of the N frames stands.
     """
 
     frames: IntArray
     columns: IntArray
     rows: FloatArray
-    share: float
+    seconds: float
 
 
 def planted_feet(
@@ -62,12 +62,13 @@ def planted_feet(
     points : sequence of Effector
         Heels and toes, as the plants number them.
     """
-    total = sum(plant.frames for plant in plants)
-    feet = []
+    frame_time, feet = projection.motion.frame_time, []
     for plant in plants:
-        frames = np.unique(np.linspace(plant.start, plant.stop, min(plant.frames, _LOOKS)).astype(np.intp))
+        seconds = plant.frames * frame_time
+        looks = min(plant.frames, 1 + int(seconds / _LOOKS))
+        frames = np.unique(np.linspace(plant.start, plant.stop, looks).astype(np.intp))
         columns, rows = _point_rows(projection, space, poses, points[plant.point], frames)
-        feet.append(PlantedFoot(frames, columns, rows, plant.frames / (total * len(frames))))
+        feet.append(PlantedFoot(frames, columns, rows, seconds / len(frames)))
     return tuple(feet)
 
 

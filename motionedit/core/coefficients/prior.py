@@ -31,8 +31,9 @@ FADE = 0.15
 # Of the standard deviation of the travel, the share that may come and go so fast: where a body stands differs between
 # takes far more than it can step aside and back meanwhile.
 _TRAVEL_SHARE = 0.5
-# Metres at leg length 0.85 m: a planted foot that would move by so much counts as one standard deviation.
-FOOT_DEVIATION = 0.03
+# Metres at leg length 0.85 m: a point of a planted foot that is so far off for twice `FADE` counts as one standard
+# deviation.
+FOOT_DEVIATION = 0.08
 # Beside 1 on the diagonal of K: frames next to each other are nearly one.
 _JITTER = 1e-9
 
@@ -90,15 +91,12 @@ class ChangePrior:
             The components there.
         """
         here = int(np.searchsorted(self.frames, frame))
-        rows: FloatArray = self._plain_rows(component_rows, columns, self.kernel_root[here]) @ self.root
-        return rows
-
-    def _plain_rows(self, component_rows: FloatArray, columns: IntArray, weights: FloatArray) -> FloatArray:
-        """Return d Theta / dz; `weights` (K,) are those of the residual's frames."""
         own = np.zeros((len(columns), len(self.frames), len(self.columns)))
         at, place = np.nonzero(columns[:, None] == self.columns)
-        own[at, :, place] = weights * self.residual_deviations[place, None]
-        return np.concatenate((component_rows * self.deviations, own.reshape(len(columns), -1)), axis=1)
+        own[at, :, place] = self.kernel_root[here] * self.residual_deviations[place, None]
+        whole = np.concatenate((component_rows * self.deviations, own.reshape(len(columns), -1)), axis=1)
+        rows: FloatArray = whole @ self.root
+        return rows
 
 
 def change_prior(
@@ -119,7 +117,7 @@ def change_prior(
     share : float
         g, 0 to 1: the share of a change's variance that may leave the components.
     feet : sequence of PlantedFoot
-        Points that stand: moved by `FOOT_DEVIATION`, the mean over their frames, they count as one standard deviation.
+        Points that stand, and are rather not moved: `FOOT_DEVIATION`.
     """
     at = np.unique(np.asarray(frames, dtype=np.intp))
     kernel_root = np.linalg.cholesky(_kernel(at, at, projection.motion.frame_time))
@@ -144,11 +142,15 @@ def _root(
         near = _kernel(foot.frames, prior.frames, projection.motion.frame_time)
         fade = np.linalg.solve(prior.kernel_root, near.T).T
         places = np.floor(projection.places[foot.frames] + 0.5).astype(np.intp)
-        for components, weights, rows in zip(
-            np.moveaxis(model.component_rows[:, places][:, :, foot.columns], 0, -1), fade, foot.rows, strict=True
-        ):
-            A = rows @ prior._plain_rows(components, foot.columns, weights)
-            precision += (foot.share / FOOT_DEVIATION**2) * (A.T @ A)
+        components = np.moveaxis(model.component_rows[:, places][:, :, foot.columns], 0, -1)
+        own = np.zeros((*foot.rows.shape[:2], len(prior.columns)))
+        at, place = np.nonzero(foot.columns[:, None] == prior.columns)
+        own[:, :, place] = foot.rows[:, :, at] * prior.residual_deviations[place]
+        faded = fade[:, None, :, None] * own[:, :, None]
+        A = np.concatenate(
+            ((foot.rows @ components) * prior.deviations, faded.reshape(*own.shape[:2], -1)), axis=2
+        ).reshape(-1, prior.size)
+        precision += (foot.seconds / (2.0 * FADE * FOOT_DEVIATION**2)) * (A.T @ A)
     # z^T P z = |L^T z|^2 with P = L L^T, so y = L^T z.
     return np.linalg.inv(np.linalg.cholesky(precision)).T
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -105,6 +106,19 @@ def _rows(
     nearest = mean[np.clip(np.floor(places + 0.5).astype(np.intp), 0, len(mean) - 1)]
     tracks, _ = relabelled(tracks, nearest)
     return pose_rows(tracks, model.space, path=path, alignment=alignment)
+
+
+def of_another(projection: Projection, model: MotionModel, motion: Motion) -> Projection:
+    """Return the projection with another motion of the same clip in place of its own, at the same coefficients."""
+    rows = _rows(
+        motion,
+        model,
+        travel=projection.travel,
+        joints=projection.joints,
+        alignment=projection.alignment,
+        places=projection.places,
+    )
+    return replace(projection, motion=motion, rows=rows)
 
 
 def with_rows(projection: Projection, space: PoseSpace, rows: FloatArray) -> Motion:

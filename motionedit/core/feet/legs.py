@@ -16,6 +16,7 @@ from motionedit.core.feet.plants import eased, lowered, planted_frames
 from motionedit.core.feet.two_bones import bent_to
 from motionedit.core.kinematics import WorldPoses, forward
 from motionedit.core.motion import Motion
+from motionedit.core.timeline.interpolation import low_pass
 from motionedit.core.timeline.alignment import TravelPath, travel_path, with_travel_path
 from motionedit.dataclass import dataclass
 
@@ -32,6 +33,9 @@ Places = Literal["keep", "move"]
 # leg is longer there; and the most that it is lowered, over the leg's length.
 _STRETCHED = 0.994
 _LOWEST = 0.15
+# How much of the cosine of its bend a leg takes to come to rest before it is straight: in the air it may miss, where it
+# stands the pelvis is lowered instead. Seconds between the two.
+_SOFT_AIR, _SOFT_PLANT, _FIRM_WITHIN = 0.03, 0.004, 0.06
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,6 +122,7 @@ class _Target:
     rotations: FloatArray
     corrected: BoolArray
     planted: BoolArray
+    soft: FloatArray
 
 
 def _target(
@@ -136,8 +141,13 @@ def _target(
     known[list(foot.fixed)] = True
     wanted = np.where(planted[:, None], np.concatenate((way, turn), axis=1), 0.0)
     c = eased(wanted, known, frame_time)
+    firm = low_pass(planted[:, None].astype(np.float64), sigma=_FIRM_WITHIN / frame_time)[:, 0]
     return _Target(
-        positions + c[:, :3], rot.multiply(rot.exp(c[:, 3:]), rotations), np.asarray(c.any(axis=1)), planted
+        positions + c[:, :3],
+        rot.multiply(rot.exp(c[:, 3:]), rotations),
+        np.asarray(c.any(axis=1)),
+        planted,
+        _SOFT_AIR + (_SOFT_PLANT - _SOFT_AIR) * np.clip(firm, 0.0, 1.0),
     )
 
 
@@ -166,7 +176,7 @@ def _turn_leg(
     if not len(f):
         return changed
     p, q = now.positions[f], now.rotations[f]
-    shank, whole = bent_to(p[:, leg.thigh], p[:, leg.knee], p[:, leg.ankle], target.positions[f], q[:, leg.thigh])
+    shank, whole = bent_to(p[:, leg.thigh], p[:, leg.knee], p[:, leg.ankle], target.positions[f], q[:, leg.thigh], soft=target.soft[f])
     parents = edited.skeleton.parents
     thigh = rot.multiply(whole, q[:, leg.thigh])
     above = q[:, parents[leg.thigh]] if parents[leg.thigh] >= 0 else np.broadcast_to(rot.IDENTITY, thigh.shape)

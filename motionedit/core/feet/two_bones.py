@@ -15,10 +15,13 @@ if TYPE_CHECKING:
 _STRAIGHT = 0.1
 # Cosine of the least bend (2 degrees) of a leg that is stretched: straight, it has no side to bend to.
 _LEAST_BEND = float(np.cos(np.radians(2.0)))
+# A leg comes to rest before it is straight where it is corrected by more than this share of its length; where it is
+# hardly corrected it stays as it is.
+_FULLY = 1e-2
 
 
 def bent_to(
-    hip: FloatArray, knee: FloatArray, ankle: FloatArray, target: FloatArray, thigh: FloatArray
+    hip: FloatArray, knee: FloatArray, ankle: FloatArray, target: FloatArray, thigh: FloatArray, *, soft: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return the world turns of shank (about the knee) and of the whole leg (about the hip), quaternions (F, 4).
 
@@ -30,6 +33,8 @@ def bent_to(
     hip, knee, ankle, target : shape (F, 3)
     thigh : shape (F, 4)
         World rotation of the thigh, in whose frame the knee's axis is steady.
+    soft : shape (F,)
+        How much of the cosine of its bend a leg takes to come to rest before it is straight.
     """
     t, s = knee - hip, ankle - knee
     n = _axes(t, s, thigh)
@@ -42,10 +47,19 @@ def bent_to(
     straightest = np.arctan2(C, B)
     # A leg that is straighter than that in the input may stay so.
     limit = np.maximum(_LEAST_BEND, np.cos(straightest))
-    bend = np.arccos(np.clip(K / np.where(most > 0.0, most, 1.0), -1.0, limit))
+    corrected = _length(target - ankle) / (_FULLY * (_length(t) + _length(s)))
+    cosine = _saturated(K / np.where(most > 0.0, most, 1.0), limit, soft * -np.expm1(-corrected))
+    bend = np.arccos(np.clip(cosine, -1.0, 1.0))
     turn = rot.exp(n * (straightest + bend)[:, None])
     reached = t + rot.rotate(turn, s)
     return turn, _between(reached, wanted)
+
+
+def _saturated(x: FloatArray, limit: FloatArray, width: FloatArray) -> FloatArray:
+    """Return x, but smoothly no more than its limit: where a knee locks at once, it kicks."""
+    width = np.maximum(width, 1e-12)
+    over = np.maximum(x - limit + width, 0.0)
+    return np.where(over > 0.0, limit - width * np.exp(-over / width), x)
 
 
 def _axes(t: FloatArray, s: FloatArray, thigh: FloatArray) -> FloatArray:

@@ -10,9 +10,9 @@ from motionedit.core import kinematics
 from motionedit.core.body.ground import axis_name
 from motionedit.core.body.steps import change_steps
 from motionedit.core.bvh import edited_bytes, resampled_bytes, unedited_bytes
-from motionedit.core.coefficients.edit import edit_by_coefficients
+from motionedit.core.coefficients.edit import Likeliest, edit_by_coefficients
 from motionedit.core.coefficients.planted_feet import planted_feet
-from motionedit.core.coefficients.projection import project, project_resampled
+from motionedit.core.coefficients.projection import of_another, project, project_resampled
 from motionedit.core.pca.fit import components_for
 from motionedit.core.pca.model_file import read_model
 from motionedit.core.skeleton_match import match_joints
@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from motionedit.core.coefficients.planted_feet import PlantedFoot
     from motionedit.core.coefficients.projection import Projection
     from motionedit.core.kinematics import WorldPoses
+    from motionedit.core.motion import Motion
     from motionedit.core.pca.model import MotionModel
     from motionedit.jobs.batch.plan import ClipTask, RunOptions
     from motionedit.jobs.batch.run import BatchResult
@@ -129,8 +130,18 @@ class _Edit:
                 per_goal=spec.coefficients == "per_goal",
             )
 
+        def again(motion: Motion, requests: Sequence[GoalRequest], still: Sequence[int]) -> Motion:
+            return edit_by_coefficients(
+                of_another(projection, model, motion),
+                model,
+                requests,
+                solver=Likeliest(share=1.0, bound=None, still=tuple(still)),
+                residual="keep",
+                first=facts.first,
+            ).motion
+
         requests, feet = [goal.request for goal in goals], spec.feet_in_force
-        edit = solve(requests) if feet == "off" else edit_standing(solve, requests, facts, places=feet)
+        edit = solve(requests) if feet == "off" else edit_standing(solve, again, requests, facts, places=feet)
         return self._outcome(facts, projection, edit, goals, before=poses, bound=bound)
 
     def _feet(self, facts: ClipFacts, projection: Projection) -> tuple[PlantedFoot, ...]:

@@ -19,17 +19,19 @@ if TYPE_CHECKING:
 
     from motionedit.core.coefficients.edit import CoefficientEdit
     from motionedit.core.coefficients.goal_chains import GoalRequest
-    from motionedit.core.feet.legs import Places
+    from motionedit.core.feet.legs import Places, StandingFoot
     from motionedit.core.kinematics import WorldPoses
+    from motionedit.core.motion import Motion
     from motionedit.jobs.clip.facts import ClipFacts
 
-# Metres at leg length 0.85 m, and radians: what the feet's turn moves a goal by that is left as it is.
-_SETTLED = 2e-6
+# Metres at leg length 0.85 m, and radians: what putting the feet back may move a goal by.
+_SETTLED = 1e-5
 _ROUNDS = 8
 
 
 def edit_standing(
     solve: Callable[[Sequence[GoalRequest]], CoefficientEdit],
+    again: Callable[[Motion, Sequence[GoalRequest], Sequence[int]], Motion],
     requests: Sequence[GoalRequest],
     facts: ClipFacts,
     *,
@@ -37,8 +39,8 @@ def edit_standing(
 ) -> CoefficientEdit:
     """Return what `solve` makes of goals, with planted feet put back.
 
-    A lower pelvis moves what the goals are about, and so may the leg of a foot with a goal; the solver is then asked
-    for as much less, until the goals are met with the feet in place.
+    A lower pelvis takes goals along, and so may the leg of a foot with a goal. They are met again by what is not
+    part of a standing leg: `again` changes a motion so that goals are met while some joints are still.
     """
     edit = solve(requests)
     legs = facts.anatomy.legs
@@ -47,38 +49,44 @@ def edit_standing(
     motion = facts.clip.motion
     fixed = {(request.effector.joint, request.frame) for request in requests}
     feet = standing_feet(motion, legs, foot_plants(facts.plants), fixed=fixed)
+    still = _still(motion, feet)
+    # Where a goal is out of reach, what the solver has come to is kept.
+    asked = [_reached(request, kinematics.forward(edit.motion)) for request in requests]
     tolerance = _SETTLED * facts.anatomy.leg_length / STANDARD_LEG
-    asked = list(requests)
+    current, touched, moved = edit.motion, edit.touched, edit.moved
     for _ in range(_ROUNDS):
-        kept = keep_feet(edit.motion, motion, feet, up=facts.up, travel=facts.travel, places=places)
-        before, after = kinematics.forward(edit.motion), kinematics.forward(kept.motion)
-        aims = [_aim(request, before, after) for request in requests]
-        off = max((_apart(old, new, tolerance) for old, new in zip(asked, aims, strict=True)), default=0.0)
-        if off < 1.0:
+        kept = keep_feet(current, motion, feet, up=facts.up, travel=facts.travel, places=places)
+        current, touched, moved = kept.motion, touched | kept.touched, moved | kept.moved
+        poses = kinematics.forward(current)
+        if all(_off(request, poses, tolerance) < 1.0 for request in asked):
             break
-        asked = aims
-        edit = solve(asked)
-    else:
-        kept = keep_feet(edit.motion, motion, feet, up=facts.up, travel=facts.travel, places=places)
-    return replace(edit, motion=kept.motion, touched=edit.touched | kept.touched, moved=edit.moved | kept.moved)
+        current = again(current, asked, still)
+    return replace(edit, motion=current, touched=touched, moved=moved)
 
 
-def _aim(request: GoalRequest, before: WorldPoses, after: WorldPoses) -> GoalRequest:
-    """Return the request less what putting the feet back adds."""
-    (x, q), (x_kept, q_kept) = (seen(p, request.frame, request.effector, request.measure) for p in (before, after))
-    position, rotation = request.position, request.rotation
+def _still(motion: Motion, feet: Sequence[StandingFoot]) -> list[int]:
+    """Return the joints that move the ankle of a foot without goals."""
+    chains = [motion.skeleton.chain(foot.leg.ankle) for foot in feet if not foot.fixed]
+    shared = [motion.skeleton.chain(foot.leg.thigh)[:-1] for foot in feet]
+    return sorted({int(j) for chain in (*chains, *shared) for j in chain})
+
+
+def _reached(request: GoalRequest, poses: WorldPoses) -> GoalRequest:
+    position, rotation = seen(poses, request.frame, request.effector, request.measure)
     return replace(
         request,
-        position=None if position is None else position - (x_kept - x),
-        rotation=None if rotation is None else rot.multiply(rot.multiply(q, rot.conjugate(q_kept)), rotation),
+        position=None if request.position is None else position,
+        rotation=None if request.rotation is None else rotation,
     )
 
 
-def _apart(old: GoalRequest, new: GoalRequest, tolerance: float) -> float:
-    """Return how far two aims are apart, over the tolerance."""
-    apart = 0.0
-    if old.position is not None and new.position is not None:
-        apart = float(np.linalg.norm(old.position - new.position)) / tolerance
-    if old.rotation is not None and new.rotation is not None:
-        apart = max(apart, float(rot.angle_between(old.rotation, new.rotation)) / _SETTLED)
-    return apart
+def _off(request: GoalRequest, poses: WorldPoses, tolerance: float) -> float:
+    """Return how far a goal is off, over the tolerance."""
+    position, rotation = seen(poses, request.frame, request.effector, request.measure)
+    off = 0.0
+    if request.position is not None:
+        counted = list(request.measure.counted)
+        off = float(np.linalg.norm((request.position - position)[counted])) / tolerance
+    if request.rotation is not None:
+        off = max(off, float(rot.angle_between(rotation, request.rotation)) / _SETTLED)
+    return off
