@@ -7,10 +7,10 @@ from pydantic import AfterValidator, Field
 
 from motionedit.spec import kinds
 from motionedit.spec.document import Document
-from motionedit.spec.faults import Fault, faulty
+from motionedit.spec.faults import Fault
 from motionedit.spec.items import EffectorItem, measured_in_itself, repeated_names, taken_apart
-from motionedit.spec.model import Context, Kind, SpecModel, mappings_in
-from motionedit.spec.scalars import Vector, word
+from motionedit.spec.model import SpecModel, mappings_in
+from motionedit.spec.scalars import Vector
 from motionedit.spec.times import Time
 from motionedit.spec.values import UNITS, OrientationSpec, Tolerance, Unit
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from motionedit.core import rotations as rot
-from motionedit.core.coefficients.chain import CoefficientChain, exp_and_left_jacobian, evaluate
+from motionedit.core.coefficients.chain import CoefficientChain, evaluate, exp_and_left_jacobian
 from motionedit.core.coefficients.goals import Goal, stacked_errors
 from motionedit.core.measure import Measure
 from motionedit.core.units import METRES_PER_RADIAN

@@ -218,9 +218,7 @@ def _displacement(given: _Given, changes: Sequence[Change]) -> FloatArray:
     """Return what the changes add to the rows, shape (F, n)."""
     model, places = given.model, given.projection.places
     if len(changes) == 1:
-        displacement = component_displacement(
-            model, changes[0].solution.change, places, smoothing=given.smoothing
-        )
+        displacement = component_displacement(model, changes[0].solution.change, places, smoothing=given.smoothing)
     else:
         # Between the goals' frames the coefficients follow a monotone cubic; each frame has its own.
         at = np.array([float(change.frames[0]) for change in changes])
@@ -229,9 +227,7 @@ def _displacement(given: _Given, changes: Sequence[Change]) -> FloatArray:
         over_time = np.stack([monotone_cubic(at, track, frames) for track in betas.T], axis=1)
         displacement = np.zeros_like(given.rows)
         for beta, component in zip(over_time.T, np.eye(len(model.component_rows)), strict=True):
-            displacement += beta[:, None] * component_displacement(
-                model, component, places, smoothing=given.smoothing
-            )
+            displacement += beta[:, None] * component_displacement(model, component, places, smoothing=given.smoothing)
     residuals = [change.residual for change in changes if change.residual is not None]
     if residuals:
         frames_of = np.array([frame for change in changes for frame in change.frames], dtype=np.intp)
@@ -249,14 +245,10 @@ def _solve(given: _Given, requests: Sequence[GoalRequest], group: Sequence[int])
     frames = tuple(sorted({requests[i].frame for i in group}))
     if isinstance(solver, Likeliest):
         return _likeliest(given, requests, group, frames, solver)
-    goals = [
-        goal_of(projection, model, given.rows, requests[i], smoothing=given.smoothing) for i in group
-    ]
+    goals = [goal_of(projection, model, given.rows, requests[i], smoothing=given.smoothing) for i in group]
     if isinstance(solver, GaussNewton):
         variance = model.components.explained_variance
-        found = solve_goals(
-            goals, explained_variance=variance, start=projection.coefficients, bound=solver.bound
-        )
+        found = solve_goals(goals, explained_variance=variance, start=projection.coefficients, bound=solver.bound)
     else:
         found = solve_damped(
             goals,
@@ -273,18 +265,13 @@ def _likeliest(
     given: _Given, requests: Sequence[GoalRequest], group: Sequence[int], frames: tuple[int, ...], solver: Likeliest
 ) -> Change:
     projection, model = given.projection, given.model
-    prior = change_prior(
-        projection, model, frames=frames, columns=given.columns, share=solver.share, feet=solver.feet
-    )
+    prior = change_prior(projection, model, frames=frames, columns=given.columns, share=solver.share, feet=solver.feet)
     layers = [
         [i for i in group if requests[i].priority == priority]
         for priority in sorted({requests[i].priority for i in group}, reverse=True)
     ]
     goals = [
-        [
-            goal_of(projection, model, given.rows, requests[i], smoothing=given.smoothing, prior=prior)
-            for i in layer
-        ]
+        [goal_of(projection, model, given.rows, requests[i], smoothing=given.smoothing, prior=prior) for i in layer]
         for layer in layers
     ]
     found = likeliest_change(goals, size=prior.size, bound=solver.bound)

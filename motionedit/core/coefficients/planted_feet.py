@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from motionedit.core.body.contacts import Plant
     from motionedit.core.coefficients.projection import Projection
     from motionedit.core.kinematics import Effector
-    from motionedit.core.pca.model import PoseSpace
+    from motionedit.core.pca.coordinates import PoseSpace
 
 # Seconds between the frames of a plant that are looked at: a foot that stands moves alike in the frames between.
 _LOOKS = 0.05

@@ -2,8 +2,8 @@
 
     delta(f) = E(s(f)) beta + K(f, T) K(T, T)^-1 rho,   beta ~ N(0, (1 - g) Lambda),   rho(t) ~ N(0, g K x D)
 
-The components of a handful of motions explain part of an unseen one; a goal met inside them alone is met by overfitting.
-The share g of a change may therefore leave them: a change of pose about the goals' frames T, as large as the database
+The components of a handful of motions explain part of an unseen one; a goal met inside them alone is overfitted. The
+share g of a change may therefore leave them: a change of pose about the goals' frames T, as large as the database
 itself varies there (D), that dies away as the residuals of left-out motions do (K). A change y of unit variance is
 mapped to beta and rho, so that the least |y| is the likeliest change.
 """
@@ -40,7 +40,7 @@ _JITTER = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class ChangePrior:
-    """How y makes a change: z = root y, shape (m + K d,); z makes beta, and a residual of d columns of Theta at K frames.
+    """How y makes a change: z = root y, shape (m + K d,), makes beta, and a residual of d columns at K frames.
 
     Attributes
     ----------
@@ -125,17 +125,15 @@ def change_prior(
     prior = ChangePrior(
         deviations=frozen(np.sqrt((1.0 - share) * model.components.explained_variance)),
         columns=columns,
-        residual_deviations=frozen(np.sqrt(share * _pose_variance(model, projection.places[at], columns))),
+        residual_deviations=frozen(share**0.5 * _pose_deviations(model, projection.places[at], columns)),
         frames=frozen(at),
         kernel_root=frozen(kernel_root),
-        root=frozen(np.eye(size)),
+        root=frozen(np.eye(size, dtype=np.float64)),
     )
     return replace(prior, root=frozen(_root(prior, projection, model, feet))) if feet else prior
 
 
-def _root(
-    prior: ChangePrior, projection: Projection, model: MotionModel, feet: Sequence[PlantedFoot]
-) -> FloatArray:
+def _root(prior: ChangePrior, projection: Projection, model: MotionModel, feet: Sequence[PlantedFoot]) -> FloatArray:
     """Return the root of the covariance of z, (I + A^T A)^-1, where A z is how far planted feet are moved."""
     precision = np.eye(prior.size)
     for foot in feet:
@@ -155,14 +153,15 @@ def _root(
     return np.linalg.inv(np.linalg.cholesky(precision)).T
 
 
-def _pose_variance(model: MotionModel, places: FloatArray, columns: IntArray) -> FloatArray:
-    """Return D: the database's variance of columns of Theta, the mean within `FADE` of places on the timeline."""
+def _pose_deviations(model: MotionModel, places: FloatArray, columns: IntArray) -> FloatArray:
+    """Return sqrt(D): how columns of Theta vary in the database, the mean within `FADE` of places on the timeline."""
     frames = np.arange(model.timeline.frames, dtype=np.float64)
     apart = np.abs(frames[:, None] - places).min(axis=1) / model.timeline.frame_rate
     near = np.flatnonzero(apart <= max(FADE, float(apart.min())))
     rows = model.component_rows[:, near][:, :, columns]
     variance: FloatArray = np.einsum("m,mfd->d", model.components.explained_variance, rows**2) / len(near)
-    return np.where(columns < 3, _TRAVEL_SHARE**2, 1.0) * variance
+    deviations: FloatArray = np.where(columns < 3, _TRAVEL_SHARE, 1.0) * np.sqrt(variance)
+    return deviations
 
 
 def interpolated(rho: FloatArray, at: IntArray, frames: int, frame_time: float) -> FloatArray:

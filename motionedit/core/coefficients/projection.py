@@ -49,6 +49,8 @@ class Projection:
         Theta of every frame.
     coefficients : shape (m,)
         alpha_0 of the clip.
+    residual : float
+        The sum of squares of what the components leave of it on the timeline.
     """
 
     motion: Motion
@@ -58,6 +60,7 @@ class Projection:
     places: FloatArray
     rows: FloatArray
     coefficients: FloatArray
+    residual: float
 
 
 def clip_joints(space: PoseSpace, joint_map: IntArray) -> IntArray:
@@ -74,7 +77,7 @@ def project(
     travel = int(joint_map[model.travel])
     joints = clip_joints(model.space, joint_map)
     rows = _rows(motion, model, travel=travel, joints=joints, alignment=alignment, places=places)
-    return Projection(motion, travel, joints, alignment, places, rows, on_timeline.coefficients)
+    return Projection(motion, travel, joints, alignment, places, rows, on_timeline.coefficients, on_timeline.residual)
 
 
 def project_resampled(
@@ -86,8 +89,10 @@ def project_resampled(
     travel = int(joint_map[model.travel])
     joints = clip_joints(model.space, joint_map)
     rows = _rows(resampled, model, travel=travel, joints=joints, alignment=alignment, places=places)
-    coefficients = model.components.components @ (rows.ravel() - model.components.mean)
-    return Projection(resampled, travel, joints, alignment, places, rows, frozen(coefficients))
+    off = rows.ravel() - model.components.mean
+    coefficients = model.components.components @ off
+    residual = max(float(off @ off - coefficients @ coefficients), 0.0)
+    return Projection(resampled, travel, joints, alignment, places, rows, frozen(coefficients), residual)
 
 
 def _rows(

@@ -121,14 +121,18 @@ def solve_goals(
 
 @dataclass
 class Progress:
+    """The errors of a run so far, and why it ends."""
+
     history: list[float]
     reason: str = "iterations"
 
     @property
     def iterations(self) -> int:
+        """How many steps were accepted."""
         return len(self.history) - 1
 
     def finished(self) -> CoefficientSolution:
+        """Return a solution without its change."""
         return CoefficientSolution(np.zeros(0), self.iterations, tuple(self.history), self.reason)
 
 

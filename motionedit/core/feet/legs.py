@@ -16,8 +16,8 @@ from motionedit.core.feet.plants import eased, lowered, planted_frames
 from motionedit.core.feet.two_bones import bent_to
 from motionedit.core.kinematics import WorldPoses, forward
 from motionedit.core.motion import Motion
-from motionedit.core.timeline.interpolation import low_pass
 from motionedit.core.timeline.alignment import TravelPath, travel_path, with_travel_path
+from motionedit.core.timeline.interpolation import low_pass
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -151,10 +151,8 @@ def _target(
     )
 
 
-def _too_far(
-    foot: StandingFoot, target: _Target, before: WorldPoses, now: WorldPoses, *, up: FloatArray
-) -> FloatArray:
-    """Return how much lower the hip must be for a leg to reach its planted foot unstretched, shape (F,), 0 elsewhere."""
+def _too_far(foot: StandingFoot, target: _Target, before: WorldPoses, now: WorldPoses, *, up: FloatArray) -> FloatArray:
+    """Return how much lower the hip must be for a leg to reach its planted foot unstretched, shape (F,)."""
     leg = foot.leg
     bones = before.positions[:, [leg.knee, leg.ankle]] - before.positions[:, [leg.thigh, leg.knee]]
     length = float(np.linalg.norm(bones, axis=2).sum(axis=1).max())
@@ -176,7 +174,8 @@ def _turn_leg(
     if not len(f):
         return changed
     p, q = now.positions[f], now.rotations[f]
-    shank, whole = bent_to(p[:, leg.thigh], p[:, leg.knee], p[:, leg.ankle], target.positions[f], q[:, leg.thigh], soft=target.soft[f])
+    ankle, soft = p[:, leg.ankle], target.soft[f]
+    shank, whole = bent_to(p[:, leg.thigh], p[:, leg.knee], ankle, target.positions[f], q[:, leg.thigh], soft=soft)
     parents = edited.skeleton.parents
     thigh = rot.multiply(whole, q[:, leg.thigh])
     above = q[:, parents[leg.thigh]] if parents[leg.thigh] >= 0 else np.broadcast_to(rot.IDENTITY, thigh.shape)

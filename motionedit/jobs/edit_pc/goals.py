@@ -156,6 +156,12 @@ def goal_place(goal: ClipGoal, poses: WorldPoses) -> FloatArray | None:
     return place
 
 
+def numbers_of(request: GoalRequest) -> int:
+    """Return how many numbers a goal asks for."""
+    position = 0 if request.position is None else len(request.measure.counted)
+    return position + (0 if request.rotation is None else 3)
+
+
 def is_met(record: Mapping[str, Any]) -> bool:
     """Return whether a goal's record is within its tolerances."""
     pairs = ((record["error_max"], record["tolerance"]), (record["error_angle_max"], record["tolerance_angle"]))

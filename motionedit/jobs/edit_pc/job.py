@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import kinematics
+from motionedit.core.body.bends import find_bends
 from motionedit.core.body.ground import axis_name
 from motionedit.core.body.steps import change_steps
 from motionedit.core.bvh import edited_bytes, resampled_bytes, unedited_bytes
@@ -24,11 +25,13 @@ from motionedit.jobs.batch.run import run_batch
 from motionedit.jobs.clip.facts import facts_of
 from motionedit.jobs.clip.kept_rules import body_said
 from motionedit.jobs.clip.metrics import edit_metrics, feet_of
-from motionedit.jobs.edit_pc.goals import clip_goals
+from motionedit.jobs.clip.roughness import rough_lines
+from motionedit.jobs.edit_pc.goals import clip_goals, numbers_of
 from motionedit.jobs.edit_pc.model_events import events_for_model, refuse_unknown_events
-from motionedit.jobs.edit_pc.record import edit_record, goal_line
-from motionedit.jobs.edit_pc.solver import chosen_solver, plausibility_bound
+from motionedit.jobs.edit_pc.record import Verdicts, edit_record, goal_line
+from motionedit.jobs.edit_pc.solver import chosen_solver, plausibility_bound, residual_share
 from motionedit.jobs.edit_pc.standing import edit_standing
+from motionedit.jobs.edit_pc.unexplained import unexplained
 from motionedit.jobs.preview.with_page import with_page
 
 if TYPE_CHECKING:
@@ -116,7 +119,7 @@ class _Edit:
         projection, events = self._projection(facts, task)
         poses = kinematics.forward(projection.motion) if spec.timing == "normalized" else facts.poses
         goals = clip_goals(self.loaded, model, facts, events=events, poses=poses)
-        bound = plausibility_bound(spec, model, projection.coefficients)
+        bound = plausibility_bound(spec, model, projection.coefficients, asked=_asked_together(spec, goals))
         solver = chosen_solver(spec, model, bound=bound, feet=self._feet(facts, projection))
 
         def solve(requests: Sequence[GoalRequest]) -> CoefficientEdit:
@@ -183,20 +186,31 @@ class _Edit:
         before: WorldPoses,
         bound: float | None,
     ) -> Outcome:
-        retimed = self.loaded.model.timing == "normalized"
+        spec, motion = self.loaded.model, facts.clip.motion
+        retimed = spec.timing == "normalized"
         changed = bool(edit.touched.any() or edit.moved.any())
         after = kinematics.forward(edit.motion) if changed else before
-        unit = self.loaded.model.unit
-        about = {
-            "unit": None if unit is None else unit.name,
-            "metrics": edit_metrics(
+        traces = (feet_of(facts, [facts.poses]), None if retimed else feet_of(facts, [after]))
+        steps = None if retimed else change_steps(motion, edit.motion, first=facts.first)
+        odd, rough = unexplained(projection, self.model, seconds=(facts.last - facts.first) * motion.frame_time)
+        if traces[1] is not None and steps is not None and changed:
+            rough += rough_lines(
                 facts,
-                feet_of(facts, [facts.poses]),
-                None if retimed else feet_of(facts, [after]),
-                steps=None if retimed else change_steps(facts.clip.motion, edit.motion, first=facts.first),
-            ),
+                edit.motion,
+                touched=np.asarray(edit.touched.any(axis=0)),
+                steps=steps,
+                traces=(traces[0], traces[1]),
+                bends=find_bends(motion.skeleton, facts.poses, facts.anatomy, first=facts.first),
+            )
+        about = {
+            "unit": None if spec.unit is None else spec.unit.name,
+            "metrics": edit_metrics(facts, *traces, steps=steps),
         }
-        result = edit_record(self.model, projection, edit, goals, poses=after, bound=bound)
+        share = residual_share(spec, self.model) if spec.solver.method == "map" else None
+        if share is not None and self.model.components.left_out is None and spec.residual_share == "auto":
+            odd.append(f"the model has no left-out error, so residual_share is {share:g}; make it again with fit-pca")
+        verdicts = Verdicts(bound, share, odd, rough)
+        result = edit_record(self.model, projection, edit, goals, poses=after, verdicts=verdicts)
         return Outcome(
             resampled_bytes(facts.clip, edit.motion) if retimed else _edited_bytes(facts.clip, projection, edit),
             {"message": result.message, **about, **result.record},
@@ -205,6 +219,14 @@ class _Edit:
             motion=edit.motion if changed or retimed else None,
             details=tuple(goal_line(goal, before) for goal in goals),
         )
+
+
+def _asked_together(spec: EditPcSpec, goals: Sequence[ClipGoal]) -> int:
+    """Return how many numbers goals ask for that are solved together, the most of any frame where each is by itself."""
+    numbers = dict.fromkeys((goal.request.frame for goal in goals), 0)
+    for goal in goals:
+        numbers[goal.request.frame] += numbers_of(goal.request)
+    return max(numbers.values(), default=0) if spec.coefficients == "per_goal" else sum(numbers.values())
 
 
 def _edited_bytes(clip: Clip, projection: Projection, edit: CoefficientEdit) -> bytes:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from motionedit.core.coefficients.edit import Damped, GaussNewton, Likeliest
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
+    from motionedit.core.coefficients.planted_feet import PlantedFoot
     from motionedit.core.pca.model import MotionModel
     from motionedit.spec.edit_pc import EditPcSpec
 
@@ -45,16 +47,32 @@ def residual_share(spec: EditPcSpec, model: MotionModel) -> float:
     return min(max(0.5 * left_out.share, _LEAST_SHARE), _MOST_SHARE)
 
 
-def plausibility_bound(spec: EditPcSpec, model: MotionModel, coefficients: FloatArray) -> float | None:
+def plausibility_bound(spec: EditPcSpec, model: MotionModel, coefficients: FloatArray, *, asked: int) -> float | None:
     """Return the largest norm that an edit may reach: of the change, or of where it leads, never below the input's own.
 
     None for no bound.
+
+    Parameters
+    ----------
+    asked : int
+        How many numbers goals ask for that are solved together.
     """
     factor = spec.plausibility_bound
     if factor is None:
         return None
-    largest = factor * largest_norm(model)
-    return largest if spec.solver.method == "map" else max(largest, float(model.mahalanobis(coefficients)))
+    if spec.solver.method == "map":
+        return factor * usual_change(model, asked=asked)
+    return max(factor * largest_norm(model), float(model.mahalanobis(coefficients)))
+
+
+def usual_change(model: MotionModel, *, asked: int) -> float:
+    """Return the norm of the change that makes of a clip of the database another, as far as goals see them.
+
+    In p numbers two draws differ by sqrt(2) chi_p standard deviations, the mean of which is sqrt(2 p) (1 - 1 / (4 p));
+    a few clips know their own spread badly, and their standard deviations count as Student's t has it.
+    """
+    p, free = max(asked, 3), len(model.clips) - 1
+    return math.sqrt(2.0 * p) * (1.0 - 0.25 / p) * free / max(free - 1.1, 0.15)
 
 
 def largest_norm(model: MotionModel) -> float:
