@@ -120,15 +120,15 @@ def change_prior(
         Points that stand, and are rather not moved: `FOOT_DEVIATION`.
     """
     at = np.unique(np.asarray(frames, dtype=np.intp))
-    kernel_root = np.linalg.cholesky(_kernel(at, at, projection.motion.frame_time))
+    kernel_root = np.asarray(np.linalg.cholesky(_kernel(at, at, projection.motion.frame_time)), dtype=np.float64)
     size = len(model.components.explained_variance) + len(at) * len(columns)
     prior = ChangePrior(
-        deviations=frozen(np.sqrt((1.0 - share) * model.components.explained_variance)),
+        deviations=frozen(np.sqrt(1.0 - share) * np.sqrt(model.components.explained_variance)),
         columns=columns,
-        residual_deviations=frozen(share**0.5 * _pose_deviations(model, projection.places[at], columns)),
+        residual_deviations=frozen(np.sqrt(share) * _pose_deviations(model, projection.places[at], columns)),
         frames=frozen(at),
         kernel_root=frozen(kernel_root),
-        root=frozen(np.eye(size, dtype=np.float64)),
+        root=frozen(np.eye(size)),
     )
     return replace(prior, root=frozen(_root(prior, projection, model, feet))) if feet else prior
 

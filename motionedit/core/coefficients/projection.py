@@ -51,6 +51,8 @@ class Projection:
         alpha_0 of the clip.
     residual : float
         The sum of squares of what the components leave of it on the timeline.
+    seconds : float
+        How long the part of the clip lasts that lies on the timeline.
     """
 
     motion: Motion
@@ -61,6 +63,7 @@ class Projection:
     rows: FloatArray
     coefficients: FloatArray
     residual: float
+    seconds: float
 
 
 def clip_joints(space: PoseSpace, joint_map: IntArray) -> IntArray:
@@ -77,7 +80,7 @@ def project(
     travel = int(joint_map[model.travel])
     joints = clip_joints(model.space, joint_map)
     rows = _rows(motion, model, travel=travel, joints=joints, alignment=alignment, places=places)
-    return Projection(motion, travel, joints, alignment, places, rows, on_timeline.coefficients, on_timeline.residual)
+    return replace(on_timeline, motion=motion, places=places, rows=rows)
 
 
 def project_resampled(
@@ -92,7 +95,8 @@ def project_resampled(
     off = rows.ravel() - model.components.mean
     coefficients = model.components.components @ off
     residual = max(float(off @ off - coefficients @ coefficients), 0.0)
-    return Projection(resampled, travel, joints, alignment, places, rows, frozen(coefficients), residual)
+    seconds = float(warp.source[-1] - warp.source[0]) * motion.frame_time
+    return Projection(resampled, travel, joints, alignment, places, rows, frozen(coefficients), residual, seconds)
 
 
 def _rows(

@@ -22,6 +22,8 @@ from motionedit.dataclass import dataclass
 from motionedit.jobs.batch.one_clip import Outcome
 from motionedit.jobs.batch.plan import plan
 from motionedit.jobs.batch.run import run_batch
+from motionedit.jobs.clip import resolve
+from motionedit.jobs.clip.crop import cropped
 from motionedit.jobs.clip.facts import facts_of
 from motionedit.jobs.clip.kept_rules import body_said
 from motionedit.jobs.clip.metrics import edit_metrics, feet_of
@@ -165,13 +167,16 @@ class _Edit:
             against=f"the model {self.model_label}",
         )
         events = events_for_model(self.loaded, model, facts, task, model_label=self.model_label, others=self.others)
-        warp = make_warp(model.timeline, first=facts.first, last=facts.last, events=events, label=task.label)
+        crop = model.rules.get("crop", {})
+        first, last = cropped(crop, facts, resolve.Place(self.loaded, (), task.label), events=events)
+        warp = make_warp(model.timeline, first=first, last=last, events=events, label=task.label)
         align = model.rules["align"]
+        begins = None if first == facts.first else float(first)
         alignment = facts.alignment(
             align["by"],
             heading=align["heading"],
             position=align["position"],
-            at=None if align["at"] is None else events[align["at"]],
+            at=begins if align["at"] is None else events[align["at"]],
         )
         view = project if self.loaded.model.timing == "original" else project_resampled
         return view(motion, model, joint_map=joint_map, alignment=alignment, warp=warp), events
@@ -192,7 +197,7 @@ class _Edit:
         after = kinematics.forward(edit.motion) if changed else before
         traces = (feet_of(facts, [facts.poses]), None if retimed else feet_of(facts, [after]))
         steps = None if retimed else change_steps(motion, edit.motion, first=facts.first)
-        odd, rough = unexplained(projection, self.model, seconds=(facts.last - facts.first) * motion.frame_time)
+        odd, rough = unexplained(projection, self.model, seconds=projection.seconds)
         if traces[1] is not None and steps is not None and changed:
             rough += rough_lines(
                 facts,
