@@ -79,7 +79,14 @@ def standing_feet(
 
 
 def keep_feet(
-    edited: Motion, reference: Motion, feet: Sequence[StandingFoot], *, up: FloatArray, travel: int, places: Places
+    edited: Motion,
+    reference: Motion,
+    feet: Sequence[StandingFoot],
+    *,
+    up: FloatArray,
+    travel: int,
+    places: Places,
+    first: int = 0,
 ) -> FeetKept:
     """Return an edited motion whose feet stand where the reference's stand.
 
@@ -92,6 +99,8 @@ def keep_feet(
         The joint that carries the travel.
     places : str
         ``keep``: each plant where it is in the reference; ``move``: where the edit takes it as a whole.
+    first : int
+        Frames before this one are a rest pose and stay as they are.
     """
     frames = len(edited)
     touched, moved = np.zeros((frames, len(edited.skeleton)), dtype=np.bool_), np.zeros(frames, dtype=np.bool_)
@@ -101,6 +110,7 @@ def keep_feet(
     for foot, target in zip(feet, targets, strict=True):
         need = np.maximum(need, _too_far(foot, target, before, now, up=up))
     drop = lowered(need, edited.frame_time)
+    drop[:first] = 0.0
     if drop.any():
         path = travel_path(edited, travel)
         edited = with_travel_path(edited, travel, TravelPath(path.positions - drop[:, None] * up, path.rotations))
@@ -108,7 +118,7 @@ def keep_feet(
         now = WorldPoses(now.positions - drop[:, None, None] * up, now.rotations)
     rotations = edited.rotations.copy()
     for foot, target in zip(feet, targets, strict=True):
-        changed = _turn_leg(rotations, foot.leg, edited, now, target, drop=drop)
+        changed = _turn_leg(rotations, foot.leg, edited, now, target, drop=drop, first=first)
         touched[:, [foot.leg.thigh, foot.leg.knee, foot.leg.ankle]] |= changed[:, None]
     motion = Motion(edited.skeleton, frozen(rotations), edited.translations, edited.frame_time)
     return FeetKept(motion, touched, moved)
@@ -166,10 +176,11 @@ def _too_far(foot: StandingFoot, target: _Target, before: WorldPoses, now: World
 
 
 def _turn_leg(
-    rotations: FloatArray, leg: Leg, edited: Motion, now: WorldPoses, target: _Target, *, drop: FloatArray
+    rotations: FloatArray, leg: Leg, edited: Motion, now: WorldPoses, target: _Target, *, drop: FloatArray, first: int
 ) -> BoolArray:
     """Write the local rotations of a leg that brings its foot to the target, and return the frames it changed."""
     changed = target.corrected | (drop > 0.0)
+    changed[:first] = False
     f = np.flatnonzero(changed)
     if not len(f):
         return changed

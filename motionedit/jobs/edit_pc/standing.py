@@ -55,7 +55,7 @@ def edit_standing(
     tolerance = _SETTLED * facts.anatomy.leg_length / STANDARD_LEG
     current, touched, moved = edit.motion, edit.touched, edit.moved
     for _ in range(_ROUNDS):
-        kept = keep_feet(current, motion, feet, up=facts.up, travel=facts.travel, places=places)
+        kept = keep_feet(current, motion, feet, up=facts.up, travel=facts.travel, places=places, first=facts.first)
         current, touched, moved = kept.motion, touched | kept.touched, moved | kept.moved
         poses = kinematics.forward(current)
         if all(_off(request, poses, tolerance) < 1.0 for request in asked):
