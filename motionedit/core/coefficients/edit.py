@@ -165,7 +165,7 @@ def edit_by_coefficients(
     groups = [[i for i in places if requests[i].frame == frame] for frame in frames] if per_goal else [places]
     columns = columns_behind(projection, requests)
     if isinstance(solver, Likeliest):
-        columns = np.unique(np.concatenate([columns, *(foot.columns for foot in solver.feet)]))
+        columns = np.arange(model.space.size)
         columns = columns[~np.isin(columns, columns_of(projection, solver.still))]
     given = _Given(projection, model, rows, smoothing, columns, solver)
     changes = tuple(_solve(given, requests, group) for group in groups) or (_solve(given, requests, places),)

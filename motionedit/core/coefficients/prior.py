@@ -31,6 +31,9 @@ FADE = 0.15
 # Of the standard deviation of the travel, the share that may come and go so fast: where a body stands differs between
 # takes far more than it can step aside and back meanwhile.
 _TRAVEL_SHARE = 0.5
+# The share of a pose's variance that each column has by itself, beside how the database's poses vary together; and what
+# a column that does not vary at all has, so that the root of the whole exists.
+_ALONE, _LEAST_VARIANCE = 0.5, 1e-12
 # Metres at leg length 0.85 m: a point of a planted foot that is so far off for twice `FADE` counts as one standard
 # deviation.
 FOOT_DEVIATION = 0.08
@@ -48,19 +51,19 @@ class ChangePrior:
         sqrt((1 - g) lambda): beta = deviations * z[:m].
     columns : shape (d,)
         Columns of Theta that the residual may change.
-    residual_deviations : shape (d,)
-        sqrt(g D) of each.
+    factor : shape (d, d)
+        F with F F^T = g D, lower triangular.
     frames : shape (K,)
         The goals' frames, increasing.
     kernel_root : shape (K, K)
-        L, lower triangular, with K(T, T) = L L^T: rho(T) = L @ (z[m:] as (K, d)) * residual_deviations.
+        L, lower triangular, with K(T, T) = L L^T: rho(T) = L @ (z[m:] as (K, d)) @ F^T.
     root : shape (m + K d, m + K d)
         Makes z of y; not the identity where planted feet make some changes less likely than others.
     """
 
     deviations: FloatArray
     columns: IntArray
-    residual_deviations: FloatArray
+    factor: FloatArray
     frames: IntArray
     kernel_root: FloatArray
     root: FloatArray
@@ -79,7 +82,7 @@ class ChangePrior:
     def residual(self, y: FloatArray) -> FloatArray:
         """Return rho, what leaves the components at the goals' frames, shape (K, d)."""
         parts = (self.root[len(self.deviations) :] @ y).reshape(len(self.frames), len(self.columns))
-        rho: FloatArray = (self.kernel_root @ parts) * self.residual_deviations
+        rho: FloatArray = (self.kernel_root @ parts) @ self.factor.T
         return rho
 
     def rows_of(self, component_rows: FloatArray, columns: IntArray, frame: int) -> FloatArray:
@@ -93,7 +96,7 @@ class ChangePrior:
         here = int(np.searchsorted(self.frames, frame))
         own = np.zeros((len(columns), len(self.frames), len(self.columns)))
         at, place = np.nonzero(columns[:, None] == self.columns)
-        own[at, :, place] = self.kernel_root[here] * self.residual_deviations[place, None]
+        own[at] = self.kernel_root[here][:, None] * self.factor[place][:, None]
         whole = np.concatenate((component_rows * self.deviations, own.reshape(len(columns), -1)), axis=1)
         rows: FloatArray = whole @ self.root
         return rows
@@ -125,7 +128,7 @@ def change_prior(
     prior = ChangePrior(
         deviations=frozen(np.sqrt(1.0 - share) * np.sqrt(model.components.explained_variance)),
         columns=columns,
-        residual_deviations=frozen(np.sqrt(share) * _pose_deviations(model, projection.places[at], columns)),
+        factor=frozen(np.sqrt(share) * _pose_factor(model, projection.places[at], columns)),
         frames=frozen(at),
         kernel_root=frozen(kernel_root),
         root=frozen(np.eye(size)),
@@ -141,9 +144,8 @@ def _root(prior: ChangePrior, projection: Projection, model: MotionModel, feet: 
         fade = np.linalg.solve(prior.kernel_root, near.T).T
         places = np.floor(projection.places[foot.frames] + 0.5).astype(np.intp)
         components = np.moveaxis(model.component_rows[:, places][:, :, foot.columns], 0, -1)
-        own = np.zeros((*foot.rows.shape[:2], len(prior.columns)))
         at, place = np.nonzero(foot.columns[:, None] == prior.columns)
-        own[:, :, place] = foot.rows[:, :, at] * prior.residual_deviations[place]
+        own = foot.rows[:, :, at] @ prior.factor[place]
         faded = fade[:, None, :, None] * own[:, :, None]
         A = np.concatenate(
             ((foot.rows @ components) * prior.deviations, faded.reshape(*own.shape[:2], -1)), axis=2
@@ -153,15 +155,22 @@ def _root(prior: ChangePrior, projection: Projection, model: MotionModel, feet: 
     return np.linalg.inv(np.linalg.cholesky(precision)).T
 
 
-def _pose_deviations(model: MotionModel, places: FloatArray, columns: IntArray) -> FloatArray:
-    """Return sqrt(D): how columns of Theta vary in the database, the mean within `FADE` of places on the timeline."""
+def _pose_factor(model: MotionModel, places: FloatArray, columns: IntArray) -> FloatArray:
+    """Return F, shape (d, d): F F^T is how poses vary in the database within `FADE` of places on the timeline.
+
+    `_ALONE` of it goes to each column by itself: a few motions know a few ways of moving together, and a goal may ask
+    for another one.
+    """
     frames = np.arange(model.timeline.frames, dtype=np.float64)
     apart = np.abs(frames[:, None] - places).min(axis=1) / model.timeline.frame_rate
     near = np.flatnonzero(apart <= max(FADE, float(apart.min())))
-    rows = model.component_rows[:, near][:, :, columns]
-    variance: FloatArray = np.einsum("m,mfd->d", model.components.explained_variance, rows**2) / len(near)
-    deviations: FloatArray = np.where(columns < 3, _TRAVEL_SHARE, 1.0) * np.sqrt(variance)
-    return deviations
+    rows = model.component_rows[:, near][:, :, columns] * np.where(columns < 3, _TRAVEL_SHARE, 1.0)
+    rows = (rows * np.sqrt(model.components.explained_variance / len(near))[:, None, None]).reshape(-1, len(columns))
+    together = rows.T @ rows
+    alone = np.diag(together)
+    mixed = (1.0 - _ALONE) * together + np.diag(_ALONE * alone + _LEAST_VARIANCE)
+    factor: FloatArray = np.linalg.cholesky(mixed)
+    return factor
 
 
 def interpolated(rho: FloatArray, at: IntArray, frames: int, frame_time: float) -> FloatArray:

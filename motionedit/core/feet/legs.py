@@ -31,11 +31,11 @@ Places = Literal["keep", "move"]
 
 # The share of a leg's length that a planted foot may ask for before the pelvis is lowered, unless the reference's own
 # leg is longer there; and the most that it is lowered, over the leg's length.
-_STRETCHED = 0.994
+_STRETCHED = 0.985
 _LOWEST = 0.15
 # How much of the cosine of its bend a leg takes to come to rest before it is straight: in the air it may miss, where it
 # stands the pelvis is lowered instead. Seconds between the two.
-_SOFT_AIR, _SOFT_PLANT, _FIRM_WITHIN = 0.03, 0.004, 0.06
+_SOFT_AIR, _SOFT_PLANT, _FIRM_WITHIN = 0.06, 0.006, 0.1
 
 
 @dataclass(frozen=True, eq=False)

@@ -78,7 +78,7 @@ def edit_record(
         "mahalanobis": {
             "before": before,
             "after": after,
-            "bound": bound if edit.norm is None else None,
+            "bound": bound,
             "database_max": largest,
         },
         "change": {"norm": edit.norm, "bound": None if edit.norm is None else bound, "residual_share": share},
