@@ -198,7 +198,7 @@ class EditPcSpec(Document):
         if data.get("feet") in ("keep", "move"):
             for key, value in (("residual", "drop"), ("timing", "normalized")):
                 if data.get(key) == value:
-                    yield Fault(f"the input's plants say nothing of an output with {key}: {value}", ("feet",))
+                    yield Fault(f"the clip's own plants say nothing of an output with {key}: {value}", ("feet",))
         if isinstance(solver, dict) and solver.get("method") == "damped":
             if "unit" not in data:
                 yield Fault("needs unit: in the spec, such as unit: cm; damped works in lengths", ("solver", "method"))

@@ -10,7 +10,8 @@ from motionedit.core.coefficients.chain import evaluate
 from motionedit.core.pca.model_file import read_model
 from studies.lab import effector_path, joint_positions
 from studies.paper.pc_pose_space import by_poses
-from studies.paper.study import Study
+from studies.paper.study import COMPONENTS_ALONE, GOLF, Study
+from studies.paper.truth import paired
 
 BALLS = Path(__file__).resolve().parents[2] / "data" / "golf" / "balls.tsv"
 STYLES = tuple(int(line.split("\t")[1]) for line in BALLS.read_text().splitlines()[1:])
@@ -172,3 +173,56 @@ def test_the_key_frame_is_the_mean_and_the_duration_too(golf, model):
     assert model.timeline.frames == round(np.mean([m.duration for m in motions]) * 25.0) + 1
     shares = [hit / (len(m) - 1) for hit, m in zip(study.hits, motions, strict=True)]
     assert dict(model.timeline.events)["hit"] == round(np.mean(shares) * (model.timeline.frames - 1))
+
+
+FOUR = tuple(
+    {"name": f"g{k}", "at": at, "effector": {"end_site": "Club"}, "shift": shift}
+    for k, (at, shift) in enumerate(((20, [0, 5, 0]), (50, [5, 0, 5]), ("hit", [8, 0, 0]), ("hit + 20", [0, 5, 0])))
+)
+
+
+@pytest.mark.parametrize("coefficients", ["constant", "per_goal"])
+def test_section_7_goals_at_several_frames_are_all_met_together_or_interpolated(golf, coefficients):
+    edit = golf.lab.edit(golf.swings[3], golf.model, {"goals": list(FOUR), "coefficients": coefficients})
+    assert max(goal["error_max"] for goal in edit.record["goals"]) < 1e-2
+    assert edit.record["metrics"]["foot_drift_max"] < 0.5
+    assert edit.record["metrics"]["after"]["jerk_rms"] < 1.1 * edit.record["metrics"]["before"]["jerk_rms"]
+
+
+def test_section_7_of_goals_of_differing_priority_the_larger_is_met(golf):
+    ahead = {"name": "ahead", "at": "hit", "effector": {"end_site": "Club"}, "shift": [10, 0, 0], "priority": 2}
+    back = {**ahead, "name": "back", "shift": [-10, 0, 0], "priority": 1}
+    record = golf.lab.edit(golf.swings[3], golf.model, {"goals": [back, ahead]}).record
+    lower, upper = record["goals"]
+    assert (upper["status"], lower["status"], lower["gave_way_to"]) == ("ok", "out_of_tolerance", ["ahead"])
+    assert upper["error_max"] < 1e-2
+    assert lower["error_max"] == pytest.approx(20.0, abs=0.01)
+
+
+def test_a_swing_that_the_database_does_not_hold_comes_nearer_to_the_players_own(golf):
+    lab = Study(golf.lab)
+    swing, ball = 3, lab.near_balls(3, least=5.0, most=15.0)[0]
+    model = golf.lab.model([clip for i, clip in enumerate(lab.swings) if i != swing], GOLF)
+    truth = joint_positions(paired(lab, swing, lab.balls[ball]))
+    goal, events = {"position": lab.balls[ball].tolist(), "at": lab.hits[swing]}, {"hit": lab.hits[swing]}
+    apart = {}
+    for name, spec in (("map", {}), ("gauss-newton", COMPONENTS_ALONE)):
+        edit = lab.edit(swing, goal, model=model, events=events, **spec)
+        apart[name] = np.sqrt(np.mean((joint_positions(edit.path) - truth) ** 2))
+    assert apart["map"] < apart["gauss-newton"]
+
+
+@pytest.mark.parametrize("share", [0.0, 1.0])
+def test_the_share_of_the_residual_may_be_nothing_or_all(golf, share):
+    record = golf.edit(golf.swings[2], (0.0, 0.0, 5.0), residual_share=share).record
+    assert record["goals"][0]["error_max"] < 1e-2
+    before, after = (np.array(record["alpha"][side]) for side in ("before", "after"))
+    assert np.allclose(before, after) == (share == 1.0)
+
+
+def test_feet_are_left_to_the_solver_where_that_is_asked_for(golf):
+    drifts = {
+        feet: golf.edit(golf.swings[3], (0.0, 0.0, 10.0), feet=feet).record["metrics"]["foot_drift_max"]
+        for feet in ("keep", "move", "off")
+    }
+    assert drifts["keep"] < 0.01 < drifts["move"] < drifts["off"]

@@ -169,8 +169,7 @@ def _pose_factor(model: MotionModel, places: FloatArray, columns: IntArray) -> F
     together = rows.T @ rows
     alone = np.diag(together)
     mixed = (1.0 - _ALONE) * together + np.diag(_ALONE * alone + _LEAST_VARIANCE)
-    factor: FloatArray = np.linalg.cholesky(mixed)
-    return factor
+    return np.asarray(np.linalg.cholesky(mixed), dtype=np.float64)
 
 
 def interpolated(rho: FloatArray, at: IntArray, frames: int, frame_time: float) -> FloatArray:

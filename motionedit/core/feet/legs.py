@@ -172,6 +172,8 @@ def _too_far(foot: StandingFoot, target: _Target, before: WorldPoses, now: World
     over, height = np.einsum("fi,fi->f", v, v) - reach**2, -(v @ up)
     # (height - h)^2 + |level|^2 = reach^2
     drop = height - np.sqrt(np.maximum(height**2 - over, 0.0))
+    # Rounding lowers no pelvis.
+    over = np.where(over > 1e-9 * length**2, over, 0.0)
     return np.where(target.planted & (over > 0.0) & (height > 0.0), np.minimum(drop, _LOWEST * length), 0.0)
 
 
