@@ -10,7 +10,7 @@ import numpy as np
 from motionedit.core import kinematics
 from motionedit.core import rotations as rot
 from motionedit.core.body.contacts import foot_plants
-from motionedit.core.feet.legs import keep_feet, standing_feet
+from motionedit.core.standing.legs import keep_feet, standing_feet
 from motionedit.core.units import STANDARD_LEG
 from motionedit.jobs.edit_pc.goals import seen
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
     from motionedit.core.coefficients.edit import CoefficientEdit
     from motionedit.core.coefficients.goal_chains import GoalRequest
-    from motionedit.core.feet.legs import Places, StandingFoot
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.motion import Motion
+    from motionedit.core.standing.legs import Places, StandingFoot
     from motionedit.jobs.clip.facts import ClipFacts
 
 # Metres at leg length 0.85 m, and radians: what putting the feet back may move a goal by.

@@ -12,10 +12,10 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
-from motionedit.core.feet.plants import eased, lowered, planted_frames
-from motionedit.core.feet.two_bones import bent_to
 from motionedit.core.kinematics import WorldPoses, forward
 from motionedit.core.motion import Motion
+from motionedit.core.standing.plants import eased, lowered, planted_frames
+from motionedit.core.standing.two_bones import bent_to
 from motionedit.core.timeline.alignment import TravelPath, travel_path, with_travel_path
 from motionedit.core.timeline.interpolation import low_pass
 from motionedit.dataclass import dataclass

@@ -10,10 +10,10 @@ from motionedit.core import rotations as rot
 from motionedit.core.body.anatomy import anatomy_of
 from motionedit.core.body.contacts import find_plants, foot_plants
 from motionedit.core.bvh import read_clip
-from motionedit.core.feet.legs import keep_feet, standing_feet
-from motionedit.core.feet.plants import eased
-from motionedit.core.feet.two_bones import bent_to
 from motionedit.core.motion import Motion
+from motionedit.core.standing.legs import keep_feet, standing_feet
+from motionedit.core.standing.plants import eased
+from motionedit.core.standing.two_bones import bent_to
 
 WALK = Path(__file__).resolve().parents[4] / "data" / "walk.bvh"
 UP = np.array([0.0, 1.0, 0.0])
