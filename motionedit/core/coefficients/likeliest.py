@@ -17,7 +17,6 @@ from motionedit.core.coefficients.solver import (
     STALL,
     bounded_solution,
     free_solution,
-    penalised,
 )
 from motionedit.dataclass import dataclass
 
@@ -124,8 +123,7 @@ def _layer(
 
     def nearest(start: FloatArray, penalty: float) -> tuple[FloatArray, float]:
         if not above:
-            ones, zeros = np.ones(len(start)), np.zeros(len(start))
-            return penalised(own, start, offset=zeros, slope=ones, penalty=penalty)
+            return _penalised(own, start, penalty=penalty)
         found = _constrained(own, kept, start, penalty=penalty)[0]
         return found, float(np.linalg.norm(own(found)[0]))
 
@@ -143,6 +141,32 @@ def _layer(
         nearest, own, norm=lambda y: float(np.linalg.norm(y)), size=len(y), bound=bound or np.inf, start=y
     )
     return found, bounded.reason, iterations + bounded.iterations
+
+
+def _penalised(own: Evaluate, y: FloatArray, *, penalty: float) -> tuple[FloatArray, float]:
+    """Return the y that minimises |e|^2 + mu |y|^2, and its |e|: Levenberg-Marquardt, solved in the p rows alone.
+
+    (J^T J + c I)^-1 g = (g - J^T (J J^T + c I)^-1 J g) / c: there are far more unknowns than rows.
+    """
+    error, J = own(y)
+    value = float(error @ error + penalty * (y @ y))
+    gram = J @ J.T
+    damping = 1e-3 * float(np.trace(gram)) / len(gram)
+    least = 1e-9 * damping
+    for _ in range(MOST_ITERATIONS):
+        g = J.T @ error - penalty * y
+        c = penalty + damping
+        step = (g - J.T @ np.linalg.solve(gram + c * np.eye(len(gram)), J @ g)) / c
+        if float(np.linalg.norm(step)) <= PENALISED_STALL * (float(np.linalg.norm(y)) + PENALISED_STALL):
+            break
+        error_new, J_new = own(y + step)
+        value_new = float(error_new @ error_new + penalty * ((y + step) @ (y + step)))
+        if value_new < value:
+            y, error, J, value = y + step, error_new, J_new, value_new
+            gram, damping = J @ J.T, max(0.1 * damping, least)
+        else:
+            damping *= 4.0
+    return y, float(np.linalg.norm(error))
 
 
 def _constrained(own: Evaluate, kept: Evaluate, y: FloatArray, *, penalty: float) -> tuple[FloatArray, int]:
