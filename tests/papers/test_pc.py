@@ -5,8 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from motionedit.core.bvh import read_clip
+from motionedit.core.bvh import read_clip, resampled_bytes
 from motionedit.core.coefficients.chain import evaluate
+from motionedit.core.motion import Motion
 from motionedit.core.pca.model_file import read_model
 from studies.lab import effector_path, joint_positions
 from studies.paper.pc_pose_space import by_poses
@@ -226,3 +227,35 @@ def test_feet_are_left_to_the_solver_where_that_is_asked_for(golf):
         for feet in ("keep", "move", "off")
     }
     assert drifts["keep"] < 0.01 < drifts["move"] < drifts["off"]
+
+
+def test_a_part_of_each_clip_may_be_normalized_and_edits_find_it_again(golf):
+    crop = {"from": "hit - 1s", "to": "hit + 0.8s", **GOLF}
+    model = golf.lab.model(golf.swings[:5], crop)
+    assert read_model(model).timeline.frames == 46
+    for shift in (0.0, 5.0):
+        goal = {"at": "hit", "effector": {"end_site": "Club"}, "shift": [shift, 0.0, 0.0]}
+        edit = golf.lab.edit(golf.swings[7], model, {"goals": [goal], "events": {"hit": 91}})
+        assert edit.record["goals"][0]["error_max"] < 1e-2
+        assert (edit.path.read_bytes() == golf.swings[7].read_bytes()) == (shift == 0.0)
+
+
+def test_a_model_of_before_the_left_out_error_is_read_and_says_what_it_lacks(golf, tmp_path):
+    with np.load(golf.model) as archive:
+        kept = {name: archive[name] for name in archive.files if not name.startswith("left_out")}
+    np.savez(tmp_path / "old.npz", **kept)
+    goal = {"at": "hit", "effector": {"end_site": "Club"}, "shift": [5.0, 0.0, 0.0]}
+    edit = golf.lab.edit(golf.swings[3], tmp_path / "old.npz", {"goals": [goal]})
+    assert edit.record["change"]["residual_share"] == 0.25
+    assert any("no left-out error" in warning for warning in edit.warnings)
+
+
+def test_a_take_that_is_squeezed_into_a_stroke_is_never_ok(golf):
+    clip = read_clip(golf.swings[3])
+    slow = Motion(clip.motion.skeleton, clip.motion.rotations, clip.motion.translations, 5.0 * clip.motion.frame_time)
+    path = golf.lab.place() / "slow.bvh"
+    path.write_bytes(resampled_bytes(clip, slow))
+    goal = {"at": "hit", "effector": {"end_site": "Club"}, "shift": [5.0, 0.0, 0.0]}
+    edit = golf.lab.edit(path, golf.model, {"goals": [goal], "events": {"hit": 85}})
+    assert edit.record["status"] == "rough"
+    assert any("is it one of them?" in warning for warning in edit.warnings)
