@@ -152,9 +152,9 @@ class EditPcSpec(Document):
     )
     plausibility: Annotated[float | str | None, kinds.either(("off",), kinds.number(above=0.0))] = Field(
         default=None,
-        description="Bound on the change, or off; default 3. map: on the change from the input, times the largest norm "
-        "of a clip of the database, in its standard deviations; gauss-newton: on the coefficients' Mahalanobis norm, "
-        "times the same; damped: off, its iterations bound it.",
+        description="Bound, or off; default 3. map: on the change from the input, in standard deviations of the "
+        "database, times what makes of one of its clips another; gauss-newton: on the coefficients' Mahalanobis norm, "
+        "times the database's largest; damped: off, its iterations bound it.",
     )
     coefficients: Annotated[Literal["constant", "per_goal"], kinds.word("constant", "per_goal")] = Field(
         default="constant",
