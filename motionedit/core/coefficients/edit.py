@@ -38,6 +38,10 @@ Residual = Literal["keep", "drop"]
 # timeline their corners would otherwise show as jerk.
 COMPONENT_SMOOTHING = 0.040
 
+# The residual has the whole pose at each goal's frame, so that what moves together stays together; with more unknowns
+# than this only what moves the goals, or a dense matrix of them all would take seconds.
+MOST_UNKNOWNS = 1500
+
 # Radians or metres: a displacement below this is rounding, and leaves its joint untouched.
 UNTOUCHED = 1e-10
 
@@ -165,7 +169,9 @@ def edit_by_coefficients(
     groups = [[i for i in places if requests[i].frame == frame] for frame in frames] if per_goal else [places]
     columns = columns_behind(projection, requests)
     if isinstance(solver, Likeliest):
-        columns = np.arange(model.space.size)
+        together = 1 if per_goal else len(frames)
+        if together * model.space.size <= MOST_UNKNOWNS:
+            columns = np.arange(model.space.size)
         columns = columns[~np.isin(columns, columns_of(projection, solver.still))]
     given = _Given(projection, model, rows, smoothing, columns, solver)
     changes = tuple(_solve(given, requests, group) for group in groups) or (_solve(given, requests, places),)
