@@ -71,8 +71,18 @@ _PC_CLIP = {
         {
             "before": number("before the edit"),
             "after": number("after the edit"),
-            "bound": number_or_null("the largest that is allowed; null for any"),
+            "bound": number_or_null(
+                "the largest that is allowed, of the change where a prior measures it; null for any"
+            ),
             "database_max": number("the largest of the database's motions"),
+        },
+    ),
+    "change": obj(
+        "the change under the prior of method map",
+        {
+            "norm": number_or_null("in standard deviations of the database; null by another method"),
+            "bound": number_or_null("the largest that is allowed; null for any"),
+            "residual_share": number_or_null("the share of the change's variance that may leave the components"),
         },
     ),
     "nearest": obj(

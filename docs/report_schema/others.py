@@ -35,6 +35,24 @@ MODEL: Schema = {
     "explained_variance": list_of(NUMBER, "of each component"),
     "explained_variance_ratio": list_of(NUMBER, "its share of the whole variance"),
     "database": list_of(part("database_clip"), "the clips that the model was fitted to"),
+    "left_out": obj(
+        "each clip left out in turn and looked for by the others",
+        {
+            "share": number("of an unseen clip, what the database does not explain, 0 to 1"),
+            "furthest": text("the clip that is furthest from the others"),
+            "clips": list_of(
+                obj(
+                    "a clip of the database",
+                    {
+                        "clip": text("its name"),
+                        "share": number("of it, what the others do not explain"),
+                        "times": number("how far it is from them, over the median of all"),
+                    },
+                ),
+                "in the database's order",
+            ),
+        },
+    ),
 }
 
 _NORMALIZED_CLIP = {

@@ -7,10 +7,10 @@ from pydantic import AfterValidator, Field
 
 from motionedit.spec import kinds
 from motionedit.spec.document import Document
-from motionedit.spec.faults import Fault, faulty
+from motionedit.spec.faults import Fault
 from motionedit.spec.items import EffectorItem, measured_in_itself, repeated_names, taken_apart
-from motionedit.spec.model import Context, Kind, SpecModel, mappings_in
-from motionedit.spec.scalars import Vector, word
+from motionedit.spec.model import SpecModel, mappings_in
+from motionedit.spec.scalars import Vector
 from motionedit.spec.times import Time
 from motionedit.spec.values import UNITS, OrientationSpec, Tolerance, Unit
 
@@ -87,8 +87,10 @@ class PcGoal(EffectorItem):
 class PcSolver(SpecModel):
     """How the coefficients are found."""
 
-    method: Annotated[Literal["gauss-newton", "damped"], kinds.word("gauss-newton", "damped")] = Field(
-        default="gauss-newton", description="gauss-newton, or damped: the paper's Algorithm 1, which needs unit:."
+    method: Annotated[Literal["map", "gauss-newton", "damped"], kinds.word("map", "gauss-newton", "damped")] = Field(
+        default="map",
+        description="map: the likeliest change, components as a prior beside a pose residual that fades; gauss-newton: "
+        "the components alone; damped: the paper's Algorithm 1, which needs unit:.",
     )
     damping: Annotated[float, kinds.number(at_least=0.0)] = Field(
         default=10.0, description="damped only: the damping xi, in damping_unit; 0 is a plain pseudo-inverse."
@@ -106,20 +108,11 @@ class PcSolver(SpecModel):
     @classmethod
     def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
         """Yield what is wrong between keys."""
-        method = data.get("method", "gauss-newton")
-        if method == "gauss-newton":
+        method = data.get("method", "map")
+        if method in ("map", "gauss-newton"):
             for key in data:
                 if key in ("damping", "damping_unit", "max_iterations", "tolerance"):
-                    yield Fault("belongs to method: damped; gauss-newton needs no settings", (key,))
-
-
-def _coefficients(value: object, _context: Context) -> str:
-    if value == "per_goal":
-        raise faulty("per_goal is not supported yet; constant is")
-    return word(value, ("constant",))
-
-
-COEFFICIENTS = Kind(_coefficients, "constant", {"const": "constant"})
+                    yield Fault(f"belongs to method: damped; {method} needs no settings", (key,))
 
 
 def _goals_apart(goals: tuple[PcGoal, ...]) -> tuple[PcGoal, ...]:
@@ -146,13 +139,27 @@ class EditPcSpec(Document):
         description="What shall be where, at which frame; [] changes nothing."
     )
     solver: PcSolver = Field(default=PcSolver(), description="How the coefficients are found.")
+    residual_share: Annotated[float | str, kinds.either(("auto",), kinds.number(at_least=0.0, at_most=1.0))] = Field(
+        default="auto",
+        description="method: map; the share of a change that may leave the components, 0 to 1; auto: from the share of "
+        "an unseen clip that the model does not explain.",
+    )
+    feet: Annotated[Literal["keep", "move", "off"] | None, kinds.word("keep", "move", "off")] = Field(
+        default=None,
+        description="Planted feet: keep stands them where the input's stand, move where the edit takes each plant as a "
+        "whole, off leaves them to the solver; default keep (off with the other methods, residual: drop and timing: "
+        "normalized).",
+    )
     plausibility: Annotated[float | str | None, kinds.either(("off",), kinds.number(above=0.0))] = Field(
         default=None,
-        description="Bound on the coefficients' Mahalanobis norm, times the database's largest, or off; default 3 "
-        "(off with method: damped, which its iterations bound).",
+        description="Bound, or off; default 3. map: on the change from the input, in standard deviations of the "
+        "database, times what makes of one of its clips another; gauss-newton: on the coefficients' Mahalanobis norm, "
+        "times the database's largest; damped: off, its iterations bound it.",
     )
-    coefficients: Annotated[str, COEFFICIENTS] = Field(
-        default="constant", description="One set of coefficients for the whole clip."
+    coefficients: Annotated[Literal["constant", "per_goal"], kinds.word("constant", "per_goal")] = Field(
+        default="constant",
+        description="constant: one change of coefficients for the whole clip; per_goal: each frame with goals is "
+        "solved by itself, the coefficients between are interpolated over time.",
     )
     residual: Annotated[Literal["keep", "drop"], kinds.word("keep", "drop")] = Field(
         default="keep",
@@ -169,19 +176,35 @@ class EditPcSpec(Document):
             return None if self.solver.method == "damped" else DEFAULT_PLAUSIBILITY
         return None if isinstance(self.plausibility, str) else self.plausibility
 
+    @property
+    def feet_in_force(self) -> Literal["keep", "move", "off"]:
+        """What becomes of planted feet: keep, move or off."""
+        if self.feet is not None:
+            return self.feet
+        plain = self.solver.method == "map" and self.residual == "keep" and self.timing == "original"
+        return "keep" if plain else "off"
+
     @classmethod
     def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
         """Yield what is wrong between keys."""
         yield from super().faults_between_keys(data)
         yield from repeated_names(data, "goals")
-        yield from _differing_priorities(data)
         solver = data.get("solver")
+        method = solver.get("method", "map") if isinstance(solver, dict) else "map"
+        if method != "map":
+            yield from _differing_priorities(data)
+            if "residual_share" in data:
+                yield Fault(f"belongs to method: map; {method} has the components alone", ("residual_share",))
+        if data.get("feet") in ("keep", "move"):
+            for key, value in (("residual", "drop"), ("timing", "normalized")):
+                if data.get(key) == value:
+                    yield Fault(f"the clip's own plants say nothing of an output with {key}: {value}", ("feet",))
         if isinstance(solver, dict) and solver.get("method") == "damped":
             if "unit" not in data:
                 yield Fault("needs unit: in the spec, such as unit: cm; damped works in lengths", ("solver", "method"))
             if "plausibility" in data and data["plausibility"] != "off":
                 yield Fault(
-                    "belongs to method: gauss-newton; the paper's mode is bounded by its max_iterations",
+                    "belongs to the other methods; the paper's mode is bounded by its max_iterations",
                     ("plausibility",),
                 )
 
@@ -194,6 +217,6 @@ def _differing_priorities(data: Mapping[str, Any]) -> Iterator[Fault]:
             first = priority
         elif priority != first and isinstance(priority, int):
             yield Fault(
-                f"goals of differing priority (here {priority}, above {first}) are not supported yet; use weight",
+                f"goals of differing priority (here {priority}, above {first}) need method: map; use weight",
                 ("goals", i, "priority"),
             )

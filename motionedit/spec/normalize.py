@@ -75,6 +75,15 @@ class NormalizeSpec(Document):
         default=None, description="Hz of the normalized clips; default: the clips' own, an error where they differ."
     )
     align: Align = Field(default=Align(), description="Alignment on the ground; edit-pc undoes it on output.")
+    from_time: Annotated[Time | None, kinds.TIME] = Field(
+        default=None,
+        alias="from",
+        description="Where each clip begins to count, an event or another time; default: its first frame. Of a cyclic "
+        "motion one cycle, from one heel strike to the next, is normalized.",
+    )
+    to_time: Annotated[Time | None, kinds.TIME] = Field(
+        default=None, alias="to", description="Where each clip ends to count; default: its last frame."
+    )
     rest_pose: Annotated[Literal["drop", "keep"], kinds.word("drop", "keep")] = Field(
         default="drop", description="What becomes of a T-pose in front of a take."
     )
@@ -99,3 +108,9 @@ class NormalizeSpec(Document):
         if self.align.at == "first":
             return None
         return next(iter(self.events)) if self.align.at == "event" else self.align.at
+
+    @property
+    def crop(self) -> dict[str, str]:
+        """What counts of each clip, as the spec has it: times by `from` and `to`, where they are given."""
+        given = {"from": self.from_time, "to": self.to_time}
+        return {key: time.text for key, time in given.items() if time is not None}

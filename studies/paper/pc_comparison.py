@@ -8,7 +8,7 @@ import numpy as np
 
 from studies.paper.comparison import Outcome, Task, balance, feet, grip, outcome, put_back, timed
 from studies.paper.drawing import BLUE, GREEN, GREY, GROUND, ORANGE, QUIET, Camera, Stage, body, new_figure
-from studies.paper.study import GOLF, Findings, Table, club_head
+from studies.paper.study import COMPONENTS_ALONE, GOLF, Findings, Table, club_head
 from studies.paper.truth import paired
 
 if TYPE_CHECKING:
@@ -23,9 +23,10 @@ SHIFTS = {"10 cm ahead": np.array([10.0, 0.0, 0.0]), "10 cm away": np.array([0.0
 SHOWN = 0
 SHOWN_SHIFT = np.array([14.0, 0.0, 0.0])
 NO_EDIT, PC, PC_OUT = "no edit", "edit-pc", "edit-pc, left out of the database"
-PC_FEET = "edit-pc, then its feet put back"
+GN, GN_OUT = "edit-pc, gauss-newton", "edit-pc, gauss-newton, left out"
+PC_FEET = "the same in the database, then its feet put back"
 ONE, FIVE, SIX = "edit-prioritized, the goal alone", "the same, feet and CoM", "the same, left hand on the club"
-CONSTRAINTS = {NO_EDIT: "", PC: "1", PC_OUT: "1", PC_FEET: "1 + 5", ONE: "1", FIVE: "5", SIX: "6"}
+CONSTRAINTS = {NO_EDIT: "", PC: "1", PC_OUT: "1", GN: "1", GN_OUT: "1", PC_FEET: "1 + 5", ONE: "1", FIVE: "5", SIX: "6"}
 
 
 def study(lab: Study) -> Findings:
@@ -49,10 +50,12 @@ def _edits(lab: Study, swing: int, task: Task, left_out: Path) -> dict[str, tupl
     edits = {
         PC: timed(lambda: lab.edit(swing, goal)),
         PC_OUT: timed(lambda: lab.edit(swing, away, model=left_out, events={"hit": task.hit})),
+        GN: timed(lambda: lab.edit(swing, goal, **COMPONENTS_ALONE)),
+        GN_OUT: timed(lambda: lab.edit(swing, away, model=left_out, events={"hit": task.hit}, **COMPONENTS_ALONE)),
     }
     for name, constraints in _layers(task).items():
         edits[name] = timed(lambda constraints=constraints: _prioritized(lab, task, constraints))
-    first, seconds = edits[PC]
+    first, seconds = edits[GN]
     keep = [{"type": "position", "effector": task.effector, "priority": 5}, grip()]
     second, more = timed(lambda: put_back(task.clip, first.path, keep, lab.lab))
     results = {NO_EDIT: (task.clip, 0.0), **{name: (edit.path, took) for name, (edit, took) in edits.items()}}

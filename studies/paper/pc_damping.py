@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from studies.lab import jerk, joint_positions
-from studies.paper.drawing import BLUE, GREY, ORANGE, PURPLE, Camera, Stage, body, new_figure
-from studies.paper.study import ALGORITHM_1, Findings, Table, club_head
+from studies.paper.drawing import BLUE, GREEN, GREY, ORANGE, PURPLE, Camera, Stage, body, new_figure
+from studies.paper.study import ALGORITHM_1, COMPONENTS_ALONE, Findings, Table, club_head
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -20,7 +20,8 @@ DISTANCES = (5, 10, 20, 30, 45, 60)
 SOLVERS: dict[str, tuple[str, dict[str, Any]]] = {
     "xi = 0": (PURPLE, {"solver": {**ALGORITHM_1, "damping": 0.0}}),
     "xi = 10": (BLUE, {"solver": ALGORITHM_1}),
-    "the default, bounded": (ORANGE, {}),
+    "gauss-newton, bounded": (ORANGE, COMPONENTS_ALONE),
+    "map, the default": (GREEN, {}),
 }
 SHOWN = 3  # the swing of the picture
 

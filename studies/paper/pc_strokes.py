@@ -10,7 +10,7 @@ import numpy as np
 from studies.lab import effector_path, jerk
 from studies.paper.comparison import Outcome, Task, balance, feet, outcome, timed
 from studies.paper.drawing import BLUE, GREY, GROUND, ORANGE, QUIET, Camera, Stage, body, new_figure
-from studies.paper.study import ALGORITHM_1, Findings, Table, spread
+from studies.paper.study import ALGORITHM_1, COMPONENTS_ALONE, Findings, Table, spread
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 WRIST = "RightWrist"
 CAP = 5000
 SHIFTS = (np.array([10.0, 0.0, 0.0]), np.array([0.0, 0.0, 10.0]))
+GN_OUT = "edit-pc, gauss-newton, left out"
 PC, PC_OUT, ONE, FIVE = "edit-pc", "edit-pc, left out", "edit-prioritized, goal alone", "the same, feet and CoM"
 
 
@@ -105,7 +106,8 @@ def _damping(lab: Study, found: list[Strokes], models: dict[str, Path]) -> Table
     rows: list[tuple[str, ...]] = [
         ("strokes", "goal (cm)", "solver", "iterations", "left (cm)", "norm", "wrist jerk", "worst")
     ]
-    solvers = {"xi = 0": {"solver": {**ALGORITHM_1, "damping": 0.0}}, "xi = 10": {"solver": ALGORITHM_1}, "default": {}}
+    solvers = {"xi = 0": {"solver": {**ALGORITHM_1, "damping": 0.0}}, "xi = 10": {"solver": ALGORITHM_1}}
+    solvers |= {"gauss-newton": COMPONENTS_ALONE, "map": {}}
     for strokes in found:
         clips = strokes.clips[:2] if lab.quick else strokes.clips
         for far in (10.0, 30.0, 60.0):
@@ -168,6 +170,7 @@ def _edits(lab: Study, strokes: Strokes, task: Task, model: Path, left_out: Path
     return {
         PC: timed(lambda: _edit(lab, task.clip, strokes, model, task.shift)),
         PC_OUT: timed(lambda: _edit(lab, task.clip, strokes, left_out, task.shift)),
+        GN_OUT: timed(lambda: _edit(lab, task.clip, strokes, left_out, task.shift, **COMPONENTS_ALONE)),
         ONE: timed(lambda: lab.lab.edit_prioritized(task.clip, {"constraints": [task.pull]})),
         FIVE: timed(lambda: lab.lab.edit_prioritized(task.clip, {"constraints": five})),
     }

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from studies.paper.drawing import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, QUIET, STYLES, Camera, Stage, body, new_figure
-from studies.paper.study import ALGORITHM_1, Findings, Table
+from studies.paper.study import ALGORITHM_1, COMPONENTS_ALONE, Findings, Table
 from studies.paper.truth import coefficients, paired
 
 if TYPE_CHECKING:
@@ -22,7 +22,11 @@ INPUT = 0  # swing01, of style 1
 GOALS = (7, 2, 5, 4, 1)  # the swings, all of other styles, whose balls are the five goals
 BANDS = ((1.0, 10.0), (10.0, 15.0))
 PLANE = [1, 2]  # of Figure 6: in data/ the first component is the ball, the next two tell styles apart
-SOLVERS: dict[str, dict[str, Any]] = {"Algorithm 1": {"solver": ALGORITHM_1, "components": 8}, "the default": {}}
+SOLVERS: dict[str, dict[str, Any]] = {
+    "Algorithm 1": {"solver": ALGORITHM_1, "components": 8},
+    "gauss-newton": COMPONENTS_ALONE,
+    "map": {},
+}
 
 
 def study(lab: Study) -> Findings:
@@ -77,8 +81,8 @@ def _kept(lab: Study, name: str, band: tuple[float, float]) -> tuple[str, ...]:
         for ball in lab.near_balls(swing, least=band[0], most=band[1]):
             if lab.styles[ball] == lab.styles[swing]:
                 continue
-            edited = np.array(_to_ball(lab, swing, ball, SOLVERS[name]).record["alpha"]["after"])
-            edited = np.append(edited, known[swing, len(edited) :])
+            # Of the written clip: what leaves the components at the goal may come back into them elsewhere.
+            edited = coefficients(lab, swing, _to_ball(lab, swing, ball, SOLVERS[name]).path)
             truth = coefficients(lab, swing, paired(lab, swing, lab.balls[ball]))
             own += [_cluster(lab, alpha) == lab.styles[swing] for alpha in (known[swing], truth, edited)]
             figures.append([np.linalg.norm(edited - alpha) for alpha in (truth, known[ball], known[swing])])

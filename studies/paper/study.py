@@ -26,6 +26,8 @@ ROOT = Path(__file__).resolve().parents[2]
 GOLF = {"events": {"hit": {"frames": str(ROOT / "data" / "golf" / "events.csv")}}}
 # The solver of [PC], and its output: centimetres, xi = 10, stop at 1 cm; eq. (3) alone on the timeline.
 ALGORITHM_1 = {"method": "damped", "damping": 10.0, "damping_unit": "cm", "max_iterations": 1500, "tolerance": 1.0}
+# Components alone, the smallest change of coefficients.
+COMPONENTS_ALONE: dict[str, Any] = {"solver": {"method": "gauss-newton"}}
 PAPERS_OUTPUT = {"residual": "drop", "timing": "normalized"}
 # The method of [PRIO]: the FIR filter and a pass that repairs, joints that give alike and turn as far as they like.
 AS_PRIO = {"smoothing": {"method": "paper", "passes": 2}, "stiffness": "none", "limits": "off", "hinges": "off"}

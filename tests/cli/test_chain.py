@@ -34,11 +34,12 @@ def test_clips_become_a_timeline_a_model_and_edits(run):
     edited = run("edit-pc", "golf", "-m", "golf.npz", "-s", "golf-edit.yaml", "-o", "edited", "--report", "-", "-j", 0)
     assert edited.exit_code == 0
     clips = json.loads(edited.stdout)["clips"]
-    assert {clip["status"] for clip in clips} <= {"ok", "far"}
+    assert {clip["status"] for clip in clips} <= {"ok", "far", "rough"}
     assert all(Path(clip["output"]).exists() for clip in clips)
     assert run("diff", "golf", "edited").exit_code == 3
     # With one component the goal is out of reach, which --strict makes an exit code.
     one = ("edit-pc", "golf", "-m", "golf.npz", "-s", "golf-edit.yaml", "-o", "edited", "--set", "components=1")
+    one += ("--set", "solver.method=gauss-newton")
     assert run(*one).exit_code == 0
     assert run(*one, "--strict").exit_code == 3
     again = run("fit-pca", "normal", "-o", "golf.npz", "--no-overwrite")

@@ -92,10 +92,13 @@ def test_a_far_goal_is_unreachable_and_strict_says_so(run, golf, data, tmp_path)
     assert result.exit_code == 3
     record = json.loads((tmp_path / "r.json").read_text())["clips"][0]
     assert record["status"] == "unreachable"
-    assert record["mahalanobis"]["after"] <= record["mahalanobis"]["bound"] * (1 + 1e-4)
+    assert record["change"]["norm"] <= record["change"]["bound"] * (1 + 1e-4)
     assert "out of reach of the database's motions" in result.stderr
-    off = run(*arguments, "--set", "goals.ball.shift=[0, 0, 150]", "--set", "goals.ball.tolerance=off", "--strict")
+    off = run(
+        *arguments, "--set", "goals.ball.shift=[0, 0, 150]", "--set", "goals.ball.tolerance=off", "--report", "r.json"
+    )
     assert off.exit_code == 0
+    assert json.loads((tmp_path / "r.json").read_text())["clips"][0]["goals"][0]["status"] == "ok"
 
 
 def test_the_report_has_the_fixed_keys(run, golf, data, tmp_path):
@@ -130,7 +133,6 @@ def test_a_dry_run_says_what_it_would_do_and_writes_nothing(run, golf, data, tmp
         ("components=10", "the model has 9 components, not 10"),
         ("goals.ball.effector={end_site: Clubb}", "no joint 'Clubb' in"),
         ("goals.ball.at=500", "500 is outside the clip, whose frames are 0 to 128"),
-        ("coefficients=per_goal", "per_goal is not supported yet"),
         ("events={hit: 0}", "'hit' at frame 0 is not after its first frame"),
     ],
 )
@@ -361,3 +363,26 @@ def clip_scaled(clip, scale):
     )
     motion = Motion(scaled, clip.motion.rotations, clip.motion.translations * scale, clip.motion.frame_time)
     return new_bytes(motion, decimals=9)
+
+
+def test_normalize_warns_of_an_event_at_the_edge_of_its_window_and_of_a_clip_of_another_length(run, data, tmp_path):
+    clip = read_clip(data / "swing02.bvh")
+    long = Motion(clip.motion.skeleton, clip.motion.rotations, clip.motion.translations, 3.0 * clip.motion.frame_time)
+    (tmp_path / "long.bvh").write_bytes(resampled_bytes(clip, long))
+    rule = {"effector": {"end_site": "Club"}, "minimum_of": "height", "between": ["40%", "60%"]}
+    spec = {"schema": "motionedit/normalize/v1", "frame_rate": 8, "events": {"hit": {"detect": rule}}}
+    (tmp_path / "n.yaml").write_text(json.dumps(spec))
+    clips = (data / "swing01.bvh", data / "swing03.bvh", tmp_path / "long.bvh")
+    result = run("normalize", *clips, "-s", "n.yaml", "-o", "n")
+    assert result.exit_code == 0
+    lines = result.stderr.splitlines()
+    assert any("swing01.bvh" in line and "'hit' lies at the edge of its window" in line for line in lines)
+    assert any("long.bvh' lasts 14.5 s, the others about" in line for line in lines)
+
+
+def test_nothing_is_left_where_a_crop_ends_before_it_begins(run, data, tmp_path):
+    (tmp_path / "n.yaml").write_text("schema: motionedit/normalize/v1\nfrom: 60%\nto: 40%\n")
+    result = run("normalize", data / "swing01.bvh", "-s", "n.yaml", "-o", "n")
+    assert result.exit_code == 1
+    assert "nothing is left from frame 77 (from:) to frame 51 (to:)" in result.stderr
+    assert not (tmp_path / "n").exists()

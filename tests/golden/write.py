@@ -27,7 +27,8 @@ def golf_session(folder: Path) -> dict[str, Any]:
     path = lab.model(swings, {"events": {"hit": {"frames": str(ROOT / "data" / "golf" / "events.csv")}}})
     model = read_model(path)
     goal = {"name": "ball", "at": "hit", "effector": {"end_site": "Club"}, "shift": [0, 0, 10]}
-    edit = lab.edit(swings[3], path, {"unit": "cm", "goals": [goal]})
+    edit = lab.edit(swings[3], path, {"unit": "cm", "goals": [goal], "solver": {"method": "gauss-newton"}})
+    likeliest = lab.edit(swings[3], path, {"unit": "cm", "goals": [goal]})
     return {
         "about": f"data/golf (generator seed {SEED}), cm, y up; club head moved 10 cm along z at the hit of swing04",
         "explained_variance": [round(float(x), 6) for x in model.components.explained_variance],
@@ -35,6 +36,8 @@ def golf_session(folder: Path) -> dict[str, Any]:
         "alpha_after": [round(float(x), 4) for x in edit.record["alpha"]["after"]],
         "iterations": edit.record["iterations"],
         "club_head_after": effector_path(edit.path, "Club", end_site=True)[::20].round(3).tolist(),
+        "left_out": round(float(likeliest.record["change"]["residual_share"]), 6),
+        "club_head_after_map": effector_path(likeliest.path, "Club", end_site=True)[::20].round(3).tolist(),
     }
 
 

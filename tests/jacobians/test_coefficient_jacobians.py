@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from motionedit.core import rotations as rot
-from motionedit.core.coefficients.chain import CoefficientChain, _exp_and_left_jacobian, evaluate
+from motionedit.core.coefficients.chain import CoefficientChain, evaluate, exp_and_left_jacobian
 from motionedit.core.coefficients.goals import Goal, stacked_errors
 from motionedit.core.measure import Measure
 from motionedit.core.units import METRES_PER_RADIAN
@@ -79,12 +79,12 @@ def test_orientation_rows_are_minus_the_derivative_of_the_error_where_it_is_met(
 
 def left_jacobian(v):
     """Return J_l at one rotation vector, as the chain has it."""
-    return _exp_and_left_jacobian(v[None])[1][0]
+    return exp_and_left_jacobian(v[None])[1][0]
 
 
 def test_the_chains_own_exp_is_that_of_the_rotations_module():
     v = np.concatenate((np.random.default_rng(11).normal(size=(20, 3)), [[0, 0, 0], [1e-6, 0, 0], [3.1, 0.2, 0.1]]))
-    turns, _ = _exp_and_left_jacobian(v)
+    turns, _ = exp_and_left_jacobian(v)
     np.testing.assert_allclose(turns, rot.to_matrix(rot.exp(v)), atol=1e-14)
 
 

@@ -38,9 +38,11 @@ goals:
     weight: 1.0              # default
     priority: 1              # default; larger = more important; equal = weighted together
     tolerance: 0.1           # default 1 mm, 0.1 degree (at leg length 0.85 m)
-solver: {method: gauss-newton}            # default
+solver: {method: map}            # default
+residual_share: auto         # default
+feet: keep                   # default: planted feet stand where the input's stand | move | off
 plausibility: 3              # default
-coefficients: constant       # default
+coefficients: constant       # default | per_goal
 residual: keep               # default | drop (the paper's eq. 3 alone)
 timing: original             # default | normalized
 """

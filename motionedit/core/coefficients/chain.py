@@ -101,7 +101,7 @@ def evaluate(chain: CoefficientChain, unknowns: FloatArray) -> EffectorState:
     w = R_parent R_ref J_l(v) dv, which moves the effector by w x (p_e - p_j). Since J_l(v) = exp(v) J_l(v)^T, that
     is w = R_j J_l(v)^T dv with the joint's own world rotation R_j.
     """
-    turns, jacobians = _exp_and_left_jacobian(chain.vectors + chain.rows @ unknowns)
+    turns, jacobians = exp_and_left_jacobian(chain.vectors + chain.rows @ unknowns)
     count = len(turns)
     # Rotation and translation in one product a joint: numpy's calls cost more than its arithmetic here.
     local, world = chain.joint_frames.copy(), np.empty((count + 1, 4, 4))
@@ -121,7 +121,7 @@ def evaluate(chain: CoefficientChain, unknowns: FloatArray) -> EffectorState:
     return EffectorState(end, R[-1], position_rows, rotation_rows)
 
 
-def _exp_and_left_jacobian(v: FloatArray) -> tuple[FloatArray, FloatArray]:
+def exp_and_left_jacobian(v: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return exp([v]x) and J_l(v), shapes (c, 3, 3): both are polynomials in the same [v]x."""
     t2 = np.einsum("ij,ij->i", v, v)
     small = t2 < _SMALL_ANGLE * _SMALL_ANGLE

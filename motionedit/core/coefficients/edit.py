@@ -10,26 +10,25 @@ met exactly in the output. `residual="drop"` gives the paper's eq. (3) alone.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
-from motionedit.core.coefficients.chain import CoefficientChain
-from motionedit.core.coefficients.goals import Goal
+from motionedit.core.coefficients.goal_chains import columns_behind, columns_of, goal_of
+from motionedit.core.coefficients.likeliest import likeliest_change
+from motionedit.core.coefficients.prior import change_prior, interpolated
 from motionedit.core.coefficients.projection import Projection, with_rows
 from motionedit.core.coefficients.solver import CoefficientSolution, solve_damped, solve_goals
-from motionedit.core.measure import WORLD, Measure
-from motionedit.core.timeline.interpolation import low_pass, natural_spline
+from motionedit.core.timeline.interpolation import low_pass, monotone_cubic, natural_spline
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
-    from motionedit.core.kinematics import Effector
+    from motionedit.core.coefficients.goal_chains import GoalRequest
+    from motionedit.core.coefficients.planted_feet import PlantedFoot
     from motionedit.core.motion import Motion
     from motionedit.core.pca.model import MotionModel
 
@@ -39,38 +38,39 @@ Residual = Literal["keep", "drop"]
 # timeline their corners would otherwise show as jerk.
 COMPONENT_SMOOTHING = 0.040
 
+# The residual has the whole pose at each goal's frame, so that what moves together stays together; with more unknowns
+# than this only what moves the goals, or a dense matrix of them all would take seconds.
+MOST_UNKNOWNS = 1500
+
 # Radians or metres: a displacement below this is rounding, and leaves its joint untouched.
 UNTOUCHED = 1e-10
 
 
 @dataclass(frozen=True, eq=False)
-class GoalRequest:
-    """A goal as asked for, in clip units.
+class Likeliest:
+    """The default solver: the likeliest change under a prior in which components and a fading residual share.
 
     Attributes
     ----------
-    frame : int
-        Frame of the projected motion.
-    effector : Effector
-    position : shape (3,) or None
-        As it is measured.
-    rotation : shape (4,) or None
-    weight : float
-    measure : Measure
-        What position and rotation are measured in.
+    share : float
+        g, the share of a change's variance that may leave the components.
+    bound : float or None
+        Largest norm of the change, in the database's standard deviations.
+    feet : tuple of PlantedFoot
+        Points that stand, and are rather not moved.
+    still : tuple of int
+        Joints that the residual leaves alone.
     """
 
-    frame: int
-    effector: Effector
-    position: FloatArray | None
-    rotation: FloatArray | None
-    weight: float = 1.0
-    measure: Measure = WORLD
+    share: float
+    bound: float | None
+    feet: tuple[PlantedFoot, ...] = ()
+    still: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)
 class GaussNewton:
-    """The default solver; `bound` is the largest Mahalanobis norm allowed, None for no bound."""
+    """Components alone; `bound` is the largest Mahalanobis norm allowed, None for no bound."""
 
     bound: float | None
 
@@ -96,16 +96,52 @@ class CoefficientEdit:
         Which joints' rotations changed at which frames.
     moved : shape (F,)
         Frames at which the travel-carrying joint's translation changed.
-    solution : CoefficientSolution
+    changes : tuple of Change
+        One; or one for each frame with goals, in order, where these were solved each by itself.
     coefficients : shape (m,)
-        alpha after the edit.
+        alpha after the edit, of the first change.
     """
 
     motion: Motion
     touched: BoolArray
     moved: BoolArray
-    solution: CoefficientSolution
+    changes: tuple[Change, ...]
     coefficients: FloatArray
+
+    @property
+    def norm(self) -> float | None:
+        """The largest norm of a change in standard deviations of the database; None where no prior measures it."""
+        return max((change.norm for change in self.changes if change.norm is not None), default=None)
+
+    @property
+    def reasons(self) -> dict[int, str]:
+        """Why the solver stopped, for each request by its place among them."""
+        return {i: reason for change in self.changes for i, reason in change.reasons.items()}
+
+
+@dataclass(frozen=True, eq=False)
+class Change:
+    """What a solver found for goals that are solved together.
+
+    Attributes
+    ----------
+    solution : CoefficientSolution
+        Its `change` is beta.
+    reasons : mapping of int to str
+        Why it stopped, for each request by its place.
+    frames : tuple of int
+        The goals' frames, increasing.
+    norm : float or None
+        As of the edit.
+    residual : shape (K, n) or None
+        What leaves the components at those frames, columns of Theta.
+    """
+
+    solution: CoefficientSolution
+    reasons: dict[int, str]
+    frames: tuple[int, ...]
+    norm: float | None = None
+    residual: FloatArray | None = None
 
 
 def edit_by_coefficients(
@@ -113,9 +149,10 @@ def edit_by_coefficients(
     model: MotionModel,
     requests: Sequence[GoalRequest],
     *,
-    solver: GaussNewton | Damped,
+    solver: Likeliest | GaussNewton | Damped,
     residual: Residual,
     first: int,
+    per_goal: bool = False,
 ) -> CoefficientEdit:
     """Return the clip edited so that every goal is met, or as nearly as the solver's bound allows.
 
@@ -123,11 +160,22 @@ def edit_by_coefficients(
     ----------
     first : int
         Frames before this one are a rest pose and stay as they are.
+    per_goal : bool
+        Solve each frame that has goals by itself, and interpolate the coefficients between them over time.
     """
     rows, smoothing = base_rows(projection, model, residual=residual)
-    goals = [_goal(projection, model, rows, request, smoothing=smoothing) for request in requests]
-    solution = _solve(goals, model, solver, start=projection.coefficients)
-    displacement = component_displacement(model, solution.change, projection.places, smoothing=smoothing)
+    places = list(range(len(requests)))
+    frames = sorted({request.frame for request in requests})
+    groups = [[i for i in places if requests[i].frame == frame] for frame in frames] if per_goal else [places]
+    columns = columns_behind(projection, requests)
+    if isinstance(solver, Likeliest):
+        together = 1 if per_goal else len(frames)
+        if together * model.space.size <= MOST_UNKNOWNS:
+            columns = np.arange(model.space.size)
+        columns = columns[~np.isin(columns, columns_of(projection, solver.still))]
+    given = _Given(projection, model, rows, smoothing, columns, solver)
+    changes = tuple(_solve(given, requests, group) for group in groups) or (_solve(given, requests, places),)
+    displacement = _displacement(given, changes)
     displacement[np.abs(displacement) < UNTOUCHED] = 0.0
     new_rows = rows + displacement
     new_rows[:first] = projection.rows[:first]
@@ -139,8 +187,8 @@ def edit_by_coefficients(
         motion=motion,
         touched=touched,
         moved=changed[:, 0],
-        solution=solution,
-        coefficients=frozen(projection.coefficients + solution.change),
+        changes=changes,
+        coefficients=frozen(projection.coefficients + changes[0].solution.change),
     )
 
 
@@ -160,89 +208,84 @@ def component_displacement(
     return natural_spline(low_pass(displacement, sigma=smoothing * model.timeline.frame_rate), places)
 
 
-def _solve(
-    goals: Sequence[Goal], model: MotionModel, solver: GaussNewton | Damped, *, start: FloatArray
-) -> CoefficientSolution:
-    if not goals:
-        return CoefficientSolution(np.zeros(len(start)), 0, (0.0,), "converged")
+@dataclass(frozen=True, eq=False)
+class _Given:
+    """What all goals of an edit share: `rows` and `smoothing` of `base_rows`, and the `columns` behind the goals."""
+
+    projection: Projection
+    model: MotionModel
+    rows: FloatArray
+    smoothing: float
+    columns: IntArray
+    solver: Likeliest | GaussNewton | Damped
+
+
+def _displacement(given: _Given, changes: Sequence[Change]) -> FloatArray:
+    """Return what the changes add to the rows, shape (F, n)."""
+    model, places = given.model, given.projection.places
+    if len(changes) == 1:
+        displacement = component_displacement(model, changes[0].solution.change, places, smoothing=given.smoothing)
+    else:
+        # Between the goals' frames the coefficients follow a monotone cubic; each frame has its own.
+        at = np.array([float(change.frames[0]) for change in changes])
+        betas = np.stack([change.solution.change for change in changes])
+        frames = np.arange(len(places), dtype=np.float64)
+        over_time = np.stack([monotone_cubic(at, track, frames) for track in betas.T], axis=1)
+        displacement = np.zeros_like(given.rows)
+        for beta, component in zip(over_time.T, np.eye(len(model.component_rows)), strict=True):
+            displacement += beta[:, None] * component_displacement(model, component, places, smoothing=given.smoothing)
+    residuals = [change.residual for change in changes if change.residual is not None]
+    if residuals:
+        frames_of = np.array([frame for change in changes for frame in change.frames], dtype=np.intp)
+        faded = interpolated(np.concatenate(residuals), frames_of, len(places), given.projection.motion.frame_time)
+        displacement[:, given.columns] += faded
+    return displacement
+
+
+def _solve(given: _Given, requests: Sequence[GoalRequest], group: Sequence[int]) -> Change:
+    """Return the change that meets some of the requests, by their places."""
+    projection, model, solver = given.projection, given.model, given.solver
+    size = len(projection.coefficients)
+    if not group:
+        return Change(CoefficientSolution(np.zeros(size), 0, (0.0,), "converged"), {}, ())
+    frames = tuple(sorted({requests[i].frame for i in group}))
+    if isinstance(solver, Likeliest):
+        return _likeliest(given, requests, group, frames, solver)
+    goals = [goal_of(projection, model, given.rows, requests[i], smoothing=given.smoothing) for i in group]
     if isinstance(solver, GaussNewton):
         variance = model.components.explained_variance
-        return solve_goals(goals, explained_variance=variance, start=start, bound=solver.bound)
-    return solve_damped(
-        goals,
-        size=len(start),
-        damping=solver.damping,
-        tolerance=solver.tolerance,
-        max_iterations=solver.max_iterations,
-        unit=solver.unit,
+        found = solve_goals(goals, explained_variance=variance, start=projection.coefficients, bound=solver.bound)
+    else:
+        found = solve_damped(
+            goals,
+            size=size,
+            damping=solver.damping,
+            tolerance=solver.tolerance,
+            max_iterations=solver.max_iterations,
+            unit=solver.unit,
+        )
+    return Change(found, dict.fromkeys(group, found.reason), frames)
+
+
+def _likeliest(
+    given: _Given, requests: Sequence[GoalRequest], group: Sequence[int], frames: tuple[int, ...], solver: Likeliest
+) -> Change:
+    projection, model = given.projection, given.model
+    prior = change_prior(projection, model, frames=frames, columns=given.columns, share=solver.share, feet=solver.feet)
+    layers = [
+        [i for i in group if requests[i].priority == priority]
+        for priority in sorted({requests[i].priority for i in group}, reverse=True)
+    ]
+    goals = [
+        [goal_of(projection, model, given.rows, requests[i], smoothing=given.smoothing, prior=prior) for i in layer]
+        for layer in layers
+    ]
+    found = likeliest_change(goals, size=prior.size, bound=solver.bound)
+    beta = prior.coefficients(found.change)
+    return Change(
+        CoefficientSolution(beta, found.iterations, found.history, found.reason),
+        {i: reason for layer, reason in zip(layers, found.reasons, strict=True) for i in layer},
+        frames,
+        float(np.linalg.norm(found.change)),
+        prior.residual(found.change),
     )
-
-
-def _goal(
-    projection: Projection, model: MotionModel, rows: FloatArray, request: GoalRequest, *, smoothing: float
-) -> Goal:
-    """Return the goal with its chains cut out of the components at its frame: J(E)_tk of [PC], Figure 1."""
-    scale = model.space.scale
-    ends = [(request.effector.joint, request.effector.offset)]
-    if request.measure.base is not None:
-        ends.append((request.measure.base, np.zeros(3)))
-    chains = [_chain(projection, model, rows[request.frame], request.frame, joint) for joint, _ in ends]
-    place = projection.places[request.frame : request.frame + 1]
-    components = np.moveaxis(model.component_rows, 0, -1)
-    sigma = smoothing * model.timeline.frame_rate
-    full = []
-    for (_, offset), (chain, columns) in zip(ends, chains, strict=True):
-        known = np.flatnonzero(columns >= 0)
-        wanted = np.concatenate([np.arange(3), *(3 + 3 * columns[k] + np.arange(3) for k in known)])
-        slices = natural_spline(low_pass(components[:, wanted], sigma=sigma), place)[0]
-        rotation_rows = np.zeros((len(columns), 3, slices.shape[1]))
-        rotation_rows[known] = slices[3:].reshape(len(known), 3, -1)
-        carries = projection.travel == chain.joints[0]
-        travel_rows = slices[:3] / model.space.root_weight if carries else np.zeros_like(slices[:3])
-        full.append(replace(chain.fixed, rows=rotation_rows, travel_rows=travel_rows, offset=offset * scale))
-    return Goal(
-        chain=full[0],
-        position=None if request.position is None else request.position * scale,
-        rotation=None if request.rotation is None else rot.to_matrix(request.rotation),
-        weight=request.weight,
-        measure=request.measure,
-        base=full[1] if len(full) > 1 else None,
-    )
-
-
-@dataclass(frozen=True, eq=False)
-class _PosedChain:
-    joints: tuple[int, ...]
-    fixed: CoefficientChain
-
-
-def _chain(
-    projection: Projection, model: MotionModel, row: FloatArray, frame: int, joint: int
-) -> tuple[_PosedChain, IntArray]:
-    """Return the chain to a joint, posed by a row of Theta, and each joint's column in the space (-1: none)."""
-    motion, space = projection.motion, model.space
-    skeleton = motion.skeleton
-    joints = [int(j) for j in skeleton.chain(joint)]
-    base_rotation, base_position = np.eye(3), np.zeros(3)
-    carries = projection.travel in joints
-    if carries:
-        joints = joints[joints.index(projection.travel) :]
-        base_rotation = rot.to_matrix(rot.conjugate(projection.alignment.rotation))
-        base_position = projection.alignment.origin * space.scale
-    place = {int(j): p for p, j in enumerate(skeleton.translated)}
-    translations = np.array(
-        [motion.translations[frame, place[j]] if j in place else skeleton.offsets[j] for j in joints]
-    )
-    translations *= space.scale
-    if carries:
-        translations[0] = row[:3] / space.root_weight
-    column_of = {int(j): k for k, j in enumerate(projection.joints)}
-    columns = np.array([column_of.get(j, -1) for j in joints], dtype=np.intp)
-    references = rot.to_matrix(motion.rotations[frame, joints])
-    vectors = np.zeros((len(joints), 3))
-    known = np.flatnonzero(columns >= 0)
-    references[known] = rot.to_matrix(space.references[columns[known]])
-    vectors[known] = row[3:].reshape(-1, 3)[columns[known]]
-    empty = np.zeros((0, 0))
-    fixed = CoefficientChain(base_rotation, base_position, translations, references, vectors, empty, empty, np.zeros(3))
-    return _PosedChain(tuple(joints), fixed), columns

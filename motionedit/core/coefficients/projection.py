@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -48,6 +49,10 @@ class Projection:
         Theta of every frame.
     coefficients : shape (m,)
         alpha_0 of the clip.
+    residual : float
+        The sum of squares of what the components leave of it on the timeline.
+    seconds : float
+        How long the part of the clip lasts that lies on the timeline.
     """
 
     motion: Motion
@@ -57,6 +62,8 @@ class Projection:
     places: FloatArray
     rows: FloatArray
     coefficients: FloatArray
+    residual: float
+    seconds: float
 
 
 def clip_joints(space: PoseSpace, joint_map: IntArray) -> IntArray:
@@ -73,7 +80,7 @@ def project(
     travel = int(joint_map[model.travel])
     joints = clip_joints(model.space, joint_map)
     rows = _rows(motion, model, travel=travel, joints=joints, alignment=alignment, places=places)
-    return Projection(motion, travel, joints, alignment, places, rows, on_timeline.coefficients)
+    return replace(on_timeline, motion=motion, places=places, rows=rows)
 
 
 def project_resampled(
@@ -85,8 +92,11 @@ def project_resampled(
     travel = int(joint_map[model.travel])
     joints = clip_joints(model.space, joint_map)
     rows = _rows(resampled, model, travel=travel, joints=joints, alignment=alignment, places=places)
-    coefficients = model.components.components @ (rows.ravel() - model.components.mean)
-    return Projection(resampled, travel, joints, alignment, places, rows, frozen(coefficients))
+    off = rows.ravel() - model.components.mean
+    coefficients = model.components.components @ off
+    residual = max(float(off @ off - coefficients @ coefficients), 0.0)
+    seconds = float(warp.source[-1] - warp.source[0]) * motion.frame_time
+    return Projection(resampled, travel, joints, alignment, places, rows, frozen(coefficients), residual, seconds)
 
 
 def _rows(
@@ -105,6 +115,19 @@ def _rows(
     nearest = mean[np.clip(np.floor(places + 0.5).astype(np.intp), 0, len(mean) - 1)]
     tracks, _ = relabelled(tracks, nearest)
     return pose_rows(tracks, model.space, path=path, alignment=alignment)
+
+
+def of_another(projection: Projection, model: MotionModel, motion: Motion) -> Projection:
+    """Return the projection with another motion of the same clip in place of its own, at the same coefficients."""
+    rows = _rows(
+        motion,
+        model,
+        travel=projection.travel,
+        joints=projection.joints,
+        alignment=projection.alignment,
+        places=projection.places,
+    )
+    return replace(projection, motion=motion, rows=rows)
 
 
 def with_rows(projection: Projection, space: PoseSpace, rows: FloatArray) -> Motion:

@@ -38,7 +38,7 @@ STALL = 1e-10
 # How closely the bound is kept, relative to it.
 BOUND_TOLERANCE = 1e-4
 # With a penalty, steps below this part of the solution move its norm by less than the bound's tolerance.
-_PENALISED_STALL = 1e-6
+PENALISED_STALL = 1e-6
 
 # Algorithm 1 without a cap ends where this many iterations in a row brought no nearer error than this share.
 _PATIENCE = 1000
@@ -104,33 +104,43 @@ def solve_goals(
         error, jacobian = stacked_errors(goals, root * y)
         return error, jacobian * root
 
-    free, y = _free_solution(evaluate, len(start))
+    free, y = free_solution(evaluate, len(start))
     if bound is None or np.linalg.norm((start + root * y) / deviation) <= bound:
         return CoefficientSolution(root * y, free.iterations, free.history, free.reason)
     offset, slope = start / deviation, root / deviation
-    bounded, y = _bounded_solution(evaluate, offset=offset, slope=slope, bound=bound)
+
+    def nearest(y: FloatArray, penalty: float) -> tuple[FloatArray, float]:
+        return penalised(evaluate, y, offset=offset, slope=slope, penalty=penalty)
+
+    bounded, y = bounded_solution(
+        nearest, evaluate, norm=lambda y: float(np.linalg.norm(offset + slope * y)), size=len(start), bound=bound
+    )
     history = (free.history[0], *bounded.history)
     return CoefficientSolution(root * y, bounded.iterations, history, bounded.reason)
 
 
 @dataclass
-class _Progress:
+class Progress:
+    """The errors of a run so far, and why it ends."""
+
     history: list[float]
     reason: str = "iterations"
 
     @property
     def iterations(self) -> int:
+        """How many steps were accepted."""
         return len(self.history) - 1
 
     def finished(self) -> CoefficientSolution:
+        """Return a solution without its change."""
         return CoefficientSolution(np.zeros(0), self.iterations, tuple(self.history), self.reason)
 
 
-def _free_solution(evaluate: Evaluate, size: int) -> tuple[CoefficientSolution, FloatArray]:
+def free_solution(evaluate: Evaluate, size: int) -> tuple[CoefficientSolution, FloatArray]:
     """Damped Gauss-Newton, homing to zero; Levenberg-Marquardt where it stalls."""
     y = np.zeros(size)
     error, jacobian = evaluate(y)
-    progress = _Progress([float(np.linalg.norm(error))])
+    progress = Progress([float(np.linalg.norm(error))])
     damping, step = FIRST_DAMPING, np.inf
     while progress.iterations < MOST_ITERATIONS:
         settled = step <= STEP_STOP * float(np.linalg.norm(y)) or progress.iterations >= HOMING_ITERATIONS
@@ -178,7 +188,7 @@ def _gauss_newton_step(
 
 
 def _levenberg_marquardt(
-    evaluate: Evaluate, y: FloatArray, progress: _Progress, *, stall: float = STALL
+    evaluate: Evaluate, y: FloatArray, progress: Progress, *, stall: float = STALL
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Minimise |e|^2 from y on with Nielsen's rule for the damping; the history grows by the accepted steps."""
     error, jacobian = evaluate(y)
@@ -204,29 +214,43 @@ def _levenberg_marquardt(
     return y, error, jacobian
 
 
-def _bounded_solution(
-    evaluate: Evaluate, *, offset: FloatArray, slope: FloatArray, bound: float
+def bounded_solution(
+    nearest: Callable[[FloatArray, float], tuple[FloatArray, float]],
+    evaluate: Evaluate,
+    *,
+    norm: Callable[[FloatArray], float],
+    size: int,
+    bound: float,
+    start: FloatArray | None = None,
 ) -> tuple[CoefficientSolution, FloatArray]:
-    """Minimise |e|^2 + mu |z|^2, z = offset + slope y, with mu lowered until |z| meets the bound."""
-    best = np.zeros(len(offset))
-    progress = _Progress([])
+    """Minimise |e|^2 + mu |z|^2 with mu lowered until the norm |z| meets the bound.
+
+    Parameters
+    ----------
+    nearest : callable
+        Returns, from a y and mu, the minimising y and its |e|.
+    start : shape (size,), optional
+        Where to begin, within the bound; zero without.
+    """
+    best = np.zeros(size) if start is None else start
+    progress = Progress([])
     search = PenaltySearch((1.0 - 0.5 * BOUND_TOLERANCE) * bound)
     while not search.ended:
-        y, size = _penalised(evaluate, best, offset=offset, slope=slope, penalty=search.penalty)
-        progress.history.append(size)
-        norm = float(np.linalg.norm(offset + slope * y))
-        if norm <= bound:
+        y, length = nearest(best, search.penalty)
+        progress.history.append(length)
+        size_of_y = norm(y)
+        if size_of_y <= bound:
             best = y
-            if size < ERROR_STOP or norm >= (1.0 - BOUND_TOLERANCE) * bound:
+            if length < ERROR_STOP or size_of_y >= (1.0 - BOUND_TOLERANCE) * bound:
                 break
-        search.tried(norm, within=norm <= bound)
+        search.tried(size_of_y, within=size_of_y <= bound)
     error = float(np.linalg.norm(evaluate(best)[0]))
     progress.history.append(error)
     progress.reason = "converged" if error < ERROR_STOP else "bound"
     return progress.finished(), best
 
 
-def _penalised(
+def penalised(
     evaluate: Evaluate, y: FloatArray, *, offset: FloatArray, slope: FloatArray, penalty: float
 ) -> tuple[FloatArray, float]:
     """Return the y that minimises |e|^2 + mu |z|^2, and its |e|: Levenberg-Marquardt on the stacked rows."""
@@ -236,8 +260,8 @@ def _penalised(
         error, jacobian = evaluate(y)
         return np.concatenate((error, -weight * (offset + slope * y))), np.vstack((jacobian, weight * np.diag(slope)))
 
-    inner = _Progress([0.0])
-    y, error, _ = _levenberg_marquardt(stacked, y, inner, stall=_PENALISED_STALL)
+    inner = Progress([0.0])
+    y, error, _ = _levenberg_marquardt(stacked, y, inner, stall=PENALISED_STALL)
     return y, float(np.linalg.norm(error[: -len(offset)]))
 
 
@@ -265,7 +289,7 @@ def solve_damped(
     """
     change = np.zeros(size)
     error, jacobian = stacked_errors(goals, change)
-    progress = _Progress([float(np.linalg.norm(error))])
+    progress = Progress([float(np.linalg.norm(error))])
     floor = (damping * unit) ** 2 * np.eye(len(error))
     best, best_at = progress.history[0], 0
     while max_iterations is None or progress.iterations < max_iterations:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.arrays import frozen
+from motionedit.core.pca.left_out import LeftOut, left_out_of_gram
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -31,6 +32,8 @@ class PrincipalComponents:
         Sum over all components, also those left out.
     coefficients : shape (M, m)
         alpha of each motion of the database.
+    left_out : LeftOut or None
+        How far each motion is from the others; None in a model that was made before it was computed.
     """
 
     mean: FloatArray
@@ -38,6 +41,7 @@ class PrincipalComponents:
     explained_variance: FloatArray
     total_variance: float
     coefficients: FloatArray
+    left_out: LeftOut | None = None
 
     @property
     def explained_variance_ratio(self) -> FloatArray:
@@ -87,12 +91,13 @@ def fit_centred(X: FloatArray, mean: FloatArray, *, count: ComponentCount) -> Pr
         If the motions are all the same (`AllTheSameError`), or there are not as many components as asked for
         (`TooFewComponentsError`).
     """
-    eigenvalues, vectors = np.linalg.eigh(X @ X.T)
+    gram = X @ X.T
+    eigenvalues, vectors = np.linalg.eigh(gram)
     order = np.argsort(eigenvalues)[::-1][: len(X) - 1]
     eigenvalues = np.maximum(eigenvalues[order], 0.0)
     total = float(np.vdot(X, X))
     refuse_no_variance(float(eigenvalues[0]), total=total, mean=mean, count=len(X))
-    kept = _kept(eigenvalues, total, count)
+    kept, rank = _kept(eigenvalues, total, count), _rank(eigenvalues)
     components = _orthonormal(vectors[:, order[:kept]].T @ X)
     components *= signs_of(components)[:, None]
     return PrincipalComponents(
@@ -101,6 +106,7 @@ def fit_centred(X: FloatArray, mean: FloatArray, *, count: ComponentCount) -> Pr
         explained_variance=frozen(eigenvalues[:kept] / (len(X) - 1)),
         total_variance=total / (len(X) - 1),
         coefficients=frozen(X @ components.T),
+        left_out=left_out_of_gram(eigenvalues[:rank], vectors[:, order[:rank]], np.diag(gram)),
     )
 
 
@@ -112,8 +118,12 @@ def refuse_no_variance(largest: float, *, total: float, mean: FloatArray, count:
         raise AllTheSameError
 
 
+def _rank(eigenvalues: FloatArray) -> int:
+    return int(np.count_nonzero(eigenvalues > RANK_TOLERANCE * eigenvalues[0]))
+
+
 def _kept(eigenvalues: FloatArray, total: float, count: ComponentCount) -> int:
-    available = int(np.count_nonzero(eigenvalues > RANK_TOLERANCE * eigenvalues[0]))
+    available = _rank(eigenvalues)
     if count.share is not None:
         return components_for(eigenvalues[:available] / total, count.share)
     if count.count is not None and count.count > available:

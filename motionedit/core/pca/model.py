@@ -90,5 +90,6 @@ class MotionModel:
             explained_variance=full.explained_variance[:count],
             total_variance=full.total_variance,
             coefficients=frozen(full.coefficients[:, :count].copy()),
+            left_out=full.left_out,
         )
         return MotionModel(self.skeleton, self.space, self.timeline, self.travel, self.up, cut, self.clips, self.rules)

@@ -12,6 +12,7 @@ import numpy as np
 from motionedit.core.arrays import frozen
 from motionedit.core.pca.coordinates import PoseSpace
 from motionedit.core.pca.fit import PrincipalComponents
+from motionedit.core.pca.left_out import LeftOut
 from motionedit.core.pca.model import DatabaseClip, MotionModel
 from motionedit.core.skeleton import EndSite, Skeleton
 from motionedit.core.timeline.warp import Timeline
@@ -61,6 +62,8 @@ def model_bytes(model: MotionModel) -> bytes:
         "explained_variance": pca.explained_variance,
         "coefficients": pca.coefficients,
     }
+    if pca.left_out is not None:
+        arrays |= {"left_out_deviations": pca.left_out.deviations, "left_out_residuals": pca.left_out.residuals}
     return _npz(arrays)
 
 
@@ -123,6 +126,7 @@ def _model_of(arrays: Mapping[str, NDArray[Any]], *, label: str) -> MotionModel:
         explained_variance=frozen(arrays["explained_variance"]),
         total_variance=about["total_variance"],
         coefficients=frozen(arrays["coefficients"]),
+        left_out=_left_out_of(arrays),
     )
     if components.components.shape[1] != about["frames"] * space.size:
         raise ValueError("components and timeline disagree")
@@ -134,3 +138,10 @@ def _model_of(arrays: Mapping[str, NDArray[Any]], *, label: str) -> MotionModel:
     return MotionModel(
         skeleton, space, timeline, about["travel"], frozen(arrays["up"]), components, clips, about["rules"]
     )
+
+
+def _left_out_of(arrays: Mapping[str, NDArray[Any]]) -> LeftOut | None:
+    """Return what leaving out did to the database; None of a file that was written before it was kept."""
+    if "left_out_residuals" not in arrays:
+        return None
+    return LeftOut(frozen(arrays["left_out_deviations"]), frozen(arrays["left_out_residuals"]))

@@ -21,6 +21,7 @@ from motionedit.core.pca.fit import (
     refuse_no_variance,
     signs_of,
 )
+from motionedit.core.pca.left_out import left_out_of_components
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -97,7 +98,8 @@ def stream_components(centred: CentredVectors, *, count: ComponentCount) -> Stre
         raise TooFewComponentsError(min(rank, MOST_COMPONENTS))
     width = min(asked + _SPARE, _WIDEST_BLOCK, rank)
     most = min(rank, MOST_COMPONENTS + MOST_PASSES * _WIDEST_BLOCK)
-    total, block = _random_products(centred, width)
+    squares, block = _random_products(centred, width)
+    total = float(squares.sum())
     subspace = _Subspace([], [], np.empty((0, 0)))
     passes, limit = 1, MOST_PASSES + asked // _WIDEST_BLOCK
     while True:
@@ -117,11 +119,11 @@ def stream_components(centred: CentredVectors, *, count: ComponentCount) -> Stre
         if width < 1 or (enough and (residual < RESIDUAL_TOLERANCE or passes >= limit)):
             break
         block = block[:, :width]
-    return Streamed(_rebuilt(subspace, centred, (values, weights, kept), total), passes, residual)
+    return Streamed(_rebuilt(subspace, centred, (values, weights, kept), squares), passes, residual)
 
 
-def _random_products(centred: CentredVectors, width: int) -> tuple[float, FloatArray]:
-    """Return the sum of squares of all values, and random sums of the vectors, shape (D, l).
+def _random_products(centred: CentredVectors, width: int) -> tuple[FloatArray, FloatArray]:
+    """Return the sum of squares of each vector, shape (M,), and random sums of the vectors, shape (D, l).
 
     Raises
     ------
@@ -129,12 +131,13 @@ def _random_products(centred: CentredVectors, width: int) -> tuple[float, FloatA
         If there is nothing to sum.
     """
     rng = np.random.default_rng(_SEED)
-    total, sums = 0.0, np.zeros((len(centred.mean), width))
-    for _, block in centred.blocks():
-        total += float(np.vdot(block, block))
+    squares, sums = np.empty(centred.count), np.zeros((len(centred.mean), width))
+    for first, block in centred.blocks():
+        squares[first : first + len(block)] = np.einsum("ij,ij->i", block, block)
         sums += block.T @ rng.normal(size=(len(block), width))
+    total = float(squares.sum())
     refuse_no_variance(total, total=total, mean=centred.mean, count=centred.count)
-    return total, sums
+    return squares, sums
 
 
 def _products(centred: CentredVectors, basis: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -158,9 +161,9 @@ def _wanted(values: FloatArray, total: float, count: ComponentCount, *, asked: i
 
 
 def _rebuilt(
-    subspace: _Subspace, centred: CentredVectors, found: tuple[FloatArray, FloatArray, int], total: float
+    subspace: _Subspace, centred: CentredVectors, found: tuple[FloatArray, FloatArray, int], squares: FloatArray
 ) -> PrincipalComponents:
-    """Return the first components of the subspace and the vectors' coefficients."""
+    """Return the first components of the subspace and the vectors' coefficients; `squares` (M,) are |x|^2."""
     values, weights, kept = found
     components = np.zeros((kept, len(centred.mean)))
     coefficients = np.zeros((centred.count, kept))
@@ -171,10 +174,12 @@ def _rebuilt(
         coefficients += product @ part
         start += basis.shape[1]
     signs = signs_of(components)
+    variance = values[:kept] / (centred.count - 1)
     return PrincipalComponents(
         mean=frozen(centred.mean.copy()),
         components=frozen(components * signs[:, None]),
-        explained_variance=frozen(values[:kept] / (centred.count - 1)),
-        total_variance=total / (centred.count - 1),
+        explained_variance=frozen(variance),
+        total_variance=float(squares.sum()) / (centred.count - 1),
         coefficients=frozen(coefficients * signs),
+        left_out=left_out_of_components(coefficients, variance, squares),
     )

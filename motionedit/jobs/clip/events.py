@@ -94,6 +94,48 @@ def _waits_for(rule: DetectRule) -> set[str]:
 def _found(rule: DetectRule, facts: ClipFacts, place: Place, *, events: Mapping[str, float]) -> float:
     motion = facts.clip.motion
     effector = resolve.effector(rule.effector, motion.skeleton, place.at("effector"))
+    start, stop = _window(rule, facts, place, events=events)
+    to = None if rule.to is None else np.array(rule.to)
+    return find_event(
+        effector_positions(facts.poses, effector),
+        Search("minimum" if rule.is_minimum else "maximum", _quantity(rule), start, stop),
+        up=facts.up,
+        frame_time=motion.frame_time,
+        to=to,
+    )
+
+
+def events_at_edge(
+    specs: Mapping[str, EventSpec],
+    facts: ClipFacts,
+    place: Place,
+    *,
+    frames: Mapping[str, float],
+    known: Collection[str],
+) -> list[str]:
+    """Return a line for each event that was found at an end of where it was looked for: the extreme may lie beyond.
+
+    Parameters
+    ----------
+    frames, known
+        All events' frames, and the events that no rule was needed for.
+    """
+    lines = []
+    for name, spec in specs.items():
+        if spec.detect is None or name in known or name not in frames:
+            continue
+        window = _window(spec.detect, facts, place.at(name).at("detect"), events=frames)
+        if window[0] < window[1] and any(abs(frames[name] - edge) < 0.5 for edge in window):
+            lines.append(
+                f"event '{name}' lies at the edge of its window, frame {frames[name]:g} of {window[0]} to {window[1]}: "
+                "widen between: or after:, or give its frame"
+            )
+    return lines
+
+
+def _window(rule: DetectRule, facts: ClipFacts, place: Place, *, events: Mapping[str, float]) -> tuple[int, int]:
+    """Return the first and last frame in which an event is looked for."""
+    motion = facts.clip.motion
     start, stop = facts.first, facts.last
     if rule.between is not None:
         start, stop = resolve.frame_range(
@@ -103,15 +145,7 @@ def _found(rule: DetectRule, facts: ClipFacts, place: Place, *, events: Mapping[
         if rule.after not in events:
             raise place.at("after").error(f"in {place.clip}: event '{rule.after}' has no frame")
         start = int(events[rule.after]) + 1
-    start = min(max(start, facts.first), stop)
-    to = None if rule.to is None else np.array(rule.to)
-    return find_event(
-        effector_positions(facts.poses, effector),
-        Search("minimum" if rule.is_minimum else "maximum", _quantity(rule), start, stop),
-        up=facts.up,
-        frame_time=motion.frame_time,
-        to=to,
-    )
+    return min(max(start, facts.first), stop), stop
 
 
 def _quantity(rule: DetectRule) -> Quantity:

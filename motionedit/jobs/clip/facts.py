@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
@@ -11,7 +12,7 @@ from motionedit.core import kinematics
 from motionedit.core.body import ground
 from motionedit.core.body.anatomy import NOTHING_GIVEN, Anatomy, GivenBody, find_anatomy
 from motionedit.core.body.bones import find_bones, travel_joint
-from motionedit.core.body.contacts import find_plants
+from motionedit.core.body.contacts import find_plants, plants_of, sole_tracks
 from motionedit.core.body.rest_pose import rest_pose_frames
 from motionedit.core.body.up import find_up
 from motionedit.dataclass import dataclass
@@ -31,6 +32,8 @@ Line = Literal["hips", "feet"]
 
 # Cosine of the angle between the feet's line and the hips' up to which feet stand side by side: 35 degrees.
 SIDE_BY_SIDE = 0.82
+# Seconds on both sides of a frame that decide whether a foot stands there.
+_AROUND = 2.0
 _HEAPED = (
     "position channels put most joints onto their parents, as if they were shifts from OFFSET; by the format they "
     "replace it, and so all lie in a heap"
@@ -101,11 +104,12 @@ class ClipFacts:
     def stands(self, at: float | None = None) -> bool:
         """Return whether both feet are planted at a frame, side by side rather than one before the other."""
         stance = self._stance_frame(at)
-        if stance is None:
+        # Plants are the dearer question.
+        if stance is None or float(stance.axes[0] @ self.heading_frame(at).axes[0]) <= SIDE_BY_SIDE:
             return False
         when = self.first if at is None else at
-        feet = {plant.foot for plant in self.plants if plant.start <= when <= plant.stop}
-        return feet == {"left", "right"} and float(stance.axes[0] @ self.heading_frame(at).axes[0]) > SIDE_BY_SIDE
+        feet = {plant.foot for plant in self._plants_around(when) if plant.start <= when <= plant.stop}
+        return feet == {"left", "right"}
 
     def alignment(self, by: Line, *, heading: bool, position: bool, at: float | None) -> Alignment:
         """Return the alignment of a clip on the ground at a frame (None: the first), by the line of hips or feet."""
@@ -118,6 +122,15 @@ class ClipFacts:
         """Raise a ClipError where one frame is left after the rest pose."""
         if self.last - self.first < 1:
             raise ClipError("has one frame; a motion needs two", file=self.clip.label)
+
+    def _plants_around(self, when: float) -> list[Plant]:
+        """Return the plants near a frame: whether a point stands there depends on two seconds around it, no more."""
+        frame_time = self.clip.motion.frame_time
+        near = round(_AROUND / frame_time)
+        begin, end = max(int(when) - near, self.first), min(int(when) + near, self.last) + 1
+        tracks = sole_tracks(self.poses.at(slice(begin, end)), self.anatomy)
+        found = plants_of(tracks, self.anatomy, up=self.up, first=0, frame_time=frame_time)
+        return [replace(plant, start=plant.start + begin, stop=plant.stop + begin) for plant in found]
 
     def _stance_frame(self, at: float | None) -> ground.Frame | None:
         poses, frame = self._at(at)

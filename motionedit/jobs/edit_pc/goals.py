@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.coefficients.edit import GoalRequest
+from motionedit.core.coefficients.goal_chains import GoalRequest
 from motionedit.core.kinematics import effector_positions
 from motionedit.core.timeline import round_half_up
 from motionedit.core.timeline.warp import make_warp
@@ -98,7 +98,7 @@ def _request(goal: PcGoal, facts: ClipFacts, place: Place, *, frame: int, poses:
     if goal.shift is not None:
         position = seen(poses, frame, effector, measure)[0] + np.array(goal.shift)
     rotation = None if goal.orientation is None else axes.rotation(resolve.orientation(goal.orientation))
-    return GoalRequest(frame, effector, position, rotation, goal.weight, measure)
+    return GoalRequest(frame, effector, position, rotation, goal.weight, measure, goal.priority)
 
 
 def _clip_goal(goal: PcGoal, request: GoalRequest, *, least_tolerance: float) -> ClipGoal:
@@ -154,6 +154,12 @@ def goal_place(goal: ClipGoal, poses: WorldPoses) -> FloatArray | None:
     now = measure.positions(effector_positions(one, request.effector), one)
     place: FloatArray = measure.in_world(measure.aimed(now, request.position[None]), one)[0]
     return place
+
+
+def numbers_of(request: GoalRequest) -> int:
+    """Return how many numbers a goal asks for."""
+    position = 0 if request.position is None else len(request.measure.counted)
+    return position + (0 if request.rotation is None else 3)
 
 
 def is_met(record: Mapping[str, Any]) -> bool:

@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import kinematics
+from motionedit.core.body.bends import find_bends
 from motionedit.core.body.ground import axis_name
 from motionedit.core.body.steps import change_steps
 from motionedit.core.bvh import edited_bytes, resampled_bytes, unedited_bytes
-from motionedit.core.coefficients.edit import edit_by_coefficients
-from motionedit.core.coefficients.projection import project, project_resampled
+from motionedit.core.coefficients.edit import Likeliest, edit_by_coefficients
+from motionedit.core.coefficients.planted_feet import planted_feet
+from motionedit.core.coefficients.projection import of_another, project, project_resampled
 from motionedit.core.pca.fit import components_for
 from motionedit.core.pca.model_file import read_model
 from motionedit.core.skeleton_match import match_joints
@@ -20,13 +22,18 @@ from motionedit.dataclass import dataclass
 from motionedit.jobs.batch.one_clip import Outcome
 from motionedit.jobs.batch.plan import plan
 from motionedit.jobs.batch.run import run_batch
+from motionedit.jobs.clip import resolve
+from motionedit.jobs.clip.crop import cropped
 from motionedit.jobs.clip.facts import facts_of
 from motionedit.jobs.clip.kept_rules import body_said
 from motionedit.jobs.clip.metrics import edit_metrics, feet_of
-from motionedit.jobs.edit_pc.goals import clip_goals
+from motionedit.jobs.clip.roughness import rough_lines
+from motionedit.jobs.edit_pc.goals import clip_goals, numbers_of
 from motionedit.jobs.edit_pc.model_events import events_for_model, refuse_unknown_events
-from motionedit.jobs.edit_pc.record import edit_record, goal_line
-from motionedit.jobs.edit_pc.solver import chosen_solver, plausibility_bound
+from motionedit.jobs.edit_pc.record import Verdicts, edit_record, goal_line
+from motionedit.jobs.edit_pc.solver import chosen_solver, plausibility_bound, residual_share
+from motionedit.jobs.edit_pc.standing import edit_standing
+from motionedit.jobs.edit_pc.unexplained import unexplained
 from motionedit.jobs.preview.with_page import with_page
 
 if TYPE_CHECKING:
@@ -35,8 +42,11 @@ if TYPE_CHECKING:
 
     from motionedit.core.bvh import Clip
     from motionedit.core.coefficients.edit import CoefficientEdit
+    from motionedit.core.coefficients.goal_chains import GoalRequest
+    from motionedit.core.coefficients.planted_feet import PlantedFoot
     from motionedit.core.coefficients.projection import Projection
     from motionedit.core.kinematics import WorldPoses
+    from motionedit.core.motion import Motion
     from motionedit.core.pca.model import MotionModel
     from motionedit.jobs.batch.plan import ClipTask, RunOptions
     from motionedit.jobs.batch.run import BatchResult
@@ -111,16 +121,40 @@ class _Edit:
         projection, events = self._projection(facts, task)
         poses = kinematics.forward(projection.motion) if spec.timing == "normalized" else facts.poses
         goals = clip_goals(self.loaded, model, facts, events=events, poses=poses)
-        bound = plausibility_bound(spec, model, projection.coefficients)
-        edit = edit_by_coefficients(
-            projection,
-            model,
-            [goal.request for goal in goals],
-            solver=chosen_solver(spec, model, bound=bound),
-            residual="keep" if spec.residual == "keep" else "drop",
-            first=facts.first if spec.timing == "original" else 0,
-        )
+        bound = plausibility_bound(spec, model, projection.coefficients, asked=_asked_together(spec, goals))
+        solver = chosen_solver(spec, model, bound=bound, feet=self._feet(facts, projection))
+
+        def solve(requests: Sequence[GoalRequest]) -> CoefficientEdit:
+            return edit_by_coefficients(
+                projection,
+                model,
+                requests,
+                solver=solver,
+                residual="keep" if spec.residual == "keep" else "drop",
+                first=facts.first if spec.timing == "original" else 0,
+                per_goal=spec.coefficients == "per_goal",
+            )
+
+        def again(motion: Motion, requests: Sequence[GoalRequest], still: Sequence[int]) -> Motion:
+            return edit_by_coefficients(
+                of_another(projection, model, motion),
+                model,
+                requests,
+                solver=Likeliest(share=1.0, bound=None, still=tuple(still)),
+                residual="keep",
+                first=facts.first,
+            ).motion
+
+        requests, feet = [goal.request for goal in goals], spec.feet_in_force
+        edit = solve(requests) if feet == "off" else edit_standing(solve, again, requests, facts, places=feet)
         return self._outcome(facts, projection, edit, goals, before=poses, bound=bound)
+
+    def _feet(self, facts: ClipFacts, projection: Projection) -> tuple[PlantedFoot, ...]:
+        """Return the points of feet that stand; none where they are left alone."""
+        if self.loaded.model.feet_in_force == "off":
+            return ()
+        points = [point.effector for point in facts.anatomy.sole_points]
+        return planted_feet(projection, self.model.space, poses=facts.poses, plants=facts.plants, points=points)
 
     def _projection(self, facts: ClipFacts, task: ClipTask) -> tuple[Projection, dict[str, float]]:
         """Return a clip in the model's coordinates, and the frames of its events."""
@@ -133,13 +167,16 @@ class _Edit:
             against=f"the model {self.model_label}",
         )
         events = events_for_model(self.loaded, model, facts, task, model_label=self.model_label, others=self.others)
-        warp = make_warp(model.timeline, first=facts.first, last=facts.last, events=events, label=task.label)
+        crop = model.rules.get("crop", {})
+        first, last = cropped(crop, facts, resolve.Place(self.loaded, (), task.label), events=events)
+        warp = make_warp(model.timeline, first=first, last=last, events=events, label=task.label)
         align = model.rules["align"]
+        begins = None if first == facts.first else float(first)
         alignment = facts.alignment(
             align["by"],
             heading=align["heading"],
             position=align["position"],
-            at=None if align["at"] is None else events[align["at"]],
+            at=begins if align["at"] is None else events[align["at"]],
         )
         view = project if self.loaded.model.timing == "original" else project_resampled
         return view(motion, model, joint_map=joint_map, alignment=alignment, warp=warp), events
@@ -154,20 +191,31 @@ class _Edit:
         before: WorldPoses,
         bound: float | None,
     ) -> Outcome:
-        retimed = self.loaded.model.timing == "normalized"
+        spec, motion = self.loaded.model, facts.clip.motion
+        retimed = spec.timing == "normalized"
         changed = bool(edit.touched.any() or edit.moved.any())
         after = kinematics.forward(edit.motion) if changed else before
-        unit = self.loaded.model.unit
-        about = {
-            "unit": None if unit is None else unit.name,
-            "metrics": edit_metrics(
+        traces = (feet_of(facts, [facts.poses]), None if retimed else feet_of(facts, [after]))
+        steps = None if retimed else change_steps(motion, edit.motion, first=facts.first)
+        odd, rough = unexplained(projection, self.model, seconds=projection.seconds)
+        if traces[1] is not None and steps is not None and changed:
+            rough += rough_lines(
                 facts,
-                feet_of(facts, [facts.poses]),
-                None if retimed else feet_of(facts, [after]),
-                steps=None if retimed else change_steps(facts.clip.motion, edit.motion, first=facts.first),
-            ),
+                edit.motion,
+                touched=np.asarray(edit.touched.any(axis=0)),
+                steps=steps,
+                traces=(traces[0], traces[1]),
+                bends=find_bends(motion.skeleton, facts.poses, facts.anatomy, first=facts.first),
+            )
+        about = {
+            "unit": None if spec.unit is None else spec.unit.name,
+            "metrics": edit_metrics(facts, *traces, steps=steps),
         }
-        result = edit_record(self.model, projection, edit, goals, poses=after, bound=bound)
+        share = residual_share(spec, self.model) if spec.solver.method == "map" else None
+        if share is not None and self.model.components.left_out is None and spec.residual_share == "auto":
+            odd.append(f"the model has no left-out error, so residual_share is {share:g}; make it again with fit-pca")
+        verdicts = Verdicts(bound, share, odd, rough)
+        result = edit_record(self.model, projection, edit, goals, poses=after, verdicts=verdicts)
         return Outcome(
             resampled_bytes(facts.clip, edit.motion) if retimed else _edited_bytes(facts.clip, projection, edit),
             {"message": result.message, **about, **result.record},
@@ -176,6 +224,14 @@ class _Edit:
             motion=edit.motion if changed or retimed else None,
             details=tuple(goal_line(goal, before) for goal in goals),
         )
+
+
+def _asked_together(spec: EditPcSpec, goals: Sequence[ClipGoal]) -> int:
+    """Return how many numbers goals ask for that are solved together, the most of any frame where each is by itself."""
+    numbers = dict.fromkeys((goal.request.frame for goal in goals), 0)
+    for goal in goals:
+        numbers[goal.request.frame] += numbers_of(goal.request)
+    return max(numbers.values(), default=0) if spec.coefficients == "per_goal" else sum(numbers.values())
 
 
 def _edited_bytes(clip: Clip, projection: Projection, edit: CoefficientEdit) -> bytes:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from motionedit.errors import ClipError
 from motionedit.jobs.clip import resolve
+from motionedit.jobs.clip.crop import crop_events
 from motionedit.jobs.clip.events import event_frames, explicit_events
 from motionedit.jobs.clip.kept_rules import KeptRules
 
@@ -55,16 +56,17 @@ def events_for_model(
     place = resolve.Place(loaded, ("events",), task.label)
     rules = dict(loaded.model.events)
     database = _database_events(model, facts, task)
-    for name in dict(model.timeline.events):
+    needed = [*dict(model.timeline.events), *crop_events(model.rules.get("crop", {}))]
+    for name in needed:
         given = name in known or (name in rules and rules[name].detect is not None)
         if not given and name in database:
             known[name] = database[name]
     frames = event_frames(rules, facts, place, known=known)
-    missing = [name for name, _ in model.timeline.events if name not in frames]
+    missing = [name for name in needed if name not in frames]
     if missing:
         own = resolve.Place(KeptRules(model_label), ("events",), task.label)
         frames = event_frames(_model_rules(model, missing), facts, own, known=frames)
-    for name, _ in model.timeline.events:
+    for name in needed:
         if name not in frames:
             message = (
                 f"no frame for the model's event '{name}'; give it in the spec, as events: "

@@ -6,13 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from motionedit.jobs.clip.edit_record import EditRecord
+from motionedit.dataclass import dataclass
+from motionedit.jobs.clip.edit_record import EditRecord, worst_status
 from motionedit.jobs.clip.effector_record import effector_record
-from motionedit.jobs.edit_pc.goals import ClipGoal, goal_place, goal_record, is_met
-from motionedit.jobs.edit_pc.solver import largest_norm
+from motionedit.jobs.edit_pc.goals import ClipGoal, goal_place, goal_record, is_met, numbers_of
+from motionedit.jobs.edit_pc.solver import largest_norm, usual_change
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from motionedit.core.arrays import FloatArray
     from motionedit.core.coefficients.edit import CoefficientEdit
@@ -20,8 +21,29 @@ if TYPE_CHECKING:
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.pca.model import MotionModel
 
-# A met goal whose coefficients lie further out than this times the database's largest norm is reported `far`.
+# A met goal is reported `far` where the change is larger than this times what makes of one clip of the database
+# another, or, without a prior, where the coefficients lie further out than this times the database's largest norm.
 FAR = 1.75
+
+
+@dataclass(frozen=True)
+class Verdicts:
+    """What is known of an edit beside its goals.
+
+    Attributes
+    ----------
+    bound, share : float or None
+        The solver's, None where it has none.
+    odd : sequence of str
+        What else to warn of.
+    rough : sequence of str
+        Why a viewer would see the edit, or why the model has nothing to say of the clip.
+    """
+
+    bound: float | None
+    share: float | None
+    odd: Sequence[str] = ()
+    rough: Sequence[str] = ()
 
 
 def edit_record(
@@ -31,9 +53,10 @@ def edit_record(
     goals: Sequence[ClipGoal],
     *,
     poses: WorldPoses,
-    bound: float | None,
+    verdicts: Verdicts,
 ) -> EditRecord:
-    """Return what is to be said of an edit; `poses` are the edited motion's, `bound` the solver's."""
+    """Return what is to be said of an edit; `poses` are the edited motion's."""
+    bound, share, odd, rough = verdicts.bound, verdicts.share, verdicts.odd, verdicts.rough
     skeleton = edit.motion.skeleton
     records = [
         goal_record(goal, poses)
@@ -43,34 +66,54 @@ def edit_record(
     before = float(model.mahalanobis(projection.coefficients))
     after = float(model.mahalanobis(edit.coefficients))
     largest = largest_norm(model)
-    status = _mark(records, edit.solution.reason, is_far=after > FAR * largest)
+    is_far, met = _is_far(model, edit, goals, after), _mark(records, edit.reasons)
+    status = worst_status(met, "far" if records and is_far else "ok", "rough" if rough else "ok")
+    solutions = [change.solution for change in edit.changes]
     record = {
         "goals": records,
-        "iterations": edit.solution.iterations,
-        "stopped": edit.solution.reason,
-        "history": [error / model.space.scale for error in edit.solution.history],
+        "iterations": sum(solution.iterations for solution in solutions),
+        "stopped": next((s.reason for s in solutions if s.reason != "converged"), "converged"),
+        "history": [error / model.space.scale for solution in solutions for error in solution.history],
         "alpha": {"before": projection.coefficients, "after": edit.coefficients},
-        "mahalanobis": {"before": before, "after": after, "bound": bound, "database_max": largest},
+        "mahalanobis": {
+            "before": before,
+            "after": after,
+            "bound": bound,
+            "database_max": largest,
+        },
+        "change": {"norm": edit.norm, "bound": None if edit.norm is None else bound, "residual_share": share},
         "nearest": {
             "before": _nearest(model, projection.coefficients),
             "after": _nearest(model, edit.coefficients),
         },
     }
-    missed = [_missed(each, edit.solution.reason) for each in records if each["status"] != "ok"]
-    far = [] if status != "far" else ["met, but far from what the database does: look at it before you use it"]
-    message = "; ".join((*missed, *far)) or None
-    return EditRecord(status, message, (*missed, *far, *_crowding(model, goals)), record)
+    missed = [_missed(each, edit.reasons[i]) for i, each in enumerate(records) if each["status"] != "ok"]
+    far = [_FAR] if met == "ok" and records and is_far else []
+    message = "; ".join(missed or (*rough, *far)) or None
+    return EditRecord(status, message, (*missed, *far, *rough, *odd, *_crowding(model, goals, edit)), record)
 
 
-def _mark(records: Sequence[dict[str, Any]], reason: str, *, is_far: bool) -> str:
-    """Set each goal's status, and return the clip's."""
-    missed = "unreachable" if reason in {"bound", "stalled"} else "out_of_tolerance"
-    for record in records:
-        if not is_met(record):
-            record["status"] = missed
-    if any(record["status"] != "ok" for record in records):
-        return missed
-    return "far" if records and is_far else "ok"
+def _is_far(model: MotionModel, edit: CoefficientEdit, goals: Sequence[ClipGoal], after: float) -> bool:
+    """Return whether an edit goes further than the database's clips do: by the change itself, where a prior knows it.
+
+    Without a prior all that is known is where the coefficients end, `after`.
+    """
+    if edit.norm is None:
+        return after > FAR * largest_norm(model)
+    groups = len(edit.changes)
+    asked = max(sum(numbers_of(goals[i].request) for i in change.reasons) for change in edit.changes) if groups else 0
+    return edit.norm > FAR * usual_change(model, asked=asked)
+
+
+def _mark(records: Sequence[dict[str, Any]], reasons: Mapping[int, str]) -> str:
+    """Set each goal's status and whom it gave way to, and return the worst."""
+    for i, record in enumerate(records):
+        if is_met(record):
+            continue
+        record["status"] = "unreachable" if reasons[i] in {"bound", "stalled"} else "out_of_tolerance"
+        if reasons[i] == "gave way":
+            record["gave_way_to"] = [r["name"] for r in records if r["priority"] > record["priority"]]
+    return worst_status(*(record["status"] for record in records))
 
 
 def _nearest(model: MotionModel, coefficients: FloatArray) -> str:
@@ -79,14 +122,11 @@ def _nearest(model: MotionModel, coefficients: FloatArray) -> str:
     return model.clips[int(np.argmin(distances))].name
 
 
-def _crowding(model: MotionModel, goals: Sequence[ClipGoal]) -> list[str]:
-    """Return a warning where goals ask for more numbers than half the components can give freely."""
-    rows = sum(
-        (len(goal.request.measure.counted) if goal.request.position is not None else 0)
-        + (3 if goal.request.rotation is not None else 0)
-        for goal in goals
-    )
-    count = len(model.components.explained_variance)
+def _crowding(model: MotionModel, goals: Sequence[ClipGoal], edit: CoefficientEdit) -> list[str]:
+    """Return a warning where goals ask for more numbers than half the components, if there is no more, give freely."""
+    if edit.norm is not None:
+        return []
+    rows, count = sum(numbers_of(goal.request) for goal in goals), len(model.components.explained_variance)
     if rows > count:
         return [f"{rows} numbers are asked for and {count} components can move: a weighted compromise"]
     if 2 * rows > count:
@@ -94,9 +134,11 @@ def _crowding(model: MotionModel, goals: Sequence[ClipGoal]) -> list[str]:
     return []
 
 
+_FAR = "met, but far from what the database does: look at it before you use it"
 _WHY = {
     "bound": "out of reach of the database's motions",
     "stalled": "out of reach of the database's motions",
+    "gave way": "it gave way to goals of higher priority",
     "iterations": "the iterations ran out",
     "converged": "the solver's own tolerance is wider",
 }

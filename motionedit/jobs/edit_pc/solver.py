@@ -2,18 +2,29 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
-from motionedit.core.coefficients.edit import Damped, GaussNewton
+from motionedit.core.coefficients.edit import Damped, GaussNewton, Likeliest
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
+    from motionedit.core.coefficients.planted_feet import PlantedFoot
     from motionedit.core.pca.model import MotionModel
     from motionedit.spec.edit_pc import EditPcSpec
 
 
-def chosen_solver(spec: EditPcSpec, model: MotionModel, *, bound: float | None) -> GaussNewton | Damped:
-    """Return the solver; `bound` is the largest Mahalanobis norm, by `plausibility_bound`."""
+# Half of what the database does not explain of its own clips may leave the components, within these limits: a database
+# that explains nearly all still needs room for its noise, and one that explains nothing still knows a style.
+_LEAST_SHARE, _MOST_SHARE = 0.05, 0.6
+# A model that was made before its left-out error was kept: a share between that of clean sets and that of real strokes.
+_UNKNOWN_SHARE = 0.25
+
+
+def chosen_solver(
+    spec: EditPcSpec, model: MotionModel, *, bound: float | None, feet: tuple[PlantedFoot, ...]
+) -> Likeliest | GaussNewton | Damped:
+    """Return the solver; `bound` is the largest norm, by `plausibility_bound`, `feet` as of `Likeliest`."""
     if spec.solver.method == "damped":
         return Damped(
             damping=spec.solver.damping,
@@ -21,13 +32,47 @@ def chosen_solver(spec: EditPcSpec, model: MotionModel, *, bound: float | None) 
             max_iterations=spec.solver.max_iterations,
             unit=_damping_unit(spec) * model.space.scale,
         )
-    return GaussNewton(bound)
+    if spec.solver.method == "gauss-newton":
+        return GaussNewton(bound)
+    return Likeliest(residual_share(spec, model), bound, feet)
 
 
-def plausibility_bound(spec: EditPcSpec, model: MotionModel, coefficients: FloatArray) -> float | None:
-    """Return the largest Mahalanobis norm that an edit may reach, never below the input's own; None for no bound."""
+def residual_share(spec: EditPcSpec, model: MotionModel) -> float:
+    """Return g, the share of a change's variance that may leave the components."""
+    if not isinstance(spec.residual_share, str):
+        return spec.residual_share
+    left_out = model.components.left_out
+    if left_out is None:
+        return _UNKNOWN_SHARE
+    return min(max(0.5 * left_out.share, _LEAST_SHARE), _MOST_SHARE)
+
+
+def plausibility_bound(spec: EditPcSpec, model: MotionModel, coefficients: FloatArray, *, asked: int) -> float | None:
+    """Return the largest norm that an edit may reach: of the change, or of where it leads, never below the input's own.
+
+    None for no bound.
+
+    Parameters
+    ----------
+    asked : int
+        How many numbers goals ask for that are solved together.
+    """
     factor = spec.plausibility_bound
-    return None if factor is None else max(factor * largest_norm(model), float(model.mahalanobis(coefficients)))
+    if factor is None:
+        return None
+    if spec.solver.method == "map":
+        return factor * usual_change(model, asked=asked)
+    return max(factor * largest_norm(model), float(model.mahalanobis(coefficients)))
+
+
+def usual_change(model: MotionModel, *, asked: int) -> float:
+    """Return the norm of the change that makes of a clip of the database another, as far as goals see them.
+
+    In p numbers two draws differ by sqrt(2) chi_p standard deviations, the mean of which is sqrt(2 p) (1 - 1 / (4 p));
+    a few clips know their own spread badly, and their standard deviations count as Student's t has it.
+    """
+    p, free = max(asked, 3), len(model.clips) - 1
+    return math.sqrt(2.0 * p) * (1.0 - 0.25 / p) * free / max(free - 1.1, 0.15)
 
 
 def largest_norm(model: MotionModel) -> float:

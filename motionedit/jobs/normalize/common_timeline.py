@@ -7,13 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.arrays import median
 from motionedit.core.timeline import round_half_up
 from motionedit.core.timeline.warp import Timeline, make_warp
 from motionedit.errors import ClipError, MotionEditError
+from motionedit.jobs.clip.crop import crop_events
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from motionedit.core.arrays import FloatArray
     from motionedit.jobs.normalize.measures import ClipMeasure
     from motionedit.spec.load import LoadedSpec
     from motionedit.spec.normalize import NormalizeSpec
@@ -24,6 +27,10 @@ RATE_TOLERANCE = 2e-3
 
 # An event whose places after the first stage spread by more than this share of the timeline was found badly.
 SPREAD_TOLERANCE = 0.05
+
+
+# A clip that lasts this many times as long as the others, or as short, may be something else.
+ODD_DURATION = 2.0
 
 
 def common_timeline(loaded: LoadedSpec[NormalizeSpec], measures: Sequence[ClipMeasure]) -> tuple[Timeline, list[str]]:
@@ -37,7 +44,9 @@ def common_timeline(loaded: LoadedSpec[NormalizeSpec], measures: Sequence[ClipMe
     warnings = [f"'{measures[0].label}' is the only clip: there are no means to take"] if len(measures) == 1 else []
     rate = _rate(loaded, measures, warnings)
     # F = T Fr, eq. (13), and one more for the last sample.
-    duration = float(np.mean([measure.duration for measure in measures]))
+    durations = np.array([measure.duration for measure in measures])
+    duration = float(durations.mean())
+    warnings += _odd_durations(measures, durations)
     given = loaded.model.frames
     frames = given if isinstance(given, int) else round_half_up(duration * rate) + 1
     if frames < 2:
@@ -45,6 +54,17 @@ def common_timeline(loaded: LoadedSpec[NormalizeSpec], measures: Sequence[ClipMe
         raise loaded.error(("frames",), message)
     events = _events(loaded, measures, Timeline(frames, rate), warnings)
     return Timeline(frames, rate, events), warnings
+
+
+def _odd_durations(measures: Sequence[ClipMeasure], durations: FloatArray) -> list[str]:
+    """Return a warning of the clip whose duration is the furthest from the others', if it is far."""
+    times = np.abs(np.log(durations / median(durations)))
+    odd = int(np.argmax(times))
+    if len(measures) < 3 or times[odd] <= np.log(ODD_DURATION):
+        return []
+    usual = float(median(np.delete(durations, odd)))
+    lasts = f"'{measures[odd].label}' lasts {durations[odd]:.3g} s, the others about {usual:.3g} s"
+    return [f"{lasts}: is it one of them? from: and to: say what counts of each clip"]
 
 
 def _rate(loaded: LoadedSpec[NormalizeSpec], measures: Sequence[ClipMeasure], warnings: list[str]) -> float:
@@ -72,16 +92,20 @@ def _events(
 ) -> tuple[tuple[str, int], ...]:
     """Return the events' frames on the timeline, in their order: mean key frames, eq. (14), or the spec's targets."""
     places = []
+    ends = {name for name, end in crop_events(loaded.model.crop).items() if end}
     for name, event in loaded.model.events.items():
+        if name in ends:
+            continue
         shares = np.array([(m.events[name] - m.first) / (m.last - m.first) for m in measures])
         if isinstance(event.target, str):
             places.append((name, round_half_up(float(shares.mean()) * (timeline.frames - 1))))
         else:
             places.append((name, _target(loaded, name, event.target, timeline)))
         if shares.std() > SPREAD_TOLERANCE:
+            odd = measures[int(np.argmax(np.abs(shares - median(shares))))].label
             warnings.append(
-                f"event '{name}' lies at {shares.min():.0%} to {shares.max():.0%} of the clips: was it found rightly? "
-                "A badly found event is worse than none"
+                f"event '{name}' lies at {shares.min():.0%} to {shares.max():.0%} of the clips, furthest off "
+                f"in {odd}: was it found rightly? A badly found event is worse than none"
             )
     return tuple(sorted(places, key=lambda place: place[1]))
 

@@ -5,6 +5,7 @@ Two phases: every clip is measured, the means are taken, then every clip is resa
 
 from __future__ import annotations
 
+import contextlib
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -27,6 +28,11 @@ if TYPE_CHECKING:
     from motionedit.jobs.clip.facts import Line
     from motionedit.spec.load import LoadedSpec
     from motionedit.spec.normalize import NormalizeSpec
+
+
+# Bytes of files whose clips are held from the first phase to the second, when one process does both: their motions are
+# some four times as large.
+_MOST_KEPT = 1 << 26
 
 
 @dataclass(frozen=True)
@@ -69,7 +75,9 @@ def normalize(loaded: LoadedSpec[NormalizeSpec], tasks: Sequence[ClipTask], *, o
     SpecError
         As `run`.
     """
-    measured = map_tasks(MeasureClip(loaded, options.lenient, tuple(task.relative for task in tasks)), tasks, options)
+    keep = options.jobs == 1 and options.scheduler is None and _bytes_of(tasks) <= _MOST_KEPT
+    measure = MeasureClip(loaded, options.lenient, tuple(task.relative for task in tasks), keep)
+    measured = map_tasks(measure, tasks, options)
     measures, failures = sound_measures(tasks, measured)
     if failures and (not options.keep_going or not measures):
         return Normalized(_failed(tasks, failures))
@@ -85,9 +93,19 @@ def normalize(loaded: LoadedSpec[NormalizeSpec], tasks: Sequence[ClipTask], *, o
     by_label = {measure.label: measure for measure in measures}
     used = [by_label[task.label] for task in good]
     works = [ResampleClip(measure, timeline, line, loaded.model.unit) for measure in used]
-    result = run_each(list(zip(good, works, strict=True)), options)
+    given = [replace(task, clip=task.clip or by_label[task.label].read) for task in good]
+    result = run_each(list(zip(given, works, strict=True)), options)
     normalization = None if result.failures else _normalization(loaded, timeline, line, used)
     return Normalized(_with_failures(result, tasks, failures, warnings), normalization)
+
+
+def _bytes_of(tasks: Sequence[ClipTask]) -> int:
+    """Return how large the tasks' files are in all; what cannot be read will say so itself."""
+    sizes = 0
+    for task in tasks:
+        with contextlib.suppress(OSError):
+            sizes += 0 if task.source is None else task.source.stat().st_size
+    return sizes
 
 
 def _normalization(
@@ -104,6 +122,8 @@ def _normalization(
         "rest_pose": spec.rest_pose,
         "events": {name: _rule(loaded, name) for name in spec.events},
     }
+    if spec.crop:
+        rules["crop"] = spec.crop
     if spec.body.plain:
         rules["body"] = spec.body.plain
     clips = tuple(_normalized_clip(measure, line) for measure in measures)

@@ -10,12 +10,14 @@ from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError, MotionEditError
 from motionedit.jobs.batch.one_clip import read_task
 from motionedit.jobs.clip import resolve
-from motionedit.jobs.clip.events import event_frames, explicit_events
+from motionedit.jobs.clip.crop import cropped
+from motionedit.jobs.clip.events import event_frames, events_at_edge, explicit_events
 from motionedit.jobs.clip.facts import facts_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from motionedit.core.bvh import Clip
     from motionedit.core.skeleton import Skeleton
     from motionedit.core.timeline.alignment import Alignment
     from motionedit.jobs.batch.plan import ClipTask
@@ -26,7 +28,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class ClipMeasure:
-    """What the first phase takes from a clip: no frames."""
+    """What the first phase takes from a clip.
+
+    `first` and `last` are the frames that count, after a rest pose and within the spec's crop; `stands` says whether
+    both feet stand side by side where clips are aligned, `read` holds the clip where the second phase need not read it
+    again.
+    """
 
     label: str
     clip: str
@@ -34,6 +41,7 @@ class ClipMeasure:
     frames: int
     frame_time: float
     first: int
+    last: int
     events: dict[str, float]
     skeleton: Skeleton
     up: str
@@ -41,25 +49,25 @@ class ClipMeasure:
     stands: bool
     alignments: dict[Line, Alignment]
     warnings: tuple[str, ...]
-
-    @property
-    def last(self) -> int:
-        """The last frame."""
-        return self.frames - 1
+    read: Clip | None = None
 
     @property
     def duration(self) -> float:
-        """Seconds from the first frame after a rest pose to the last."""
+        """Seconds from the first frame that counts to the last."""
         return (self.last - self.first) * self.frame_time
 
 
 @dataclass(frozen=True)
 class MeasureClip:
-    """The first phase of normalize, on one clip; `others` are all clips of the run, as event files call them."""
+    """The first phase of normalize, on one clip.
+
+    `others` are all clips of the run, as event files call them; `keep` says that the clips are few enough to be held.
+    """
 
     loaded: LoadedSpec[NormalizeSpec]
     lenient: bool
     others: tuple[str, ...]
+    keep: bool = False
 
     def __call__(self, task: ClipTask) -> ClipMeasure:
         """Return the clip's measure."""
@@ -68,9 +76,11 @@ class MeasureClip:
         given = resolve.body(spec.body, clip.motion.skeleton, resolve.Place(self.loaded, ("body",), task.label))
         facts = facts_of(clip, up=spec.up, keep_rest_pose=spec.rest_pose == "keep", given=given)
         facts.refuse_one_frame()
-        events = _events(self.loaded, task, facts, self.others)
+        events, warnings = _events(self.loaded, task, facts, self.others)
+        place = resolve.Place(self.loaded, (), task.label)
+        first, last = cropped(spec.crop, facts, place, events=events)
         align = spec.align
-        at = None if spec.align_event is None else events[spec.align_event]
+        at = (None if first == facts.first else float(first)) if spec.align_event is None else events[spec.align_event]
         alignments: dict[Line, Alignment] = {
             "hips": facts.alignment("hips", heading=align.heading, position=align.position, at=at),
             "feet": facts.alignment("feet", heading=align.heading, position=align.position, at=at),
@@ -81,14 +91,16 @@ class MeasureClip:
             digest=clip.sha256,
             frames=len(clip.motion),
             frame_time=clip.motion.frame_time,
-            first=facts.first,
+            first=first,
+            last=last,
             events=events,
             skeleton=clip.motion.skeleton,
             up=axis_name(facts.up),
             height=facts.anatomy.height,
             stands=facts.stands(at),
             alignments=alignments,
-            warnings=facts.warnings,
+            warnings=(*facts.warnings, *warnings),
+            read=clip if self.keep else None,
         )
 
 
@@ -97,14 +109,15 @@ def _events(
     task: ClipTask,
     facts: ClipFacts,
     others: Sequence[str],
-) -> dict[str, float]:
+) -> tuple[dict[str, float], list[str]]:
+    """Return the frames of all events of a clip, and what is odd about them."""
     known = explicit_events(loaded, task.relative, others=others)
     place = resolve.Place(loaded, ("events",), task.label)
     frames = event_frames(loaded.model.events, facts, place, known=known)
     for name in loaded.model.events:
         if name not in frames:
             raise place.at(name).error(f"no frame for {task.label}; add it to frames, or give detect")
-    return frames
+    return frames, events_at_edge(loaded.model.events, facts, place, frames=frames, known=known)
 
 
 def sound_measures(

@@ -6,7 +6,8 @@ from strokes import TIMELINE, database, model_of, place, stroke
 
 from motionedit.core import kinematics
 from motionedit.core import rotations as rot
-from motionedit.core.coefficients.edit import GaussNewton, GoalRequest, edit_by_coefficients
+from motionedit.core.coefficients.edit import GaussNewton, edit_by_coefficients
+from motionedit.core.coefficients.goal_chains import GoalRequest
 from motionedit.core.coefficients.projection import project, project_resampled, with_rows
 from motionedit.core.kinematics import Effector
 from motionedit.core.measure import Measure
@@ -50,7 +51,7 @@ def test_a_goal_at_any_frame_is_met_in_the_clips_own_timing(model, frames, hit):
         edit = edited(model, projection, [request])
         assert len(edit.motion) == frames
         np.testing.assert_allclose(place_of(edit.motion, request), request.position, atol=1e-5)
-        assert edit.solution.iterations <= 12
+        assert edit.changes[0].solution.iterations <= 12
 
 
 def test_no_shift_touches_nothing(model):

@@ -1,0 +1,1 @@
+"""Feet that stand, put right by the legs alone."""

@@ -1,0 +1,92 @@
+"""An edit whose planted feet are put back by the legs, and its goals met again."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core import kinematics
+from motionedit.core import rotations as rot
+from motionedit.core.body.contacts import foot_plants
+from motionedit.core.standing.legs import keep_feet, standing_feet
+from motionedit.core.units import STANDARD_LEG
+from motionedit.jobs.edit_pc.goals import seen
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from motionedit.core.coefficients.edit import CoefficientEdit
+    from motionedit.core.coefficients.goal_chains import GoalRequest
+    from motionedit.core.kinematics import WorldPoses
+    from motionedit.core.motion import Motion
+    from motionedit.core.standing.legs import Places, StandingFoot
+    from motionedit.jobs.clip.facts import ClipFacts
+
+# Metres at leg length 0.85 m, and radians: what putting the feet back may move a goal by.
+_SETTLED = 1e-5
+_ROUNDS = 8
+
+
+def edit_standing(
+    solve: Callable[[Sequence[GoalRequest]], CoefficientEdit],
+    again: Callable[[Motion, Sequence[GoalRequest], Sequence[int]], Motion],
+    requests: Sequence[GoalRequest],
+    facts: ClipFacts,
+    *,
+    places: Places,
+) -> CoefficientEdit:
+    """Return what `solve` makes of goals, with planted feet put back.
+
+    A lower pelvis takes goals along, and so may the leg of a foot with a goal. They are met again by what is not
+    part of a standing leg: `again` changes a motion so that goals are met while some joints are still.
+    """
+    edit = solve(requests)
+    legs = facts.anatomy.legs
+    if legs is None or not (edit.touched.any() or edit.moved.any()):
+        return edit
+    motion = facts.clip.motion
+    fixed = {(request.effector.joint, request.frame) for request in requests}
+    feet = standing_feet(motion, legs, foot_plants(facts.plants), fixed=fixed)
+    still = _still(motion, feet)
+    # Where a goal is out of reach, what the solver has come to is kept.
+    asked = [_reached(request, kinematics.forward(edit.motion)) for request in requests]
+    tolerance = _SETTLED * facts.anatomy.leg_length / STANDARD_LEG
+    current, touched, moved = edit.motion, edit.touched, edit.moved
+    for _ in range(_ROUNDS):
+        kept = keep_feet(current, motion, feet, up=facts.up, travel=facts.travel, places=places, first=facts.first)
+        current, touched, moved = kept.motion, touched | kept.touched, moved | kept.moved
+        poses = kinematics.forward(current)
+        if all(_off(request, poses, tolerance) < 1.0 for request in asked):
+            break
+        current = again(current, asked, still)
+    return replace(edit, motion=current, touched=touched, moved=moved)
+
+
+def _still(motion: Motion, feet: Sequence[StandingFoot]) -> list[int]:
+    """Return the joints that move the ankle of a foot without goals."""
+    chains = [motion.skeleton.chain(foot.leg.ankle) for foot in feet if not foot.fixed]
+    shared = [motion.skeleton.chain(foot.leg.thigh)[:-1] for foot in feet]
+    return sorted({int(j) for chain in (*chains, *shared) for j in chain})
+
+
+def _reached(request: GoalRequest, poses: WorldPoses) -> GoalRequest:
+    position, rotation = seen(poses, request.frame, request.effector, request.measure)
+    return replace(
+        request,
+        position=None if request.position is None else position,
+        rotation=None if request.rotation is None else rotation,
+    )
+
+
+def _off(request: GoalRequest, poses: WorldPoses, tolerance: float) -> float:
+    """Return how far a goal is off, over the tolerance."""
+    position, rotation = seen(poses, request.frame, request.effector, request.measure)
+    off = 0.0
+    if request.position is not None:
+        counted = list(request.measure.counted)
+        off = float(np.linalg.norm((request.position - position)[counted])) / tolerance
+    if request.rotation is not None:
+        off = max(off, float(rot.angle_between(rotation, request.rotation)) / _SETTLED)
+    return off

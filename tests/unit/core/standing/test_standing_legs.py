@@ -1,0 +1,107 @@
+"""Feet put back by the legs alone, on the walk of data/ whose pelvis was moved."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from motionedit.core import kinematics
+from motionedit.core import rotations as rot
+from motionedit.core.body.anatomy import anatomy_of
+from motionedit.core.body.contacts import find_plants, foot_plants
+from motionedit.core.bvh import read_clip
+from motionedit.core.motion import Motion
+from motionedit.core.standing.legs import keep_feet, standing_feet
+from motionedit.core.standing.plants import eased
+from motionedit.core.standing.two_bones import bent_to
+
+WALK = Path(__file__).resolve().parents[4] / "data" / "walk.bvh"
+UP = np.array([0.0, 1.0, 0.0])
+
+
+@pytest.fixture(scope="module")
+def walk():
+    motion = read_clip(WALK).motion
+    anatomy = anatomy_of(motion)
+    plants = foot_plants(find_plants(motion, kinematics.forward(motion), anatomy, up=UP, first=0))
+    return motion, anatomy, plants
+
+
+def moved(motion, shift):
+    return Motion(motion.skeleton, motion.rotations, motion.translations + shift, motion.frame_time)
+
+
+def jerk(motion):
+    return np.sqrt(np.mean(np.diff(kinematics.forward(motion).positions, 3, axis=0) ** 2))
+
+
+@pytest.mark.parametrize("shift", [(3.0, -1.0, 2.0), (0.0, 4.0, 0.0), (-6.0, 0.0, 0.0)])
+def test_planted_feet_stand_where_they_stood_and_the_rest_keeps_its_turns(walk, shift):
+    motion, anatomy, plants = walk
+    feet = standing_feet(motion, anatomy.legs, plants)
+    kept = keep_feet(moved(motion, np.array(shift)), motion, feet, up=UP, travel=0, places="keep")
+    before, after = kinematics.forward(motion), kinematics.forward(kept.motion)
+    for foot in feet:
+        for start, stop in foot.intervals:
+            off = after.positions[start : stop + 1, foot.leg.ankle] - before.positions[start : stop + 1, foot.leg.ankle]
+            assert np.linalg.norm(off, axis=1).max() < 0.5
+    legs = [j for leg in anatomy.legs for j in (leg.thigh, leg.knee, leg.ankle)]
+    others = np.setdiff1d(np.arange(len(motion.skeleton)), legs)
+    np.testing.assert_array_equal(kept.motion.rotations[:, others], motion.rotations[:, others])
+    assert not kept.touched[:, others].any()
+    assert jerk(kept.motion) < 1.5 * jerk(motion)
+
+
+def test_plants_that_move_as_wholes_go_where_the_edit_takes_them(walk):
+    motion, anatomy, plants = walk
+    shift = np.array([4.0, 0.0, -3.0])
+    kept = keep_feet(
+        moved(motion, shift), motion, standing_feet(motion, anatomy.legs, plants), up=UP, travel=0, places="move"
+    )
+    before, after = kinematics.forward(motion), kinematics.forward(kept.motion)
+    np.testing.assert_allclose(after.positions, before.positions + shift, atol=1e-6)
+
+
+def test_what_is_in_place_and_a_rest_pose_stay(walk):
+    motion, anatomy, plants = walk
+    feet = standing_feet(motion, anatomy.legs, plants)
+    same = keep_feet(motion, motion, feet, up=UP, travel=0, places="keep")
+    assert not same.moved.any()
+    np.testing.assert_allclose(same.motion.rotations, motion.rotations, atol=1e-9)
+    late = keep_feet(moved(motion, [3.0, 0.0, 0.0]), motion, feet, up=UP, travel=0, places="keep", first=20)
+    np.testing.assert_array_equal(late.motion.rotations[:20], motion.rotations[:20])
+
+
+def test_a_foot_with_a_goal_is_free_at_that_frame(walk):
+    motion, anatomy, plants = walk
+    leg = anatomy.legs[0]
+    plant = next(p for p in plants if p.foot == "left")
+    feet = standing_feet(motion, anatomy.legs, plants, fixed={(leg.ankle, plant.start)})
+    assert (plant.start, plant.stop) not in feet[0].intervals
+    assert feet[0].fixed == (plant.start,)
+
+
+def test_eased_corrections_are_what_is_wanted_and_fade_far_away():
+    known = np.zeros(300, dtype=bool)
+    known[100:110] = True
+    c = eased(np.where(known[:, None], 2.0, 0.0), known, 1.0 / 60.0)
+    np.testing.assert_array_equal(c[known], 2.0)
+    assert np.abs(np.diff(c[:, 0], 2)).max() < 0.2
+    np.testing.assert_allclose(c[[0, 299]], 0.0, atol=1e-9)
+    assert not eased(np.zeros((5, 1)), np.zeros(5, dtype=bool), 0.01).any()
+
+
+def test_two_bones_reach_their_target_or_stretch_towards_it():
+    rng = np.random.default_rng(0)
+    hip, knee = np.zeros((40, 3)), np.array([0.02, -0.4, 0.05]) + 0.02 * rng.normal(size=(40, 3))
+    ankle = knee + np.array([0.0, -0.38, -0.12])
+    thigh = np.tile(rot.IDENTITY, (40, 1))
+    target = ankle + 0.1 * rng.normal(size=(40, 3)) + np.array([0.0, 0.1, 0.0])
+    shank, whole = bent_to(hip, knee, ankle, target, thigh, soft=np.full(40, 1e-3))
+    reached = rot.rotate(whole, knee + rot.rotate(shank, ankle - knee))
+    near = np.linalg.norm(target, axis=1) < 0.97 * (np.linalg.norm(knee, axis=1) + np.linalg.norm(ankle - knee, axis=1))
+    assert near.any()
+    np.testing.assert_allclose(reached[near], target[near], atol=1e-9)
+    far = bent_to(hip, knee, ankle, 3.0 * target, thigh, soft=np.full(40, 1e-3))
+    stretched = rot.rotate(far[1], knee + rot.rotate(far[0], ankle - knee))
+    assert np.linalg.norm(np.cross(stretched, target), axis=1).max() < 1e-9
