@@ -1,0 +1,248 @@
+"""Feet kept: a motion whose feet stand where another one's stand, by its legs and, where they are short, its pelvis."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core import rotations as rot
+from motionedit.core.arrays import frozen
+from motionedit.core.body.bends import find_bends
+from motionedit.core.feet.correction import eased
+from motionedit.core.feet.legs import legs_onto, turns_freely
+from motionedit.core.feet.pelvis import REACH, drop_needed, smooth_cover
+from motionedit.core.feet.stance import FootPath, feet_of, foot_path, runs, stance_of
+from motionedit.core.kinematics import WorldPoses, forward
+from motionedit.core.motion import Motion
+from motionedit.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from motionedit.core.arrays import BoolArray, FloatArray
+    from motionedit.core.body.anatomy import Anatomy
+    from motionedit.core.body.contacts import Plant
+    from motionedit.core.feet.stance import Foot, Stance
+
+
+# In the air a leg may stretch to this share of its length, or as far as it is already.
+_STRAIGHT = 0.998
+# Between these shares of its length corrections of a leg in the air fade.
+_NEAR = 0.975, 0.995
+_ROLLS = 4  # times that a foot which rolls on is eased anew
+
+
+@dataclass(frozen=True, eq=False)
+class FootGoal:
+    """Where a foot shall be: its ankle's places (F, 3) and turns (F, 4), and the frames at which it is `down` (F,)."""
+
+    foot: Foot
+    places: FloatArray
+    turns: FloatArray
+    down: BoolArray
+
+
+@dataclass(frozen=True, eq=False)
+class Kept:
+    """A motion whose feet stand, the goals of its feet, and how far its pelvis was lowered, shape (F,)."""
+
+    motion: Motion
+    goals: tuple[FootGoal, ...]
+    lowered: FloatArray
+
+
+def keep_feet(
+    motion: Motion,
+    reference: Motion,
+    anatomy: Anatomy,
+    plants: Sequence[Plant],
+    *,
+    up: FloatArray,
+    travel: int,
+    first: int = 0,
+) -> Kept:
+    """Return a motion with planted feet that stand where another version of it has them.
+
+    A plant is one place: a heel's, a toe's, and the foot's turn while both are down; the ankle rolls over the toe,
+    and the foot comes down about the heel. Between plants the corrections ease (`eased`), so that the foot's own
+    path and roll in the air are kept. Legs alone are solved onto them (`legs_onto`); where a leg is too short the
+    pelvis is lowered smoothly. Without plants the motion is returned as it is.
+
+    Parameters
+    ----------
+    motion : Motion
+        The one to be mended: an edited one.
+    reference : Motion
+        The one whose places the plants keep, of the same frames and skeleton; the motion itself, to mend its sliding.
+    anatomy : Anatomy
+        In the motions' unit, as all lengths.
+    plants : sequence of Plant
+        When heels and toes stand, as `find_plants` of the reference.
+    up : shape (3,)
+        Signed unit axis.
+    travel : int
+        The joint that carries the travel.
+    first : int
+        The first frame after a rest pose; earlier ones stay.
+    """
+    poses = forward(motion)
+    theirs = poses if reference is motion else forward(reference)
+    stances = []
+    for foot in feet_of(anatomy):
+        here = [plant for plant in plants if plant.foot == foot.side]
+        stances.append((foot, stance_of(foot_path(theirs, foot), here)))
+    return onto_stances(motion, poses, stances, anatomy, up=up, travel=travel, first=first)
+
+
+def onto_stances(
+    motion: Motion,
+    poses: WorldPoses,
+    stances: Sequence[tuple[Foot, Stance]],
+    anatomy: Anatomy,
+    *,
+    up: FloatArray,
+    travel: int,
+    first: int,
+) -> Kept:
+    """Return a motion whose feet stand as given, as `keep_feet`; `poses` are its world transforms."""
+    reaches = {foot.side: _reach(poses, foot) for foot, _ in stances}
+    goals = tuple(
+        foot_goal(
+            foot,
+            foot_path(poses, foot),
+            stance,
+            motion.frame_time,
+            hip=poses.positions[:, foot.leg.thigh],
+            reach=reaches[foot.side],
+            stiff=_stiff(poses, foot),
+        )
+        for foot, stance in stances
+    )
+    lowered = np.zeros(len(motion))
+    if not any(goal.down.any() for goal in goals):
+        return Kept(motion, goals, lowered)
+    bends = {bend.joint: bend for bend in find_bends(motion.skeleton, poses, anatomy, first=first)}
+    solved = [g for g in goals if turns_freely(motion.skeleton, g.foot.leg) and g.foot.leg.knee in bends]
+    if motion.skeleton.position_axes[travel]:
+        for goal in solved:
+            hip = poses.positions[:, goal.foot.leg.thigh]
+            needed = drop_needed(hip, goal.places, reaches[goal.foot.side], up)
+            lowered = np.maximum(lowered, np.where(goal.down, needed, 0.0))
+        lowered[:first] = 0.0
+        lowered[first:] = smooth_cover(lowered[first:], motion.frame_time)
+    shift = -lowered[:, None] * up
+    wanted = []
+    for goal in solved:
+        places = _within_reach(
+            goal, poses.positions[:, goal.foot.leg.thigh] + shift, _reach(poses, goal.foot, _STRAIGHT)
+        )
+        wanted.append((goal.foot.leg, bends[goal.foot.leg.knee], places, goal.turns))
+    stood = legs_onto(motion, poses, wanted, shift=shift)
+    done = _shifted(stood, shift, poses, travel) if lowered.any() else stood
+    rotations = done.rotations.copy()
+    rotations[:first] = motion.rotations[:first]
+    return Kept(Motion(done.skeleton, frozen(rotations), done.translations, done.frame_time), goals, lowered)
+
+
+def foot_goal(
+    foot: Foot,
+    path: FootPath,
+    stance: Stance,
+    frame_time: float,
+    *,
+    hip: FloatArray,
+    reach: FloatArray,
+    stiff: FloatArray,
+) -> FootGoal:
+    """Return where a foot shall be at every frame, from where it goes and where it stands.
+
+    A heel that the leg cannot hold down any more comes up, and a foot on its toe rolls on over it, as far as the hip
+    (F, 3) and the leg's reach (F,) ask.
+    """
+    stance = _released(stance, hip, reach)
+    flat, down = stance.flat, stance.down
+    on_toe = stance.toe & ~stance.heel
+    turn = np.where((np.sum(stance.turn * path.turn, axis=1) < 0.0)[:, None], -stance.turn, stance.turn)
+    twist = rot.log(rot.multiply(turn, rot.conjugate(path.turn)))
+    known = flat
+    for _ in range(_ROLLS):
+        turns = rot.multiply(rot.exp(eased(twist, known, frame_time)), path.turn)
+        roll = _roll_into_reach(stance.toe_place, rot.rotate(turns, -path.toe), hip, reach)
+        far = on_toe & (np.abs(roll).max(axis=1) > 0.0)
+        if not far.any():
+            break
+        rolled = rot.log(rot.multiply(rot.multiply(rot.exp(roll), turns), rot.conjugate(path.turn)))
+        twist, known = np.where(far[:, None], rolled, twist), known | far
+    turns = rot.multiply(rot.exp(eased(twist, known, frame_time)), path.turn)
+    turns[flat] = stance.turn[flat]
+    over_toe = stance.toe_place - rot.rotate(turns, path.toe)
+    places = np.where(stance.heel[:, None], stance.heel_place, over_toe)
+    moved = eased(places - path.ankle, down, frame_time, stiff=stiff)
+    return FootGoal(foot, np.where(down[:, None], places, path.ankle + moved), turns, down)
+
+
+def _released(stance: Stance, hip: FloatArray, reach: FloatArray) -> Stance:
+    """Return a stance whose heels come up once the hip has gone too far, where the toe stays down."""
+    far = stance.flat & (np.linalg.norm(hip - stance.heel_place, axis=1) > reach)
+    if not far.any():
+        return stance
+    heel = stance.heel.copy()
+    for start, stop in runs(stance.flat):
+        late = np.flatnonzero(far[start : stop + 1])
+        # What ends the stance ends it; a strain that passes is the pelvis'.
+        if len(late) and not stance.heel[stop + 1 : stop + 2].any() and far[stop]:
+            calm = np.flatnonzero(~far[start : stop + 1])
+            heel[start + (int(calm[-1]) + 1 if len(calm) else 0) : stop + 1] = False
+    return replace(stance, heel=heel)
+
+
+def _roll_into_reach(toe: FloatArray, arm: FloatArray, hip: FloatArray, reach: FloatArray) -> FloatArray:
+    """Return the rotation vectors (F, 3) about toes that bring the ankles, at toe + arm, within reach of the hips."""
+    way = hip - toe
+    long, short = np.linalg.norm(way, axis=1), np.linalg.norm(arm, axis=1)
+    scale = np.maximum(long * short, np.finfo(float).tiny)
+    widest = np.arccos(np.clip((long**2 + short**2 - reach**2) / (2.0 * scale), -1.0, 1.0))
+    now = np.arccos(np.clip(np.sum(way * arm, axis=1) / scale, -1.0, 1.0))
+    axis = rot.cross(arm, way)
+    axis = axis / np.maximum(np.linalg.norm(axis, axis=1, keepdims=True), np.finfo(float).tiny)
+    roll: FloatArray = np.maximum(now - widest, 0.0)[:, None] * axis
+    return roll
+
+
+def _stretch(poses: WorldPoses, foot: Foot) -> tuple[FloatArray, FloatArray]:
+    """Return the way from hip to ankle, and the leg's length, shape (F,) each."""
+    hip, knee, ankle = (poses.positions[:, j] for j in (foot.leg.thigh, foot.leg.knee, foot.leg.ankle))
+    length = np.linalg.norm(knee - hip, axis=1) + np.linalg.norm(ankle - knee, axis=1)
+    return np.linalg.norm(ankle - hip, axis=1), length
+
+
+def _reach(poses: WorldPoses, foot: Foot, share: float = REACH) -> FloatArray:
+    """Return how far from its hip an ankle may be, shape (F,)."""
+    way, length = _stretch(poses, foot)
+    return np.maximum(share * length, way)
+
+
+def _stiff(poses: WorldPoses, foot: Foot) -> FloatArray:
+    """Return how near to its reach a leg is, shape (F,): from 0 to 1 over `_NEAR`, smoothly."""
+    way, length = _stretch(poses, foot)
+    near = np.clip((way / np.maximum(length, np.finfo(float).tiny) - _NEAR[0]) / (_NEAR[1] - _NEAR[0]), 0.0, 1.0)
+    return near * near * (3.0 - 2.0 * near)
+
+
+def _within_reach(goal: FootGoal, hip: FloatArray, reach: FloatArray) -> FloatArray:
+    """Return a foot's places, those in the air brought within reach: no leg straightens for a correction's end."""
+    way = goal.places - hip
+    far = np.linalg.norm(way, axis=1)
+    share = np.where(goal.down, 1.0, np.minimum(1.0, reach / np.maximum(far, np.finfo(float).tiny)))
+    return hip + share[:, None] * way
+
+
+def _shifted(motion: Motion, shift: FloatArray, poses: WorldPoses, travel: int) -> Motion:
+    """Return a motion whose travel is shifted in the world, shape (F, 3)."""
+    parent = int(motion.skeleton.parents[travel])
+    local = shift if parent < 0 else rot.rotate(rot.conjugate(poses.rotations[:, parent]), shift)
+    translations = motion.translations.copy()
+    translations[:, int(np.searchsorted(motion.skeleton.translated, travel))] += local
+    return Motion(motion.skeleton, motion.rotations, frozen(translations), motion.frame_time)
