@@ -64,7 +64,7 @@ def _stretches(known: BoolArray, reach: int) -> list[tuple[int, int]]:
     fixed |= distance > reach
     # The first frames of a third difference all of which are fixed part the problem.
     edges = np.flatnonzero(np.diff(np.concatenate(([0], (~fixed).astype(np.int8), [0]))))
-    found: list[tuple[int, int]] = []
+    found: list[tuple[int, int, int]] = []
     for first, stop in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
         begin, end = max(first - _ORDER, 0), min(stop + _ORDER, len(known))
         if found and first - found[-1][2] < _ORDER:
@@ -85,4 +85,4 @@ def _extended(known: BoolArray, weight: float, fades: FloatArray) -> FloatArray:
     """Return the matrix that makes the unknown frames of a stretch from its known ones, shape (n,)."""
     difference = np.diff(np.eye(len(known)), n=_ORDER, axis=0)
     normal = weight * difference.T @ difference + np.diag(fades)
-    return -np.linalg.solve(normal[np.ix_(~known, ~known)], normal[np.ix_(~known, known)])
+    return np.asarray(np.linalg.solve(normal[np.ix_(~known, ~known)], -normal[np.ix_(~known, known)]), dtype=np.float64)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,8 +11,9 @@ from motionedit.core.arrays import frozen
 from motionedit.core.body.bends import find_bends
 from motionedit.core.feet.correction import eased
 from motionedit.core.feet.legs import legs_onto, turns_freely
-from motionedit.core.feet.pelvis import REACH, drop_needed, smooth_cover
-from motionedit.core.feet.stance import FootPath, feet_of, foot_path, runs, stance_of
+from motionedit.core.feet.pelvis import drop_needed, smooth_cover
+from motionedit.core.feet.reach import reach_of, released, stretch
+from motionedit.core.feet.stance import FootPath, feet_of, foot_path, stance_of
 from motionedit.core.kinematics import WorldPoses, forward
 from motionedit.core.motion import Motion
 from motionedit.dataclass import dataclass
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 _STRAIGHT = 0.998
 # Between these shares of its length corrections of a leg in the air fade.
 _NEAR = 0.975, 0.995
+_NO_WAY = 1e-12  # a length: a foot without a toe has no arm
 _ROLLS = 4  # times that a foot which rolls on is eased anew
 
 
@@ -107,7 +108,7 @@ def onto_stances(
     first: int,
 ) -> Kept:
     """Return a motion whose feet stand as given, as `keep_feet`; `poses` are its world transforms."""
-    reaches = {foot.side: _reach(poses, foot) for foot, _ in stances}
+    reaches = {foot.side: reach_of(poses, foot) for foot, _ in stances}
     goals = tuple(
         foot_goal(
             foot,
@@ -136,7 +137,7 @@ def onto_stances(
     wanted = []
     for goal in solved:
         places = _within_reach(
-            goal, poses.positions[:, goal.foot.leg.thigh] + shift, _reach(poses, goal.foot, _STRAIGHT)
+            goal, poses.positions[:, goal.foot.leg.thigh] + shift, reach_of(poses, goal.foot, _STRAIGHT)
         )
         wanted.append((goal.foot.leg, bends[goal.foot.leg.knee], places, goal.turns))
     stood = legs_onto(motion, poses, wanted, shift=shift)
@@ -161,7 +162,7 @@ def foot_goal(
     A heel that the leg cannot hold down any more comes up, and a foot on its toe rolls on over it, as far as the hip
     (F, 3) and the leg's reach (F,) ask.
     """
-    stance = _released(stance, hip, reach)
+    stance = released(stance, hip, reach)
     flat, down = stance.flat, stance.down
     on_toe = stance.toe & ~stance.heel
     turn = np.where((np.sum(stance.turn * path.turn, axis=1) < 0.0)[:, None], -stance.turn, stance.turn)
@@ -183,26 +184,11 @@ def foot_goal(
     return FootGoal(foot, np.where(down[:, None], places, path.ankle + moved), turns, down)
 
 
-def _released(stance: Stance, hip: FloatArray, reach: FloatArray) -> Stance:
-    """Return a stance whose heels come up once the hip has gone too far, where the toe stays down."""
-    far = stance.flat & (np.linalg.norm(hip - stance.heel_place, axis=1) > reach)
-    if not far.any():
-        return stance
-    heel = stance.heel.copy()
-    for start, stop in runs(stance.flat):
-        late = np.flatnonzero(far[start : stop + 1])
-        # What ends the stance ends it; a strain that passes is the pelvis'.
-        if len(late) and not stance.heel[stop + 1 : stop + 2].any() and far[stop]:
-            calm = np.flatnonzero(~far[start : stop + 1])
-            heel[start + (int(calm[-1]) + 1 if len(calm) else 0) : stop + 1] = False
-    return replace(stance, heel=heel)
-
-
 def _roll_into_reach(toe: FloatArray, arm: FloatArray, hip: FloatArray, reach: FloatArray) -> FloatArray:
     """Return the rotation vectors (F, 3) about toes that bring the ankles, at toe + arm, within reach of the hips."""
     way = hip - toe
     long, short = np.linalg.norm(way, axis=1), np.linalg.norm(arm, axis=1)
-    scale = np.maximum(long * short, np.finfo(float).tiny)
+    scale = np.maximum(long * short, _NO_WAY * np.maximum(long, 1.0))
     widest = np.arccos(np.clip((long**2 + short**2 - reach**2) / (2.0 * scale), -1.0, 1.0))
     now = np.arccos(np.clip(np.sum(way * arm, axis=1) / scale, -1.0, 1.0))
     axis = rot.cross(arm, way)
@@ -211,22 +197,9 @@ def _roll_into_reach(toe: FloatArray, arm: FloatArray, hip: FloatArray, reach: F
     return roll
 
 
-def _stretch(poses: WorldPoses, foot: Foot) -> tuple[FloatArray, FloatArray]:
-    """Return the way from hip to ankle, and the leg's length, shape (F,) each."""
-    hip, knee, ankle = (poses.positions[:, j] for j in (foot.leg.thigh, foot.leg.knee, foot.leg.ankle))
-    length = np.linalg.norm(knee - hip, axis=1) + np.linalg.norm(ankle - knee, axis=1)
-    return np.linalg.norm(ankle - hip, axis=1), length
-
-
-def _reach(poses: WorldPoses, foot: Foot, share: float = REACH) -> FloatArray:
-    """Return how far from its hip an ankle may be, shape (F,)."""
-    way, length = _stretch(poses, foot)
-    return np.maximum(share * length, way)
-
-
 def _stiff(poses: WorldPoses, foot: Foot) -> FloatArray:
     """Return how near to its reach a leg is, shape (F,): from 0 to 1 over `_NEAR`, smoothly."""
-    way, length = _stretch(poses, foot)
+    way, length = stretch(poses, foot)
     near = np.clip((way / np.maximum(length, np.finfo(float).tiny) - _NEAR[0]) / (_NEAR[1] - _NEAR[0]), 0.0, 1.0)
     return near * near * (3.0 - 2.0 * near)
 

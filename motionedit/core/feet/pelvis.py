@@ -9,9 +9,6 @@ import numpy as np
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
 
-# A leg is stretched to this share of its length, or as far as it is already: nearer to straight, a millimetre at the
-# ankle is a centimetre at the knee.
-REACH = 0.994
 # Seconds before and after for which the pelvis stays low, and eases down and up.
 _EASE = 0.2
 # The pelvis goes down no farther than this share of a leg.

@@ -114,6 +114,7 @@ def stance_of(path: FootPath, plants: Sequence[Plant]) -> Stance:
         both = (number[0] == heel) & (number[1] == toe)
         turn[both] = mean_turn(path.turn[both])
         links.append((heel, toe, rot.rotate(turn[both][0], path.toe[both].mean(axis=0))))
+    links += _meetings(path, plants)
     whole, offsets = _chained(len(plants), links)
     places = np.zeros((len(plants), 3))
     for stand in set(whole):
@@ -126,6 +127,17 @@ def stance_of(path: FootPath, plants: Sequence[Plant]) -> Stance:
     stands = np.append(np.array(whole, dtype=np.intp), -1)
     places = np.concatenate((places, np.zeros((1, 3))))
     return Stance(number[0] >= 0, number[1] >= 0, places[number[0]], places[number[1]], turn, stands[numbers])
+
+
+def _meetings(path: FootPath, plants: Sequence[Plant]) -> list[tuple[int, int, FloatArray]]:
+    """Return the links of heels and toes of which one comes down as the other goes up: the way at that frame."""
+    links = []
+    for h, heel in enumerate(plants):
+        for t, toe in enumerate(plants):
+            if (heel.part, toe.part) == ("heel", "toe") and (heel.stop + 1 == toe.start or toe.stop + 1 == heel.start):
+                at = max(heel.start, toe.start)
+                links.append((h, t, rot.rotate(path.turn[at], path.toe[at])))
+    return links
 
 
 def mean_turn(turns: FloatArray) -> FloatArray:
@@ -142,6 +154,8 @@ def _chained(count: int, links: Sequence[tuple[int, int, FloatArray]]) -> tuple[
     """
     whole, offsets = list(range(count)), np.zeros((count, 3))
     for heel, toe, way in links:
+        if whole[heel] == whole[toe]:
+            continue
         members = [k for k in range(count) if whole[k] == whole[toe]]
         # The toe's side is moved so that toe - heel is the way.
         offsets[members] += offsets[heel] + way - offsets[toe]

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 _FASTER = 0.12
 # m: nor farther above the plant's own median height.
 _ABOVE = 0.006
+_HALF = 0.02  # s: speed is measured over twice that
 _SHORTEST = 0.05  # s: what is left of a shorter one is the plant as it was
 
 
@@ -42,7 +43,7 @@ def settled(
 def _cut(plant: Plant, places: FloatArray, up: FloatArray, frame_time: float) -> Plant:
     if len(places) < 3:
         return plant
-    half = max(1, round(0.02 / frame_time))
+    half = max(1, round(_HALF / frame_time))
     at = np.arange(len(places))
     before, after = np.maximum(at - half, 0), np.minimum(at + half, len(places) - 1)
     speed = np.linalg.norm(places[after] - places[before], axis=1) / ((after - before) * frame_time)
