@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -135,16 +136,20 @@ def onto_stances(
         lowered[first:] = smooth_cover(lowered[first:], motion.frame_time)
     shift = -lowered[:, None] * up
     wanted = []
+    final = {goal.foot.side: goal for goal in goals}
     for goal in solved:
         places = _within_reach(
             goal, poses.positions[:, goal.foot.leg.thigh] + shift, reach_of(poses, goal.foot, _STRAIGHT)
         )
         wanted.append((goal.foot.leg, bends[goal.foot.leg.knee], places, goal.turns))
+        final[goal.foot.side] = replace(goal, places=places)
     stood = legs_onto(motion, poses, wanted, shift=shift)
-    done = _shifted(stood, shift, poses, travel) if lowered.any() else stood
+    done = shifted(stood, shift, poses, travel) if lowered.any() else stood
     rotations = done.rotations.copy()
     rotations[:first] = motion.rotations[:first]
-    return Kept(Motion(done.skeleton, frozen(rotations), done.translations, done.frame_time), goals, lowered)
+    return Kept(
+        Motion(done.skeleton, frozen(rotations), done.translations, done.frame_time), tuple(final.values()), lowered
+    )
 
 
 def foot_goal(
@@ -212,7 +217,7 @@ def _within_reach(goal: FootGoal, hip: FloatArray, reach: FloatArray) -> FloatAr
     return hip + share[:, None] * way
 
 
-def _shifted(motion: Motion, shift: FloatArray, poses: WorldPoses, travel: int) -> Motion:
+def shifted(motion: Motion, shift: FloatArray, poses: WorldPoses, travel: int) -> Motion:
     """Return a motion whose travel is shifted in the world, shape (F, 3)."""
     parent = int(motion.skeleton.parents[travel])
     local = shift if parent < 0 else rot.rotate(rot.conjugate(poses.rotations[:, parent]), shift)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
+from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,17 +24,20 @@ from motionedit.jobs.clip.edit_record import DEFAULT_ANGLE_TOLERANCE, DEFAULT_TO
 from motionedit.jobs.clip.faults import Faults
 from motionedit.spec import kinds
 from motionedit.spec.faults import listed
+from motionedit.spec.plants import PLANTS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from motionedit.core.priorities.kinds.constraint import Constraint
+    from motionedit.core.priorities.kinds.footplants import GivenPlants
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.jobs.clip.resolve import Place
     from motionedit.spec.constraints import ConstraintItem, OwnValue
     from motionedit.spec.edit_prioritized import EditPrioritizedSpec
     from motionedit.spec.load import LoadedSpec
     from motionedit.spec.model import Kind
+    from motionedit.spec.plants import PlantsSpec
     from motionedit.spec.points import Point
     from motionedit.spec.values import EffectorSpec, Recruit
 
@@ -69,6 +74,7 @@ def clip_constraints(
     *,
     scale: float,
     faults: Faults,
+    relative: str = "",
 ) -> list[ClipConstraint]:
     """Return the spec's constraints in a clip; what the clip lacks goes to `faults`.
 
@@ -78,15 +84,17 @@ def clip_constraints(
         Frame of each event that the spec names.
     scale : float
         Normalised metres per clip unit.
+    relative : str
+        What files call the clip: its path below the given folder, or its name.
     """
-    found = []
+    found: list[ClipConstraint] = []
     for spec in loaded.model.constraints:
         own = Faults()
-        constraint = _Resolver(loaded, facts, events, scale, own).constraint(spec)
+        constraints = _Resolver(loaded, facts, events, scale, own, relative).constraints(spec)
         for error in own.errors:
             faults.add(error)
         met = spec.met_within
-        found.append(
+        found += [
             ClipConstraint(
                 constraint=replace(constraint, yields=not spec.counts_for_strict),
                 tolerance=DEFAULT_TOLERANCE / scale if met.position is None else met.position,
@@ -94,7 +102,8 @@ def clip_constraints(
                 may_give_way=met.off,
                 counts=spec.counts_for_strict,
             )
-        )
+            for constraint in constraints
+        ]
     return found
 
 
@@ -110,9 +119,10 @@ class _Resolver:
     events: Mapping[str, float]
     scale: float
     faults: Faults
+    relative: str
 
-    def constraint(self, spec: ConstraintItem) -> Constraint:
-        """Return the constraint, lengths in normalised metres."""
+    def constraints(self, spec: ConstraintItem) -> tuple[Constraint, ...]:
+        """Return the constraints that an item stands for, lengths in normalised metres."""
         place = resolve.Place(self.loaded, spec.keys, self.facts.clip.label)
         frame_time = self.facts.clip.motion.frame_time
         own = {each.key: each for each in spec.own_values()}
@@ -122,7 +132,7 @@ class _Resolver:
         measured = {key: given.pop(key) for key in spec.measure_keys}
         if measured:
             given["measure"] = axes.measure(counted=measured.get("axes", (0, 1, 2)), base=measured.get("relative_to"))
-        found = KINDS[spec.type](
+        found = KINDS[spec.type].several(
             name=str(spec.name),
             priority=spec.priority,
             weight=spec.weight,
@@ -130,9 +140,11 @@ class _Resolver:
             ease_in=spec.ease_in.in_frames(frame_time),
             ease_out=spec.ease_out.in_frames(frame_time),
             since=self.facts.first,
+            follows_reference=spec.follow == "reference",
             **given,
         )
-        self._check_recruits(found, place)
+        for each in found:
+            self._check_recruits(each, place)
         return found
 
     def _value(self, own: OwnValue, constraint: Place) -> Any:  # noqa: ANN401  of any kind
@@ -146,6 +158,9 @@ class _Resolver:
             kinds.EFFECTORS: lambda given, at: self._effector(given[0], at),
             kinds.EFFECTOR: self._effector,
             kinds.BODY_POINTS: self._body_points,
+            kinds.ANKLES: self._ankles,
+            PLANTS: self._plants,
+            kinds.OWN_HEIGHT: lambda given, _place: None if given == "input" else given,
             kinds.HEIGHT: lambda given, _place: Level(self.facts.up, given * self.scale),
             kinds.RECRUIT: self._rule,
             kinds.JOINT: self._joint,
@@ -176,6 +191,62 @@ class _Resolver:
         moving = below(skeleton, self.facts.travel)
         sites = [Effector(site.joint, self.scale * site.offset) for site in skeleton.end_sites if moving[site.joint]]
         return (*(Effector(int(joint), np.zeros(3)) for joint in np.flatnonzero(moving)), *sites)
+
+    def _ankles(self, named: str | Sequence[str], place: Place) -> tuple[Effector, ...]:
+        """Return the ankles that are named, or those of all legs."""
+        known = [leg.ankle for leg in self.facts.anatomy.legs or ()]
+        joints = tuple(known) if isinstance(named, str) else self._joints(named, place)
+        if not known:
+            self.faults.add(
+                place.error(f"no feet found in {place.clip}; body: in a spec says which joints are the legs")
+            )
+        for i, joint in enumerate(joints):
+            if joint not in known:
+                names = self.facts.clip.motion.skeleton.names
+                self.faults.add(
+                    place.at(i).error(
+                        f"'{names[joint]}' is no ankle in {place.clip}; they are {listed([names[j] for j in known])}"
+                    )
+                )
+        return tuple(Effector(joint, np.zeros(3)) for joint in joints)
+
+    def _plants(self, given: PlantsSpec, place: Place) -> dict[int, GivenPlants] | None:
+        """Return the plants that the spec or its file gives, by ankle; None where they are to be found."""
+        ankles = dict(zip(("left", "right"), (leg.ankle for leg in self.facts.anatomy.legs or ()), strict=False))
+        found: dict[int, GivenPlants] = {}
+        if given.by_foot is not None:
+            motion = self.facts.clip.motion
+            for foot, intervals in given.by_foot.items():
+                joint = ankles.get(foot, self._joint(foot, place.at(foot)))
+                for i, interval in enumerate(intervals):
+                    span: tuple[int, int] | None = self.faults.get(
+                        partial(
+                            resolve.frame_range,
+                            interval,
+                            place.at(foot, i),
+                            frames=len(motion),
+                            frame_time=motion.frame_time,
+                            events=self.events,
+                        ),
+                        otherwise=None,
+                    )
+                    if joint is not None and span is not None:
+                        found[joint] = (*found.get(joint, ()), ("heel", *span), ("toe", *span))
+            return found
+        if given.rows is None:
+            return None
+        mine = {self.relative, PurePosixPath(self.relative).stem}
+        for row in given.rows:
+            if row.clip in mine:
+                joint = ankles.get(row.foot, self._joint(row.foot, place))
+                if row.last > self.facts.last:
+                    self.faults.add(
+                        place.error(f"frame {row.last} is outside {place.clip}, whose last is {self.facts.last}")
+                    )
+                elif joint is not None:
+                    parts = ("heel", "toe") if row.part == "foot" else (row.part,)
+                    found[joint] = (*found.get(joint, ()), *((part, row.first, row.last) for part in parts))
+        return found
 
     def _joint(self, name: str, place: Place) -> int | None:
         return self.faults.get(lambda: resolve.joint(name, self.facts.clip.motion.skeleton, place), otherwise=None)

@@ -12,6 +12,7 @@ from motionedit.core.bvh import edited_pieces, unedited_bytes
 from motionedit.core.motion import Motion
 from motionedit.core.priorities.edit import PrioritizedEdit, RecruitingError, edit_by_priorities
 from motionedit.core.priorities.settings import LayeredSettings, PaperFilter, Passes
+from motionedit.core.priorities.targets import Follows
 from motionedit.core.trace import blocks_of, forward_blocks, frame_blocks
 from motionedit.dataclass import dataclass
 from motionedit.jobs.batch.one_clip import Outcome
@@ -29,6 +30,7 @@ from motionedit.jobs.edit_prioritized.constraints import clip_constraints
 from motionedit.jobs.edit_prioritized.loose_feet import loose_feet
 from motionedit.jobs.edit_prioritized.record import edit_record
 from motionedit.jobs.edit_prioritized.recruits import breach_error, breach_warnings, immovable_warnings, layer_lines
+from motionedit.jobs.edit_prioritized.standing import on_feet
 from motionedit.jobs.preview.with_page import with_page
 
 if TYPE_CHECKING:
@@ -88,11 +90,20 @@ class EditByPriorities:
                 unedited_bytes(clip), record, warnings=sized.warnings, details=("no constraints: the same bytes",)
             )
         settings = self.settings(clip)
+        reference = None
+        if any(each.constraint.stands for each in constraints):
+            sized, constraints = on_feet(self.loaded, sized, constraints, sized.facts, curve=settings.curve)
         before = feet_of(sized.facts, blocks_of(sized.facts.poses), masses=sized.masses)
         # What is read off the input has been read: an edit of a long clip needs the room.
         sized.facts.forget_poses()
         try:
-            edit = edit_by_priorities(sized.motion, [c.constraint for c in constraints], sized.body, settings)
+            edit = edit_by_priorities(
+                sized.motion,
+                [c.constraint for c in constraints],
+                sized.body,
+                settings,
+                follows=Follows(sized.input, reference),
+            )
         except RecruitingError as error:
             asked = [c.constraint for c in constraints]
             raise breach_error(self.loaded, error.breach, asked, sized.facts) from None
@@ -124,7 +135,8 @@ class EditByPriorities:
             return event_frames(spec.events, sized.facts, place, known=known)
 
         events = faults.get(frames, otherwise=none)
-        return clip_constraints(self.loaded, sized.facts, events, scale=sized.scale, faults=faults)
+        scale, relative = sized.scale, task.relative
+        return clip_constraints(self.loaded, sized.facts, events, scale=scale, faults=faults, relative=relative)
 
     def settings(self, clip: Clip) -> LayeredSettings:
         """Return how the spec wants a clip solved."""
@@ -157,7 +169,7 @@ class EditByPriorities:
         if changed:
             parts = (_in_clip_units(edit, sized, block) for block in frame_blocks(len(clip.motion)))
             after = feet_of(facts, forward_blocks(parts), masses=sized.masses)
-        steps = change_steps(sized.motion, edit.motion, first=facts.first)
+        steps = change_steps(sized.input, edit.motion, first=facts.first)
         rough = rough_lines(
             facts,
             edit.motion,

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
+    from typing import Self
 
     from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.body.center_of_mass import Masses
@@ -207,6 +208,8 @@ class Constraint(ABC):
         The first frame after a rest pose, which no ease reads.
     yields : bool
         Nobody counts on it: where meeting it makes the motion step, it gives way.
+    follows_reference : bool
+        What it reads of the input it reads of the reference.
     """
 
     type: ClassVar[str]
@@ -216,6 +219,8 @@ class Constraint(ABC):
     places_effector: ClassVar[bool] = False
     # Its place is the body's center of mass, which needs masses.
     weighs: ClassVar[bool] = False
+    # Its goals come from where feet stand, which is found before the edit.
+    stands: ClassVar[bool] = False
     # On a page: its symbol, and whether its places are looked at rather than gone to.
     symbol: ClassVar[Symbol] = "ring"
     looks: ClassVar[bool] = False
@@ -228,6 +233,12 @@ class Constraint(ABC):
     ease_out: float = 0.0
     since: int = 0
     yields: bool = False
+    follows_reference: bool = False
+
+    @classmethod
+    def several(cls, **given: Any) -> tuple[Self, ...]:  # noqa: ANN401  what its fields are
+        """Return the constraints that one item of a spec stands for: one, of most kinds."""
+        return (cls(**given),)
 
     @property
     def at(self) -> Effector | None:
