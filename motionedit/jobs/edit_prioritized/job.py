@@ -9,7 +9,7 @@ import numpy as np
 
 from motionedit.core.body.steps import change_steps
 from motionedit.core.bvh import edited_pieces, unedited_bytes
-from motionedit.core.motion import Motion
+from motionedit.core.motion import Motion, scaled
 from motionedit.core.priorities.edit import PrioritizedEdit, RecruitingError, edit_by_priorities
 from motionedit.core.priorities.settings import LayeredSettings, PaperFilter, Passes
 from motionedit.core.priorities.targets import Follows
@@ -30,6 +30,7 @@ from motionedit.jobs.edit_prioritized.constraints import clip_constraints
 from motionedit.jobs.edit_prioritized.loose_feet import loose_feet
 from motionedit.jobs.edit_prioritized.record import edit_record
 from motionedit.jobs.edit_prioritized.recruits import breach_error, breach_warnings, immovable_warnings, layer_lines
+from motionedit.jobs.edit_prioritized.reference import reference_facts, refuse_missing_reference
 from motionedit.jobs.edit_prioritized.standing import on_feet
 from motionedit.jobs.preview.with_page import with_page
 
@@ -44,6 +45,7 @@ if TYPE_CHECKING:
     from motionedit.core.trace import Trace
     from motionedit.jobs.batch.plan import ClipTask, RunOptions
     from motionedit.jobs.batch.run import BatchResult
+    from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.jobs.edit_prioritized.body import SizedClip
     from motionedit.jobs.edit_prioritized.constraints import ClipConstraint
     from motionedit.spec.edit_prioritized import EditPrioritizedSpec
@@ -60,6 +62,7 @@ def run(
     UsageError
         As `plan`.
     """
+    refuse_missing_reference(loaded.model.reference)
     return edit(loaded, plan(clips, output, options=options, depends=loaded.files), options=options)
 
 
@@ -90,9 +93,10 @@ class EditByPriorities:
                 unedited_bytes(clip), record, warnings=sized.warnings, details=("no constraints: the same bytes",)
             )
         settings = self.settings(clip)
-        reference = None
+        other = self._reference(clip, task)
         if any(each.constraint.stands for each in constraints):
-            sized, constraints = on_feet(self.loaded, sized, constraints, sized.facts, curve=settings.curve)
+            kept = sized.facts if other is None else other
+            sized, constraints = on_feet(self.loaded, sized, constraints, kept, curve=settings.curve)
         before = feet_of(sized.facts, blocks_of(sized.facts.poses), masses=sized.masses)
         # What is read off the input has been read: an edit of a long clip needs the room.
         sized.facts.forget_poses()
@@ -102,7 +106,7 @@ class EditByPriorities:
                 [c.constraint for c in constraints],
                 sized.body,
                 settings,
-                follows=Follows(sized.input, reference),
+                follows=Follows(sized.input, None if other is None else scaled(other.clip.motion, sized.scale)),
             )
         except RecruitingError as error:
             asked = [c.constraint for c in constraints]
@@ -124,6 +128,14 @@ class EditByPriorities:
         constraints = self._constraints(sized, task, faults)
         faults.raise_all(f"what the spec names and {task.label} lacks")
         return replace(sized, warnings=(*sized.warnings, *_warnings_of(constraints, sized.masses))), constraints
+
+    def _reference(self, clip: Clip, task: ClipTask) -> ClipFacts | None:
+        """Return the facts of the clip's reference, None where there is none."""
+        spec = self.loaded.model
+        if spec.reference is None:
+            return None
+        given = resolve.body(spec.body, clip.motion.skeleton, resolve.Place(self.loaded, ("body",), task.label))
+        return reference_facts(spec.reference, clip, task, up=spec.up, given=given)
 
     def _constraints(self, sized: SizedClip, task: ClipTask, faults: Faults) -> list[ClipConstraint]:
         spec = self.loaded.model
