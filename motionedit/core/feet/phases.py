@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from motionedit.core.kinematics import WorldPoses
 
 _ROUNDS = 6
+_SHORTEST = 0.05  # s: what is left of a heel's plant, with its toe down for a part of it, or it is none
 
 
 def find_phases(poses: WorldPoses, anatomy: Anatomy, *, up: FloatArray, first: int, frame_time: float) -> list[Plant]:
@@ -27,16 +28,17 @@ def find_phases(poses: WorldPoses, anatomy: Anatomy, *, up: FloatArray, first: i
     tracks = sole_tracks(poses, anatomy)
     plants = plants_of(tracks, anatomy, up=up, first=first, frame_time=frame_time)
     calm = settled(plants, tracks, anatomy, up=up, frame_time=frame_time)
-    return sorted(kept(calm, poses, anatomy), key=lambda plant: (plant.start, plant.foot, plant.point))
+    return sorted(kept(calm, poses, anatomy, frame_time), key=lambda plant: (plant.start, plant.foot, plant.point))
 
 
-def kept(plants: Sequence[Plant], poses: WorldPoses, anatomy: Anatomy) -> list[Plant]:
+def kept(plants: Sequence[Plant], poses: WorldPoses, anatomy: Anatomy, frame_time: float) -> list[Plant]:
     """Return plants whose heels come up once the leg cannot hold them in one place any more (`released`)."""
     found: list[Plant] = []
+    shortest = max(2, round(_SHORTEST / frame_time))
     for foot in feet_of(anatomy):
         here = [plant for plant in plants if plant.foot == foot.side]
         for _ in range(_ROUNDS):
-            shorter = _held(here, poses, foot)
+            shorter = _held(here, poses, foot, shortest)
             if shorter == here:
                 break
             here = shorter
@@ -44,7 +46,7 @@ def kept(plants: Sequence[Plant], poses: WorldPoses, anatomy: Anatomy) -> list[P
     return found
 
 
-def _held(plants: Sequence[Plant], poses: WorldPoses, foot: Foot) -> list[Plant]:
+def _held(plants: Sequence[Plant], poses: WorldPoses, foot: Foot, shortest: int) -> list[Plant]:
     stance = stance_of(foot_path(poses, foot), plants)
     heel = released(stance, poses.positions[:, foot.leg.thigh], reach_of(poses, foot)).heel
     found = []
@@ -52,6 +54,6 @@ def _held(plants: Sequence[Plant], poses: WorldPoses, foot: Foot) -> list[Plant]
         stop = plant.stop
         while plant.part == "heel" and stop >= plant.start and not heel[stop]:
             stop -= 1
-        if stop > plant.start:
+        if stop == plant.stop or (stop - plant.start >= shortest and stance.toe[plant.start : stop + 1].any()):
             found.append(replace(plant, stop=stop))
     return found

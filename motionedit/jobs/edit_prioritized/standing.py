@@ -69,7 +69,17 @@ def on_feet(
     if np.any(total):
         motion = shifted(motion, total, poses, facts.travel)
         poses = forward(motion)
-    kept = onto_stances(motion, poses, placed, facts.anatomy, up=facts.up, travel=facts.travel, first=facts.first)
+    floors = [each.constraint.least.height / scale for each in constraints if each.constraint.least is not None]
+    kept = onto_stances(
+        motion,
+        poses,
+        placed,
+        facts.anatomy,
+        up=facts.up,
+        travel=facts.travel,
+        first=facts.first,
+        floor=max(floors, default=None),
+    )
     stood = replace(facts, clip=replace(facts.clip, motion=kept.motion), world=Poses(kept.motion))
     again = sized_clip(loaded, stood, Faults())
     found = replace(

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.body.center_of_mass import Masses
+    from motionedit.core.measure import Level
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.points import Columns
     from motionedit.core.priorities.problem import Task
@@ -249,6 +250,11 @@ class Constraint(ABC):
     def one_sided(self) -> bool:
         """Whether its task is a limit, met on all of one side: see `WeightedTask`."""
         return False
+
+    @property
+    def least(self) -> Level | None:
+        """The height below which it wants no foot; None where it says nothing of it."""
+        return None
 
     def active(self, frames: int) -> tuple[int, int]:
         """Return the first and last frame at which the constraint is active."""
