@@ -130,33 +130,36 @@ def onto_stances(
 
     Where there is a `floor`, a height along up, no foot in the air goes below it.
     """
-    reaches = {foot.side: reach_of(poses, foot) for foot, _ in stances}
+    stances = [
+        (foot, released(stance, poses.positions[:, foot.leg.thigh], reach_of(poses, foot))) for foot, stance in stances
+    ]
+    lowered = np.zeros(len(motion))
+    if not any(stance.down.any() for _, stance in stances):
+        return Kept(motion, (), lowered)
+    ground = Ground(up, floor, _GIVE * anatomy.leg_length)
+    bends = {bend.joint: bend for bend in find_bends(motion.skeleton, poses, anatomy, first=first)}
+    if motion.skeleton.position_axes[travel]:
+        # Heels that stand say how low the pelvis is; a foot on its toe rolls on instead.
+        for foot, stance in stances:
+            hip, reach = poses.positions[:, foot.leg.thigh], reach_of(poses, foot)
+            lowered = np.maximum(lowered, np.where(stance.heel, drop_needed(hip, stance.heel_place, reach, up), 0.0))
+        lowered[:first] = 0.0
+        lowered[first:] = smooth_cover(lowered[first:], motion.frame_time)
+    shift = -lowered[:, None] * up
     goals = tuple(
         foot_goal(
             foot,
             foot_path(poses, foot),
             stance,
             motion.frame_time,
-            hip=poses.positions[:, foot.leg.thigh],
-            reach=reaches[foot.side],
+            hip=poses.positions[:, foot.leg.thigh] + shift,
+            reach=reach_of(poses, foot),
             stiff=_stiff(poses, foot),
-            ground=Ground(up, floor, _GIVE * anatomy.leg_length),
+            ground=ground,
         )
         for foot, stance in stances
     )
-    lowered = np.zeros(len(motion))
-    if not any(goal.down.any() for goal in goals):
-        return Kept(motion, goals, lowered)
-    bends = {bend.joint: bend for bend in find_bends(motion.skeleton, poses, anatomy, first=first)}
     solved = [g for g in goals if turns_freely(motion.skeleton, g.foot.leg) and g.foot.leg.knee in bends]
-    if motion.skeleton.position_axes[travel]:
-        for goal in solved:
-            hip = poses.positions[:, goal.foot.leg.thigh]
-            needed = drop_needed(hip, goal.places, reaches[goal.foot.side], up)
-            lowered = np.maximum(lowered, np.where(goal.down, needed, 0.0))
-        lowered[:first] = 0.0
-        lowered[first:] = smooth_cover(lowered[first:], motion.frame_time)
-    shift = -lowered[:, None] * up
     wanted = []
     final = {goal.foot.side: goal for goal in goals}
     for goal in solved:
@@ -187,10 +190,8 @@ def foot_goal(
 ) -> FootGoal:
     """Return where a foot shall be at every frame, from where it goes and where it stands.
 
-    A heel that the leg cannot hold down any more comes up, and a foot on its toe rolls on over it, as far as the hip
-    (F, 3) and the leg's reach (F,) ask.
+    A foot on its toe rolls on over it as far as the hip (F, 3) and the leg's reach (F,) ask.
     """
-    stance = released(stance, hip, reach)
     flat, down = stance.flat, stance.down
     on_toe = stance.toe & ~stance.heel
     turn = np.where((np.sum(stance.turn * path.turn, axis=1) < 0.0)[:, None], -stance.turn, stance.turn)

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 # Seconds before and after for which the pelvis stays low, and eases down and up.
 _EASE = 0.2
 # The pelvis goes down no farther than this share of a leg.
-_DEEPEST = 0.25
+_DEEPEST = 0.1
 
 
 def drop_needed(hip: FloatArray, ankle: FloatArray, reach: FloatArray, up: FloatArray) -> FloatArray:
