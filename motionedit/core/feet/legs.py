@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.skeleton import Skeleton
 
+# A knee that is bent back goes on doing so up to so many times as far; then it bends forward.
+_BACK = 1.25
+
 
 def turns_freely(skeleton: Skeleton, leg: Leg) -> bool:
     """Return whether hip, knee and ankle have three rotation channels each, so that a leg is solved exactly."""
@@ -67,8 +70,8 @@ def legs_onto(
 def _flexion(upper: FloatArray, lower: FloatArray, axis: FloatArray, length: FloatArray) -> FloatArray:
     """Return the angle about a knee's axis that makes |upper + turned lower| a length, shape (F,), rad.
 
-    u . R v = (u . a)(v . a) + C cos x + S sin x, so that x = atan2(S, C) +- acos((k - (u . a)(v . a)) / |C, S|); the
-    sign is that of the bend as it is. Beyond the leg's length it is straight.
+    u . R v = (u . a)(v . a) + C cos x + S sin x, so that x = atan2(S, C) +- acos((k - (u . a)(v . a)) / |C, S|). It
+    bends forward; one that is bent back stays so as far as it is. Beyond the leg's length it is straight.
     """
     along = np.sum(upper * axis, axis=1) * np.sum(lower * axis, axis=1)
     dot = np.sum(upper * lower, axis=1)
@@ -77,7 +80,8 @@ def _flexion(upper: FloatArray, lower: FloatArray, axis: FloatArray, length: Flo
     wanted = 0.5 * (length**2 - squares) - along
     share = np.clip(wanted / np.maximum(np.hypot(cosine, sine), np.finfo(float).tiny), -1.0, 1.0)
     straight = np.arctan2(sine, cosine)
-    angle: FloatArray = straight + np.where(straight > 0.0, -1.0, 1.0) * np.arccos(share)
+    bend = np.arccos(share)
+    angle: FloatArray = straight + np.where(bend < _BACK * straight, -1.0, 1.0) * bend
     return angle
 
 
