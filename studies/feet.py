@@ -50,7 +50,7 @@ def measured(before: ClipFacts, after: ClipFacts, seconds: float) -> list[float]
     mine, theirs = (
         foot_measures(
             sole_tracks(poses, before.anatomy),
-            before.plants,
+            before.phases,
             before.anatomy,
             up=before.up,
             first=first,
@@ -78,14 +78,14 @@ def rows(clips: Sequence[Path], which: str, folder: Path) -> Iterator[tuple[str,
     """Yield name, number of plants and measures of each clip that has plants, edited and read back."""
     for path in clips:
         before = facts_of(motionedit.read(path))
-        if not before.plants:
+        if not before.phases:
             continue
         spec = {"constraints": specs(before)[which]}
         began = time.perf_counter()
         edit = motionedit.edit_prioritized(path, spec)
         seconds = time.perf_counter() - began
         after = facts_of(motionedit.read(edit.write(folder / f"{path.stem}-{which}.bvh")))
-        yield path.stem, len(before.plants), measured(before, after, seconds)
+        yield path.stem, len(before.phases), measured(before, after, seconds)
 
 
 def main(arguments: Sequence[str]) -> int:

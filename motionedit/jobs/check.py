@@ -160,7 +160,7 @@ def _checked(
 def _measures(facts: ClipFacts) -> dict[str, float]:
     motion = facts.clip.motion
     steps = own_steps(motion, first=facts.first)
-    measured = clip_metrics(facts, feet_of(facts, blocks_of(facts.poses)), facts.plants, steps)
+    measured = clip_metrics(facts, feet_of(facts, blocks_of(facts.poses)), facts.phases, steps)
     defects = find_defects(motion, first=facts.first)
     counted = {
         "jumps": sum(len(defect.frames) for defect in defects),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from motionedit.core.body.contacts import plants_of, sole_tracks
+from motionedit.core.body.contacts import sole_tracks
 from motionedit.core.feet.reach import reach_of, released
 from motionedit.core.feet.settled import settled
 from motionedit.core.feet.stance import feet_of, foot_path, stance_of
@@ -23,11 +23,11 @@ _ROUNDS = 6
 _SHORTEST = 0.05  # s: what is left of a heel's plant, with its toe down for a part of it, or it is none
 
 
-def find_phases(poses: WorldPoses, anatomy: Anatomy, *, up: FloatArray, first: int, frame_time: float) -> list[Plant]:
-    """Return the plants of heels and toes, in the order of their first frames: `plants_of`, `settled` and `kept`."""
-    tracks = sole_tracks(poses, anatomy)
-    plants = plants_of(tracks, anatomy, up=up, first=first, frame_time=frame_time)
-    calm = settled(plants, tracks, anatomy, up=up, frame_time=frame_time)
+def find_phases(
+    poses: WorldPoses, anatomy: Anatomy, plants: Sequence[Plant], *, up: FloatArray, frame_time: float
+) -> list[Plant]:
+    """Return plants as they can be held in one place, in the order of their first frames: `settled`, then `kept`."""
+    calm = settled(plants, sole_tracks(poses, anatomy), anatomy, up=up, frame_time=frame_time)
     return sorted(kept(calm, poses, anatomy, frame_time), key=lambda plant: (plant.start, plant.foot, plant.point))
 
 

@@ -39,7 +39,7 @@ def edit_metrics(facts: ClipFacts, before: Trace, after: Trace | None, *, steps:
         Of the change that the edit made, None where the edited motion has another timing.
     """
     motion = facts.clip.motion
-    plants = facts.plants
+    plants = facts.phases
     metrics: dict[str, Any] = {"before": clip_metrics(facts, before, plants, own_steps(motion, first=facts.first))}
     if after is None:
         return {**metrics, "after": dict.fromkeys(metrics["before"]), "foot_drift_max": None}

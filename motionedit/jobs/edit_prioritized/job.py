@@ -98,7 +98,8 @@ class EditByPriorities:
             kept = sized.facts if other is None else other
             sized, constraints = on_feet(self.loaded, sized, constraints, kept, curve=settings.curve)
         before = feet_of(sized.facts, blocks_of(sized.facts.poses), masses=sized.masses)
-        # What is read off the input has been read: an edit of a long clip needs the room.
+        # What is read off the input has been read, its phases with it: an edit of a long clip needs the room.
+        _ = sized.facts.phases
         sized.facts.forget_poses()
         try:
             edit = edit_by_priorities(

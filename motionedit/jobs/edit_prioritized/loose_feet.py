@@ -35,7 +35,7 @@ def loose_feet(sized: SizedClip, constraints: Sequence[Constraint], before: Trac
     lines = []
     for foot, leg in zip(("left", "right"), facts.anatomy.legs or (), strict=False):
         free = ~_placed(sized, constraints, leg)
-        found = _drift(before, after, [plant for plant in facts.plants if plant.foot == foot], free)
+        found = _drift(before, after, [plant for plant in facts.phases if plant.foot == foot], free)
         if found is not None and found[0] * sized.scale > _LOOSE:
             lines.append(
                 f"the {foot} foot moves by {found[0]:.3g} at frame {found[1]} while it is planted, and no constraint "

@@ -99,7 +99,7 @@ def _stances(
         ask: Footplants = each.constraint  # type: ignore[assignment]  # it stands
         foot = feet[ask.effector.joint]
         if ask.plants is None:
-            plants = [plant for plant in reference.plants if plant.foot == foot.side]
+            plants = [plant for plant in reference.phases if plant.foot == foot.side]
         else:
             plants = [Plant(foot.side, part, foot.leg.ankle, 0, a, b, 0.0) for part, a, b in ask.plants]  # type: ignore[arg-type]
         found.setdefault(ask.effector.joint, (ask, foot, stance_of(foot_path(reference.poses, foot), plants)))
