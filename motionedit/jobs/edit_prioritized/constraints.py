@@ -201,23 +201,32 @@ class _Resolver:
                 place.error(f"no feet found in {place.clip}; body: in a spec says which joints are the legs")
             )
         for i, joint in enumerate(joints):
-            if joint not in known:
-                names = self.facts.clip.motion.skeleton.names
-                self.faults.add(
-                    place.at(i).error(
-                        f"'{names[joint]}' is no ankle in {place.clip}; they are {listed([names[j] for j in known])}"
-                    )
-                )
+            self._refuse_no_ankle(joint, place.at(i))
         return tuple(Effector(joint, np.zeros(3)) for joint in joints)
+
+    def _refuse_no_ankle(self, joint: int, place: Place) -> None:
+        names, known = self.facts.clip.motion.skeleton.names, [leg.ankle for leg in self.facts.anatomy.legs or ()]
+        if joint not in known:
+            ankles = listed([names[j] for j in known])
+            self.faults.add(place.error(f"'{names[joint]}' is no ankle in {place.clip}; they are {ankles}"))
+
+    def _ankle(self, foot: str, place: Place) -> int | None:
+        """Return the ankle of a foot that is called left, right, or by its joint."""
+        sides = dict(zip(("left", "right"), self.facts.anatomy.legs or (), strict=False))
+        if foot in sides:
+            return sides[foot].ankle
+        joint = self._joint(foot, place)
+        if joint is not None:
+            self._refuse_no_ankle(joint, place)
+        return joint
 
     def _plants(self, given: PlantsSpec, place: Place) -> dict[int, GivenPlants] | None:
         """Return the plants that the spec or its file gives, by ankle; None where they are to be found."""
-        ankles = dict(zip(("left", "right"), (leg.ankle for leg in self.facts.anatomy.legs or ()), strict=False))
         found: dict[int, GivenPlants] = {}
         if given.by_foot is not None:
             motion = self.facts.clip.motion
             for foot, intervals in given.by_foot.items():
-                joint = ankles.get(foot, self._joint(foot, place.at(foot)))
+                joint = self._ankle(foot, place.at(foot))
                 for i, interval in enumerate(intervals):
                     span: tuple[int, int] | None = self.faults.get(
                         partial(
@@ -238,7 +247,7 @@ class _Resolver:
         mine = {self.relative, PurePosixPath(self.relative).stem}
         for row in given.rows:
             if row.clip in mine:
-                joint = ankles.get(row.foot, self._joint(row.foot, place))
+                joint = self._ankle(row.foot, place)
                 if row.last > self.facts.last:
                     self.faults.add(
                         place.error(f"frame {row.last} is outside {place.clip}, whose last is {self.facts.last}")

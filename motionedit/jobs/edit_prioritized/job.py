@@ -30,7 +30,7 @@ from motionedit.jobs.edit_prioritized.constraints import clip_constraints
 from motionedit.jobs.edit_prioritized.loose_feet import loose_feet
 from motionedit.jobs.edit_prioritized.record import edit_record
 from motionedit.jobs.edit_prioritized.recruits import breach_error, breach_warnings, immovable_warnings, layer_lines
-from motionedit.jobs.edit_prioritized.reference import reference_facts, refuse_missing_reference
+from motionedit.jobs.edit_prioritized.reference import reference_facts, reference_files, refuse_missing_reference
 from motionedit.jobs.edit_prioritized.standing import on_feet
 from motionedit.jobs.preview.with_page import with_page
 
@@ -63,7 +63,8 @@ def run(
         As `plan`.
     """
     refuse_missing_reference(loaded.model.reference)
-    return edit(loaded, plan(clips, output, options=options, depends=loaded.files), options=options)
+    depends = (*loaded.files, *reference_files(loaded.model.reference))
+    return edit(loaded, plan(clips, output, options=options, depends=depends), options=options)
 
 
 def edit(loaded: LoadedSpec[EditPrioritizedSpec], tasks: Sequence[ClipTask], *, options: RunOptions) -> BatchResult:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from motionedit.core.skeleton import same_skeleton
 from motionedit.errors import ClipError, UsageError
 from motionedit.jobs.batch.one_clip import read_task
-from motionedit.jobs.batch.plan import ClipTask
+from motionedit.jobs.batch.plan import ClipTask, folder_clips
 from motionedit.jobs.clip.facts import facts_of
 
 if TYPE_CHECKING:
@@ -24,6 +24,14 @@ def refuse_missing_reference(reference: str | None) -> None:
     """Raise a UsageError where what is given is not there."""
     if reference is not None and not Path(reference).exists():
         raise UsageError("no such clip or folder to be the reference", file=reference)
+
+
+def reference_files(reference: str | None) -> list[Path]:
+    """Return the files of a reference: none of them is ever overwritten, and outputs depend on them."""
+    if reference is None:
+        return []
+    path = Path(reference)
+    return [clip.source for clip in folder_clips(path) if clip.source] if path.is_dir() else [path]
 
 
 def reference_facts(
