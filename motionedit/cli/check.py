@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 @click.command(
     "check",
     epilog="""\b
-    Example, a folder in which no clip may skate in more than a tenth of its frames:
-      motionedit check takes/ --limit foot_skate_ratio=0.1 --report check.json""",
+    Example, a folder in which no toe may skate in a tenth of the frames:
+      motionedit check takes/ --limit foot_skate_ratio=0.1""",
 )
 @clips_argument
 @spec_option(required=False)

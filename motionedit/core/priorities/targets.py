@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Follows:
-    """Whose paths constraints follow, where it is not those of the motion that is edited: see `follows_reference`."""
+    """Whose paths constraints follow, where it is not those of the motion that is edited: see `Constraint.follow`."""
 
     input: Motion | None = None
     reference: Motion | None = None
@@ -46,7 +46,7 @@ def with_targets(
     """Return all that is asked of a motion, with the targets of every constraint, which `follows` others' paths."""
     before = _seen(follows.input or motion, constraints, body)
     theirs = before if follows.reference is None else _seen(follows.reference, constraints, body)
-    seen = [theirs if each.follows_reference else before for each in constraints]
+    seen = [theirs if each.follow == "reference" else before for each in constraints]
     free = [i for i, each in enumerate(constraints) if not each.waits_for_others]
     found = {i: constraints[i].targets(Scene(seen[i], settings.curve, {}, lambda: before)) for i in free}
 

@@ -29,8 +29,8 @@ from motionedit.spec.plants import PLANTS
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from motionedit.core.feet.asked import GivenPlants
     from motionedit.core.priorities.kinds.constraint import Constraint
-    from motionedit.core.priorities.kinds.footplants import GivenPlants
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.jobs.clip.resolve import Place
     from motionedit.spec.constraints import ConstraintItem, OwnValue
@@ -140,7 +140,7 @@ class _Resolver:
             ease_in=spec.ease_in.in_frames(frame_time),
             ease_out=spec.ease_out.in_frames(frame_time),
             since=self.facts.first,
-            follows_reference=spec.follow == "reference",
+            follow=spec.follow,
             **given,
         )
         for each in found:

@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from motionedit.core.arrays import BoolArray, FloatArray
+    from motionedit.core.feet.asked import AsksToStand
     from motionedit.core.feet.keep import FootGoal
     from motionedit.core.feet.stance import Foot
-    from motionedit.core.priorities.kinds.footplants import Footplants
     from motionedit.core.priorities.trajectories import Curve
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.jobs.edit_prioritized.body import SizedClip
@@ -91,12 +91,12 @@ def on_feet(
 
 def _stances(
     sized: SizedClip, standing: Sequence[ClipConstraint], reference: ClipFacts
-) -> list[tuple[Footplants, Foot, Stance]]:
+) -> list[tuple[AsksToStand, Foot, Stance]]:
     """Return what is asked of each foot, and where it stands in the reference."""
     feet = {foot.leg.ankle: foot for foot in feet_of(sized.facts.anatomy)}
-    found: dict[int, tuple[Footplants, Foot, Stance]] = {}
+    found: dict[int, tuple[AsksToStand, Foot, Stance]] = {}
     for each in standing:
-        ask: Footplants = each.constraint  # type: ignore[assignment]  # it stands
+        ask: AsksToStand = each.constraint  # type: ignore[assignment]  # it stands
         foot = feet[ask.effector.joint]
         if ask.plants is None:
             plants = [plant for plant in reference.phases if plant.foot == foot.side]
@@ -127,7 +127,7 @@ def _with_goals(
     """Return a constraint as it is, or one for each stretch in which it says where its foot is."""
     if not each.constraint.stands:
         return [each]
-    ask: Footplants = each.constraint  # type: ignore[assignment]  # it stands
+    ask: AsksToStand = each.constraint  # type: ignore[assignment]  # it stands
     goal, first = goals[ask.effector.joint], sized.facts.first
     here = goal.down | ~_placed_by_others(goal.foot, constraints, sized)
     here[:first] = False
@@ -137,7 +137,7 @@ def _with_goals(
     for number, (start, stop) in enumerate(runs(here)):
         span = slice(start, stop + 1)
         targets = Targets(start, stop, sized.scale * goal.places[span], goal.turns[span])
-        parts.append(replace(each, constraint=ask.within(targets, number=number)))
+        parts.append(replace(each, constraint=ask.within(targets, number=number))  # type: ignore[arg-type]  # it is one)
     return parts
 
 

@@ -154,10 +154,11 @@ def _plants(plants: Sequence[dict[str, Any]]) -> list[str]:
         for plant in plants:
             if plant["foot"] == foot:
                 start, stop = plant["frames"]
-                phases = (f"{part} {_spans(plant[part])}" for part in ("heel", "toe") if plant[part])
+                phases = [f"{part} {_spans(plant[part])}" for part in ("heel", "toe") if plant[part]]
                 lines.append(f"    {foot:<6}{start:>6} to {stop:>6}  {plant['seconds']:8.3f}  {'; '.join(phases)}")
                 held = [f"{part} {_spans(spans)}" for part, spans in plant["held"].items() if spans]
-                lines.append(f"    {'held':>38}  {'; '.join(held) or 'nowhere'}")
+                if held != phases:
+                    lines.append(f"    {'held':>32}  {'; '.join(held) or 'nowhere'}")
     return lines
 
 

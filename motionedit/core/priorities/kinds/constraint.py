@@ -209,8 +209,8 @@ class Constraint(ABC):
         The first frame after a rest pose, which no ease reads.
     yields : bool
         Nobody counts on it: where meeting it makes the motion step, it gives way.
-    follows_reference : bool
-        What it reads of the input it reads of the reference.
+    follow : {"input", "reference"}
+        Whose paths and turns it reads.
     """
 
     type: ClassVar[str]
@@ -222,6 +222,8 @@ class Constraint(ABC):
     weighs: ClassVar[bool] = False
     # Its goals come from where feet stand, which is found before the edit.
     stands: ClassVar[bool] = False
+    # What keys of a spec are called here, where it is not by their own names.
+    called: ClassVar[Mapping[str, str]] = {}
     # On a page: its symbol, and whether its places are looked at rather than gone to.
     symbol: ClassVar[Symbol] = "ring"
     looks: ClassVar[bool] = False
@@ -234,7 +236,7 @@ class Constraint(ABC):
     ease_out: float = 0.0
     since: int = 0
     yields: bool = False
-    follows_reference: bool = False
+    follow: Literal["input", "reference"] = "input"
 
     @classmethod
     def several(cls, **given: Any) -> tuple[Self, ...]:  # noqa: ANN401  what its fields are

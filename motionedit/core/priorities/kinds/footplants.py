@@ -9,12 +9,11 @@ from motionedit.core.priorities.kinds.pose import Pose
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from typing import Any, Self
 
+    from motionedit.core.feet.asked import GivenPlants
     from motionedit.core.priorities.kinds.constraint import Scene, Targets
-
-# Frames of a foot's plants, both in, with the part that stands.
-GivenPlants = tuple[tuple[str, int, int], ...]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -35,6 +34,7 @@ class Footplants(Pose):
 
     type: ClassVar[str] = "footplants"
     stands: ClassVar[bool] = True
+    called: ClassVar[Mapping[str, str]] = {"feet": "effector", "at": "follows_path"}
 
     plants: GivenPlants | None = None
     height: float | None = None
