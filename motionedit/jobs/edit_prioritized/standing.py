@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from motionedit.core.feet.asked import AsksToStand
     from motionedit.core.feet.keep import FootGoal
     from motionedit.core.feet.stance import Foot
+    from motionedit.core.priorities.kinds.constraint import Constraint
     from motionedit.core.priorities.trajectories import Curve
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.jobs.edit_prioritized.body import SizedClip
@@ -137,7 +138,8 @@ def _with_goals(
     for number, (start, stop) in enumerate(runs(here)):
         span = slice(start, stop + 1)
         targets = Targets(start, stop, sized.scale * goal.places[span], goal.turns[span])
-        parts.append(replace(each, constraint=ask.within(targets, number=number))  # type: ignore[arg-type]  # it is one)
+        held: Constraint = ask.within(targets, number=number)  # type: ignore[assignment]  # it is one
+        parts.append(replace(each, constraint=held))
     return parts
 
 
