@@ -12,9 +12,9 @@ from motionedit.core.arrays import frozen
 if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray
 
-# Seconds: how slowly a correction bends. The third difference weighs (_BENDS / dt)^6 in its square,
-_BENDS = 0.02
-# the correction itself so much: it fades to nothing within `_BENDS` / _FADES^(1/6), half of it in 0.1 s.
+# Seconds: how slowly a correction bends. The third difference weighs (BENDS / dt)^6 in its square,
+BENDS = 0.02
+# the correction itself so much: it fades to nothing within `BENDS` / _FADES^(1/6), half of it in 0.1 s.
 _FADES = 0.01
 _STIFF = 100.0
 # Seconds from what is known after which it has faded away.
@@ -22,14 +22,23 @@ _FADED = 1.2
 _ORDER = 3  # of the difference: so many known frames in a row part what is before them from what is after
 
 
-def eased(values: FloatArray, known: BoolArray, frame_time: float, *, stiff: FloatArray | None = None) -> FloatArray:
+def eased(
+    values: FloatArray,
+    known: BoolArray,
+    frame_time: float,
+    *,
+    bends: float = BENDS,
+    stiff: FloatArray | None = None,
+) -> FloatArray:
     """Return a correction at all frames, shape (F, k), from its values at those that are `known`, shape (F,).
 
-    The others make sum (tau / dt)^6 |third difference|^2 + 0.01 |c|^2 least, tau 0.05 s; what is known stands to the
+    The others make sum (tau / dt)^6 |third difference|^2 + 0.01 |c|^2 least; what is known stands to the
     bit. All zeros where nothing is known.
 
     Parameters
     ----------
+    bends : float
+        tau, seconds.
     stiff : shape (F,), optional
         0 to 1: where the correction shall fade at once, weighing `_STIFF` times as much.
     """
@@ -38,7 +47,7 @@ def eased(values: FloatArray, known: BoolArray, frame_time: float, *, stiff: Flo
     if not len(frames):
         return found
     reach = max(_ORDER, round(_FADED / frame_time))
-    weight = (_BENDS / frame_time) ** (2 * _ORDER)
+    weight = (bends / frame_time) ** (2 * _ORDER)
     for start, stop in _stretches(known, reach):
         mask = known[start:stop]
         if stiff is None or not stiff[start:stop][~mask].any():

@@ -33,6 +33,9 @@ _STRAIGHT = 0.998
 # Between these shares of its length corrections of a leg in the air fade.
 _NEAR = 0.975, 0.995
 _NO_WAY = 1e-12  # a length: a foot without a toe has no arm
+# Seconds: how slowly an ankle's correction bends, from the first where it is a small share of a leg to the second where
+# it is a large one: far ways take their time.
+_SLOWLY, _SMALL_TO_LARGE = (0.02, 0.05), (0.05, 0.1)
 _GAP = 0.3  # s
 _ROLLS = 4  # times that a foot which rolls on is eased anew
 
@@ -45,12 +48,13 @@ _DEEP = 1e-9  # of a foot's height: a foot that is so much too deep is no deeper
 class Ground:
     """Which way is up, shape (3,), and the height below which no foot goes, None for no floor.
 
-    `give` is by how much a foot in the air may go below its own height, where there is none.
+    `give` is by how much a foot in the air may go below its own height, where there is none, `leg` a leg's length.
     """
 
     up: FloatArray
-    height: float | None = None
-    give: float = 0.0
+    height: float | None
+    give: float
+    leg: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,7 +140,7 @@ def onto_stances(
     lowered = np.zeros(len(motion))
     if not any(stance.down.any() for _, stance in stances):
         return Kept(motion, (), lowered)
-    ground = Ground(up, floor, _GIVE * anatomy.leg_length)
+    ground = Ground(up, floor, _GIVE * anatomy.leg_length, anatomy.leg_length)
     bends = {bend.joint: bend for bend in find_bends(motion.skeleton, poses, anatomy, first=first)}
     if motion.skeleton.position_axes[travel]:
         # Heels that stand say how low the pelvis is; a foot on its toe rolls on instead.
@@ -213,8 +217,9 @@ def foot_goal(
     moved = places - path.ankle
     least = _least_heights(path, places, turns, down, ground)
     held = down
+    bends = _bends(moved[down], ground.leg)
     for _ in range(_ROLLS):
-        free = path.ankle + eased(moved, held, frame_time, stiff=stiff)
+        free = path.ankle + eased(moved, held, frame_time, bends=bends, stiff=stiff)
         lift = np.where(down, 0.0, least - _lowest(free, turns, path, ground.up))
         deep = lift > _DEEP * float(np.abs(least).max())
         if not deep.any():
@@ -224,6 +229,12 @@ def foot_goal(
     if ground.height is not None:
         free = free + np.maximum(lift, 0.0)[:, None] * ground.up
     return FootGoal(foot, np.where(down[:, None], places, free), turns, down)
+
+
+def _bends(corrections: FloatArray, leg: float) -> float:
+    """Return how slowly an ankle's corrections (n, 3) bend, s, for a leg of this length."""
+    largest = float(np.linalg.norm(corrections, axis=1).max(initial=0.0))
+    return float(np.interp(largest / leg, _SMALL_TO_LARGE, _SLOWLY))
 
 
 def _lowest(ankle: FloatArray, turns: FloatArray, path: FootPath, up: FloatArray) -> FloatArray:
