@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
-from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,6 +20,7 @@ from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.axes import GivenAxes
 from motionedit.jobs.clip.edit_record import DEFAULT_ANGLE_TOLERANCE, DEFAULT_TOLERANCE
 from motionedit.jobs.clip.faults import Faults
+from motionedit.jobs.edit_prioritized.feet_in_clip import FeetInClip
 from motionedit.spec import kinds
 from motionedit.spec.faults import listed
 from motionedit.spec.plants import PLANTS
@@ -29,7 +28,6 @@ from motionedit.spec.plants import PLANTS
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from motionedit.core.feet.asked import GivenPlants
     from motionedit.core.priorities.kinds.constraint import Constraint
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.jobs.clip.resolve import Place
@@ -37,7 +35,6 @@ if TYPE_CHECKING:
     from motionedit.spec.edit_prioritized import EditPrioritizedSpec
     from motionedit.spec.load import LoadedSpec
     from motionedit.spec.model import Kind
-    from motionedit.spec.plants import PlantsSpec
     from motionedit.spec.points import Point
     from motionedit.spec.values import EffectorSpec, Recruit
 
@@ -154,12 +151,13 @@ class _Resolver:
             return tuple(joint for _, joint in self.facts.anatomy.foot_points)
         if value is None:
             return None
+        feet = FeetInClip(self.facts, self.events, self.faults, self.relative)
         ways: dict[Kind, Callable[[Any, Place], object]] = {
             kinds.EFFECTORS: lambda given, at: self._effector(given[0], at),
             kinds.EFFECTOR: self._effector,
             kinds.BODY_POINTS: self._body_points,
-            kinds.ANKLES: self._ankles,
-            PLANTS: self._plants,
+            kinds.ANKLES: feet.ankles,
+            PLANTS: feet.plants,
             kinds.OWN_HEIGHT: lambda given, _place: None if given == "input" else given,
             kinds.HEIGHT: lambda given, _place: Level(self.facts.up, given * self.scale),
             kinds.RECRUIT: self._rule,
@@ -191,71 +189,6 @@ class _Resolver:
         moving = below(skeleton, self.facts.travel)
         sites = [Effector(site.joint, self.scale * site.offset) for site in skeleton.end_sites if moving[site.joint]]
         return (*(Effector(int(joint), np.zeros(3)) for joint in np.flatnonzero(moving)), *sites)
-
-    def _ankles(self, named: str | Sequence[str], place: Place) -> tuple[Effector, ...]:
-        """Return the ankles that are named, or those of all legs."""
-        known = [leg.ankle for leg in self.facts.anatomy.legs or ()]
-        joints = tuple(known) if isinstance(named, str) else self._joints(named, place)
-        if not known:
-            self.faults.add(
-                place.error(f"no feet found in {place.clip}; body: in a spec says which joints are the legs")
-            )
-        for i, joint in enumerate(joints):
-            self._refuse_no_ankle(joint, place.at(i))
-        return tuple(Effector(joint, np.zeros(3)) for joint in joints)
-
-    def _refuse_no_ankle(self, joint: int, place: Place) -> None:
-        names, known = self.facts.clip.motion.skeleton.names, [leg.ankle for leg in self.facts.anatomy.legs or ()]
-        if joint not in known:
-            ankles = listed([names[j] for j in known])
-            self.faults.add(place.error(f"'{names[joint]}' is no ankle in {place.clip}; they are {ankles}"))
-
-    def _ankle(self, foot: str, place: Place) -> int | None:
-        """Return the ankle of a foot that is called left, right, or by its joint."""
-        sides = dict(zip(("left", "right"), self.facts.anatomy.legs or (), strict=False))
-        if foot in sides:
-            return sides[foot].ankle
-        joint = self._joint(foot, place)
-        if joint is not None:
-            self._refuse_no_ankle(joint, place)
-        return joint
-
-    def _plants(self, given: PlantsSpec, place: Place) -> dict[int, GivenPlants] | None:
-        """Return the plants that the spec or its file gives, by ankle; None where they are to be found."""
-        found: dict[int, GivenPlants] = {}
-        if given.by_foot is not None:
-            motion = self.facts.clip.motion
-            for foot, intervals in given.by_foot.items():
-                joint = self._ankle(foot, place.at(foot))
-                for i, interval in enumerate(intervals):
-                    span: tuple[int, int] | None = self.faults.get(
-                        partial(
-                            resolve.frame_range,
-                            interval,
-                            place.at(foot, i),
-                            frames=len(motion),
-                            frame_time=motion.frame_time,
-                            events=self.events,
-                        ),
-                        otherwise=None,
-                    )
-                    if joint is not None and span is not None:
-                        found[joint] = (*found.get(joint, ()), ("heel", *span), ("toe", *span))
-            return found
-        if given.rows is None:
-            return None
-        mine = {self.relative, PurePosixPath(self.relative).stem}
-        for row in given.rows:
-            if row.clip in mine:
-                joint = self._ankle(row.foot, place)
-                if row.last > self.facts.last:
-                    self.faults.add(
-                        place.error(f"frame {row.last} is outside {place.clip}, whose last is {self.facts.last}")
-                    )
-                elif joint is not None:
-                    parts = ("heel", "toe") if row.part == "foot" else (row.part,)
-                    found[joint] = (*found.get(joint, ()), *((part, row.first, row.last) for part in parts))
-        return found
 
     def _joint(self, name: str, place: Place) -> int | None:
         return self.faults.get(lambda: resolve.joint(name, self.facts.clip.motion.skeleton, place), otherwise=None)
