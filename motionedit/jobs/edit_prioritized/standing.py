@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import BoolArray, FloatArray
     from motionedit.core.feet.asked import AsksToStand
-    from motionedit.core.feet.keep import FootGoal
+    from motionedit.core.feet.goals import FootGoal
     from motionedit.core.feet.stance import Foot
     from motionedit.core.priorities.kinds.constraint import Constraint
     from motionedit.core.priorities.trajectories import Curve
