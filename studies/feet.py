@@ -96,14 +96,14 @@ def main(arguments: Sequence[str]) -> int:
     clips = sorted(Path(arguments[0]).rglob("*.bvh"))
     with tempfile.TemporaryDirectory() as folder:
         for which in ("feet", "floor", "path"):
-            print(f"\n{which}\n" + f"{COLUMNS[0]:<30}" + "".join(f"{word:>9}" for word in COLUMNS[1:]))
+            print(f"\n{which}\n" + f"{COLUMNS[0]:<30}" + "".join(f"{word:>10}" for word in COLUMNS[1:]))
             found = list(rows(clips, which, Path(folder)))
             for name, plants, values in found:
-                print(f"{name[:29]:<30}{plants:9d}" + "".join(f"{value:9.4g}" for value in values))
+                print(f"{name[:29]:<30}{plants:10d}" + "".join(f"{value:10.3g}" for value in values))
             table = np.array([values for _, _, values in found])
             worst = np.append(table[:, :-1].max(axis=0), table[:, -1].min())
             for word, values in (("worst", worst), ("median", np.median(table, axis=0))):
-                print(f"{word:<39}" + "".join(f"{value:9.4g}" for value in values))
+                print(f"{word:<40}" + "".join(f"{value:10.3g}" for value in values))
     return 0
 
 
