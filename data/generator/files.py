@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from data.generator.golf import BALL_HEIGHT, make_swing
 from data.generator.kick import make_kick
 from data.generator.players import GROUPS, SHIPPED_RATE, shipped_swings
+from data.generator.skating import skating
 from data.generator.walk import make_walk
 from motionedit.core.bvh import new_bytes
 
@@ -38,7 +39,9 @@ def shipped_files(*, noise: float = 1.0, rate: float = SHIPPED_RATE) -> Iterator
         for name, group, swing in zip(names, GROUPS, swings, strict=True)
     ]
     yield "golf/balls.tsv", ("clip\tstyle\tx\ty\tz\n" + "".join(balls)).encode()
-    yield "walk.bvh", new_bytes(make_walk(), decimals=DECIMALS)
+    walk = make_walk()
+    yield "walk.bvh", new_bytes(walk, decimals=DECIMALS)
+    yield "walk-skating.bvh", new_bytes(skating(walk), decimals=DECIMALS)
     yield "kick.bvh", new_bytes(make_kick(), decimals=DECIMALS)
 
 

@@ -109,8 +109,25 @@ _PLANT = obj(
         "seconds": number("how long"),
         "heel": list_of(_SPAN, "the phases in which its heel stands"),
         "toe": list_of(_SPAN, "the phases in which its toe stands"),
+        "held": obj(
+            "when footplants hold them in one place",
+            {which: list_of(_SPAN, f"of its {which}") for which in ("heel", "toe")},
+        ),
     },
 )
+_CHECKED_CLIP = {
+    **CLIP,
+    "status": word("unfit where a limit is passed or the spec does not fit", "ok", "unfit"),
+    **MESSAGE,
+    "frame_rate": number("Hz"),
+    "up": text("the up axis with its sign, such as y or -z"),
+    "unit": or_null(_UNIT, "null where the skeleton has no length"),
+    "found": list_of(word("a part of the body", "legs", "arms", "head"), "what of a body was found"),
+    "measures": map_of(NUMBER, "what limits are set on, by name"),
+    "passed": list_of(STRING, "the measures whose limit is passed"),
+    "spec_errors": list_of(STRING, "what the spec names and the clip lacks, a line each"),
+    "warnings": list_of(STRING, "one line each"),
+}
 _SHOWN_CLIP = {
     **CLIP,
     "status": word("failed where it lacks a time or a joint that was asked for", "ok", "failed"),
@@ -178,6 +195,7 @@ OTHER_PARTS: Schema = {
         {"clip": text("its name"), "coefficients": list_of(NUMBER, "its principal coefficients alpha")},
     ),
     "shown_clip": obj("A clip that info tells of.", _SHOWN_CLIP, optional=("contacts", "plants", "poses")),
+    "checked_clip": obj("A clip that was checked.", _CHECKED_CLIP),
     "joint": obj(
         "A joint of a skeleton.",
         {

@@ -15,6 +15,7 @@ _CLIPS: dict[str, tuple[str, ...]] = {
     "edit-prioritized": ("prioritized_clip", "failed"),
     "info": ("shown_clip", "failed"),
     "diff": ("compared_clip",),
+    "check": ("checked_clip", "failed"),
 }
 
 

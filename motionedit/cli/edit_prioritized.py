@@ -32,11 +32,21 @@ if TYPE_CHECKING:
 @spec_option()
 @output_option("OUT", "A name ending in .bvh for one clip, '-' for standard output, else a folder.")
 @set_option
+@click.option(
+    "--reference",
+    metavar="PATH",
+    help="Another version of the clip, or a folder of them, whose plants footplants keep; in place of the spec's.",
+)
 @preview_option
 @run_options(keep_going=True)
 @not_supported_yet("--skeleton")
 def command(
-    clips: tuple[Path, ...], spec_path: Path, output: str, overrides: tuple[str, ...], options: RunOptions
+    clips: tuple[Path, ...],
+    spec_path: Path,
+    output: str,
+    overrides: tuple[str, ...],
+    reference: str | None,
+    options: RunOptions,
 ) -> int:
     """Edit clips by constraints in priority layers.
 
@@ -48,8 +58,10 @@ def command(
     """
     from motionedit.cli.finish import finish_batch
     from motionedit.jobs.edit_prioritized import job as edit_prioritized
-    from motionedit.spec.load import load_spec
+    from motionedit.spec.load import load_spec, with_reference
 
     loaded = load_spec(spec_path, "edit-prioritized", overrides=overrides)
+    if reference is not None:
+        loaded = with_reference(loaded, reference)
     result = edit_prioritized.run(loaded, clips, output, options)
     return finish_batch(result, options, command="edit-prioritized", spec=loaded.data)

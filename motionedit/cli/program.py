@@ -25,6 +25,7 @@ COMMANDS = {
     "info": "Show what is in a clip.",
     "diff": "Tell whether two clips or folders hold the same motion.",
     "preview": "Draw clips, overlaid, as a page or a picture.",
+    "check": "Tell whether clips, and a spec for them, are fit for use.",
     "schema": "Print the JSON Schema of a command's spec.",
 }
 

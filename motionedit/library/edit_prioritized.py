@@ -30,8 +30,8 @@ def edit_prioritized(
         The clip: a file, what `read` returned, or what another edit did.
     spec : str or path-like, or mapping
         A YAML file, or the same as a mapping, in which `schema` may be left out: constraints over intervals, of the
-        types position, orientation, pose, com, aim, posture, distance and floor. All keys: `docs/spec.md`, and
-        ``motionedit schema edit-prioritized``.
+        types position, orientation, pose, com, aim, posture, distance, floor and footplants. All keys: `docs/spec.md`,
+        and ``motionedit schema edit-prioritized``.
     events : mapping of str to int, optional
         Frames of this clip's events, 0-based, in place of those of the spec: one spec serves many clips. Each is an
         event that the spec lists or names.

@@ -51,7 +51,7 @@ def results_table(records: Sequence[dict[str, Any]], seconds: Sequence[float], *
         error = "error" + _unit([record for record, _ in shown])
         headings = (
             *("clip", "status", "worst goal", error, "tolerance", "frame"),
-            *("iterations", "foot slide", "jerk", "step", "seconds"),
+            *("iterations", "foot slide", "sliding", "jerk", "step", "seconds"),
         )
         blocks.append(text_table(headings, [_row(record, time) for record, time in shown]))
     if verbosity > 0:
@@ -81,6 +81,7 @@ def _row(record: dict[str, Any], seconds: float) -> tuple[object, ...]:
         worst.get("frame"),
         _iterations(record),
         _change(record, "foot_slide_max"),
+        _percent(record, "foot_sliding_share"),
         _ratio(record, "jerk_rms"),
         _step(record),
         None if record["status"] == "failed" else f"{seconds:.2f}",
@@ -153,6 +154,12 @@ def _change(record: dict[str, Any], key: str) -> str | None:
     """Return a measure before and after, as ``1.2 -> 1.3``."""
     found = _measures(record, key)
     return found and f"{number(found[0])} -> {number(found[1])}"
+
+
+def _percent(record: dict[str, Any], key: str) -> str | None:
+    """Return a share before and after, as ``97 -> 0 %``."""
+    found = _measures(record, key)
+    return found and f"{100.0 * found[0]:.3g} -> {100.0 * found[1]:.3g} %"
 
 
 def _ratio(record: dict[str, Any], key: str) -> str | None:

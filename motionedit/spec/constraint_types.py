@@ -10,12 +10,10 @@ from motionedit.spec.constraints import TYPES, ConstraintItem, Placed, Recruitin
 from motionedit.spec.faults import Fault, FaultyValueError, faulty, show
 from motionedit.spec.items import EffectorItem
 from motionedit.spec.model import mappings_in
+from motionedit.spec.plants import PLANTS, PlantsSpec
 from motionedit.spec.points import LENGTH_KEYS, SPLINE_KEYS
 from motionedit.spec.scalars import Vector, one_of, word
 from motionedit.spec.values import EffectorSpec, parse_effectors
-
-# Named in the contract for later work.
-LATER_TYPES = ("footplants",)
 
 
 class PositionConstraint(Recruiting, Placed, EffectorItem, ConstraintItem):
@@ -189,6 +187,43 @@ class FloorConstraint(Recruiting, ConstraintItem):
         return tuple(key for key in super().key_names() if key not in ("ease_in", "ease_out", "points"))
 
 
+class FootplantsConstraint(Recruiting, ConstraintItem):
+    """Planted feet stand: each plant in one place, heel and toe, rolling over the toe as in the input."""
+
+    has_angle = True
+    only_warns = True
+
+    type: Literal["footplants"] = Field(description="The type: footplants.")
+    feet: Annotated[str | tuple[str, ...], kinds.ANKLES] = Field(
+        default="auto", description="Which feet: auto (both), or a list of ankles."
+    )
+    plants: Annotated[PlantsSpec, PLANTS] = Field(
+        default=PlantsSpec(),
+        description="When they stand: auto (as `info --contacts` shows them), a CSV file (clip,foot,part,first,last), "
+        "or intervals by ankle.",
+    )
+    height: Annotated[str | float, kinds.OWN_HEIGHT] = Field(
+        default="input",
+        description="input: each plant keeps its own height; a number: the lower of heel and toe stands on that height "
+        "along up, clip units, and the body comes along.",
+    )
+    at: Annotated[Literal["input", "path"], kinds.word("input", "path")] = Field(
+        default="input",
+        description="input: plants stay where they are; path: each moves, as a whole, where positions asked of the "
+        "root take it.",
+    )
+
+    @property
+    def default_name(self) -> str:
+        """The name of one that gives none."""
+        return self.type
+
+    @classmethod
+    def key_names(cls) -> tuple[str, ...]:
+        """Return its keys: plants have their own times."""
+        return tuple(key for key in super().key_names() if key not in ("ease_in", "ease_out", "points"))
+
+
 def _with_known_type(value: object) -> object:
     """Return the value itself where it is a mapping whose type is known; pydantic's union needs no words then."""
     if not isinstance(value, dict):
@@ -196,8 +231,6 @@ def _with_known_type(value: object) -> object:
     names = tuple(TYPES)
     if "type" not in value:
         raise faulty(f"is missing; it is {one_of(names)}", "type")
-    if value["type"] in LATER_TYPES and value["type"] not in TYPES:
-        raise faulty(f"{value['type']} is not supported yet", "type")
     try:
         word(value["type"], names)
     except FaultyValueError as error:

@@ -1,7 +1,7 @@
 """What constraints of edit-prioritized share: the keys that every type has, and those of several, [PRIO] section 4."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self, get_args
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, get_args
 
 from pydantic import Field
 
@@ -78,6 +78,10 @@ class ConstraintItem(Item):
     )
     ease_out: Annotated[Duration, kinds.DURATION] = Field(
         default=EASE, description="Ramp back to the input's trajectory after the last point (see defaults)."
+    )
+    follow: Annotated[Literal["input", "reference"], kinds.word("input", "reference")] = Field(
+        default="input",
+        description="Whose paths and postures shifts, rides and eases start from: the input's, or the reference's.",
     )
     points: tuple[Point, ...] = Field(
         default=(), description="When and where; none: as in the input, over the whole clip."

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from functools import partial
+from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple
 
 from pydantic import AfterValidator, Field, ValidationInfo
@@ -148,6 +149,14 @@ def _constraints_apart(constraints: tuple[ConstraintItem, ...], info: Validation
     return taken_apart([item.with_defaults(defaults) for item in constraints], "constraints")
 
 
+def _reference(value: object, context: Context) -> str:
+    path = Path(scalars.name(value, what="a clip or a folder"))
+    return str(path if context.folder is None else context.folder / path)
+
+
+REFERENCE = Kind(_reference, "a clip or a folder", {"type": "string", "minLength": 1})
+
+
 class EditPrioritizedSpec(Document):
     """Everything edit-prioritized is told."""
 
@@ -184,10 +193,21 @@ class EditPrioritizedSpec(Document):
         description="Parameter of the trajectory S: time, or the paper's index with piecewise-linear T(t).",
     )
     solver: LayeredSolver = Field(default=LayeredSolver(), description="Settings of the solver.")
+    reference: Annotated[str | None, REFERENCE] = Field(
+        default=None,
+        description="Another version of the clip, or a folder with clips of the same relative names: footplants take "
+        "plants and places from it, and constraints that say follow: reference their paths.",
+    )
     recruiting_rule: Annotated[Literal["expand", "error", "ignore"], kinds.word("expand", "error", "ignore")] = Field(
         default="expand",
         description="What a breach of eq. (2) leads to: expand the layer above, an error, or nothing.",
     )
+
+    @property
+    def event_files(self) -> tuple[Path, ...]:
+        """Files that frames of events, and plants, were read from."""
+        given = (getattr(each, "plants", None) for each in self.constraints)
+        return (*super().event_files, *(plants.file for plants in given if plants is not None and plants.file))
 
     @classmethod
     def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:

@@ -138,6 +138,15 @@ def either(choices: Sequence[str], other: Kind) -> Kind:
     return Kind(parse, words, {"anyOf": [{"enum": list(choices)}, other.json]})
 
 
+def either_number(choice: str) -> Kind:
+    """Return the kind of a word or a number."""
+
+    def parse(value: object, _context: Context) -> object:
+        return value if value == choice else scalars.number(value)
+
+    return Kind(parse, f"{choice} or a number", {"anyOf": [{"const": choice}, _NUMBER]})
+
+
 FLAG = Kind(_plainly(scalars.flag), "true or false", {"type": "boolean"})
 NAME = Kind(lambda value, _context: scalars.name(value, what="a name"), "a name", _NAME)
 JOINT = Kind(_plainly(values.parse_joint), "a joint's name", _NAME)
@@ -149,6 +158,9 @@ JOINTS_OR_NONE = Kind(
 )
 # The same, where feet and toes found in the skeleton stand for what is not given.
 FEET = Kind(_plainly(values.parse_joints), "a list of joints", _JOINTS)
+# The same, where ankles found in the skeleton stand for `auto`.
+ANKLES = either(("auto",), JOINTS)
+OWN_HEIGHT = either_number("input")
 VECTOR = Kind(_plainly(scalars.vector), "three numbers [x, y, z]", _VECTOR)
 DIRECTION = Kind(_plainly(scalars.direction), "a direction [x, y, z]", _VECTOR)
 AXES = Kind(

@@ -18,7 +18,7 @@ from motionedit.spec.text_files import read_text
 from motionedit.spec.yaml_tree import Node, read_tree
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
     from motionedit.spec.document import Document
     from motionedit.spec.edit_pc import EditPcSpec
@@ -145,6 +145,29 @@ def load_spec(spec: Spec, command: str, **changes: Unpack[Overrides]) -> LoadedS
     if faults or model is None:
         raise _together(faults, tree, label)
     return LoadedSpec(model, path, label, data, tree, listed)
+
+
+def with_reference(loaded: LoadedSpec[EditPrioritizedSpec], reference: str) -> LoadedSpec[EditPrioritizedSpec]:
+    """Return a spec with another reference, a path as the command line has it; reports tell it, too."""
+    model = loaded.model.model_copy(update={"reference": reference})
+    return replace(loaded, model=model, data={**loaded.data, "reference": reference})
+
+
+def spec_command(path: Path, commands: Collection[str]) -> str:
+    """Return the command that a file is a spec of.
+
+    Raises
+    ------
+    MotionEditError
+        The file cannot be read, or its schema is none of the commands'.
+    """
+    tree, _ = _tree(path, "COMMAND")
+    schema = tree.plain().get("schema")
+    match = _SCHEMA.fullmatch(schema) if isinstance(schema, str) else None
+    if match is None or match[1] not in commands:
+        message = f"must be one of {', '.join(schema_name(command) for command in commands)}"
+        raise _together([Fault(message, ("schema",))], tree, str(path))
+    return match[1]
 
 
 def _tree_of_mapping(spec: Mapping[str, Any], command: str) -> tuple[Node, list[Fault]]:

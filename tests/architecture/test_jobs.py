@@ -15,6 +15,8 @@ HANDED_OVER = {
     "fit_pca": {"normalize.normalization_file"},
     "edit_pc": {"preview.with_page"},
     "edit_prioritized": {"preview.with_page"},
+    # Whether a spec fits a clip the edit says, and what unit it is likely in, `info`.
+    "check": {"edit_prioritized.job", "info.job"},
 }
 
 

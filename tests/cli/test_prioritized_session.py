@@ -682,9 +682,9 @@ def test_the_world_transforms_of_the_input_are_given_back_before_the_edit_is_sol
         made.append(weakref.ref(poses))
         return poses
 
-    def solved(*arguments):
+    def solved(*arguments, **named):
         held.extend(each() for each in made)
-        return solve(*arguments)
+        return solve(*arguments, **named)
 
     monkeypatch.setattr(clip_facts.kinematics, "forward", noted)
     monkeypatch.setattr(edit_prioritized, "edit_by_priorities", solved)

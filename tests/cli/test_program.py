@@ -27,7 +27,7 @@ def command_of(name):
 def test_help_lists_the_commands_in_the_order_of_work(run):
     listed = run("--help").stdout.partition("Commands:")[2].partition("Example")[0].split("\n")
     assert [line.split()[0] for line in listed if line.strip()] == [
-        *("normalize", "fit-pca", "edit-pc", "edit-prioritized", "info", "diff", "preview", "schema")
+        *("normalize", "fit-pca", "edit-pc", "edit-prioritized", "info", "diff", "preview", "check", "schema")
     ]
 
 

@@ -16,7 +16,7 @@ from motionedit.core.priorities.passes import solve
 from motionedit.core.priorities.recruiting import Breach, Reach, Recruits, breaches, expanded
 from motionedit.core.priorities.settings import Passes
 from motionedit.core.priorities.switching import eased_from_others
-from motionedit.core.priorities.targets import errors_of, with_targets
+from motionedit.core.priorities.targets import NOBODY, Follows, errors_of, with_targets
 from motionedit.core.trace import frame_blocks
 from motionedit.dataclass import dataclass
 
@@ -121,18 +121,28 @@ def _carriers(body: Body, motion: Motion) -> set[int]:
 
 
 def prepare(
-    motion: Motion, constraints: Sequence[Constraint], body: Body, settings: LayeredSettings
+    motion: Motion,
+    constraints: Sequence[Constraint],
+    body: Body,
+    settings: LayeredSettings,
+    *,
+    follows: Follows = NOBODY,
 ) -> tuple[Run, list[Breach]]:
     """Return an edit that is ready to be solved, and the breaches of the recruiting rule; raises as `recruit`."""
     recruits, found = recruit(constraints, motion, body, rule=settings.recruiting_rule)
-    asked = with_targets(motion, constraints, recruits, body, settings)
+    asked = with_targets(motion, constraints, recruits, body, settings, follows=follows)
     smoothing = settings.smoothing
     run = eased_from_others(asked, smoothing) if isinstance(smoothing, Passes) else run_of(asked)
     return run, found
 
 
 def edit_by_priorities(
-    motion: Motion, constraints: Sequence[Constraint], body: Body, settings: LayeredSettings
+    motion: Motion,
+    constraints: Sequence[Constraint],
+    body: Body,
+    settings: LayeredSettings,
+    *,
+    follows: Follows = NOBODY,
 ) -> PrioritizedEdit:
     """Return the motion deformed so that the constraints hold, each priority as far as those above it allow.
 
@@ -142,16 +152,18 @@ def edit_by_priorities(
         The input, lengths in normalised metres.
     constraints
         Lengths in normalised metres, too.
+    follows : Follows
+        Whose paths they follow, where it is not the motion's: it has been changed before, or there is a reference.
 
     Raises
     ------
     RecruitingError
         As `recruit`.
     """
-    run, found = prepare(motion, constraints, body, settings)
+    run, found = prepare(motion, constraints, body, settings, follows=follows)
     passed = solve(run, settings.smoothing)
     state = passed.state
-    touched, moved = _changes(motion, state.motion, body.travel)
+    touched, moved = changes(follows.input or motion, state.motion, body.travel)
     return PrioritizedEdit(
         motion=state.motion,
         touched=touched,
@@ -167,7 +179,8 @@ def edit_by_priorities(
     )
 
 
-def _changes(before: Motion, after: Motion, travel: int) -> tuple[BoolArray, BoolArray]:
+def changes(before: Motion, after: Motion, travel: int) -> tuple[BoolArray, BoolArray]:
+    """Return which joints turn otherwise, shape (F, J), and where the travel goes otherwise, shape (F,)."""
     touched = np.empty(before.rotations.shape[:2], dtype=np.bool_)
     for block in frame_blocks(len(before)):
         # A turn so small is twice the vector part of its quaternion.

@@ -12,6 +12,7 @@ from motionedit.core.priorities.frames import run_of, solve_frames
 from motionedit.core.priorities.groups import Asked
 from motionedit.core.priorities.kinds.constraint import Scene, Targets
 from motionedit.core.priorities.sight import Sight, sight_of
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,18 +23,32 @@ if TYPE_CHECKING:
     from motionedit.core.priorities.settings import Body, LayeredSettings
 
 
+@dataclass(frozen=True, eq=False)
+class Follows:
+    """Whose paths constraints follow, where it is not those of the motion that is edited: see `Constraint.follow`."""
+
+    input: Motion | None = None
+    reference: Motion | None = None
+
+
+NOBODY = Follows()
+
+
 def with_targets(
     motion: Motion,
     constraints: Sequence[Constraint],
     recruits: Sequence[Recruits],
     body: Body,
     settings: LayeredSettings,
+    *,
+    follows: Follows = NOBODY,
 ) -> Asked:
-    """Return all that is asked of a motion, with the targets of every constraint."""
-    before = _seen(motion, constraints, body)
+    """Return all that is asked of a motion, with the targets of every constraint, which `follows` others' paths."""
+    before = _seen(follows.input or motion, constraints, body)
+    theirs = before if follows.reference is None else _seen(follows.reference, constraints, body)
+    seen = [theirs if each.follow == "reference" else before for each in constraints]
     free = [i for i, each in enumerate(constraints) if not each.waits_for_others]
-    first = Scene(before, settings.curve, {}, lambda: before)
-    found = {i: constraints[i].targets(first) for i in free}
+    found = {i: constraints[i].targets(Scene(seen[i], settings.curve, {}, lambda: before)) for i in free}
 
     @cache
     def others() -> Sight:
@@ -45,8 +60,11 @@ def with_targets(
         solved = solve_frames(alone, motion, reference=motion, pull_root=False)
         return _seen(solved.motion, constraints, body)
 
-    scene = Scene(before, settings.curve, _goals(constraints, found, len(motion)), others)
-    targets = tuple(found[i] if i in found else each.targets(scene) for i, each in enumerate(constraints))
+    goals = _goals(constraints, found, len(motion))
+    targets = tuple(
+        found[i] if i in found else each.targets(Scene(seen[i], settings.curve, goals, others))
+        for i, each in enumerate(constraints)
+    )
     none = (None,) * len(targets)
     return Asked(motion, tuple(constraints), tuple(recruits), targets, body, settings, none)
 

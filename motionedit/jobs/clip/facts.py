@@ -15,6 +15,7 @@ from motionedit.core.body.bones import find_bones, travel_joint
 from motionedit.core.body.contacts import find_plants, plants_of, sole_tracks
 from motionedit.core.body.rest_pose import rest_pose_frames
 from motionedit.core.body.up import find_up
+from motionedit.core.feet.phases import find_phases
 from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError
 
@@ -90,6 +91,12 @@ class ClipFacts:
         """When heels and toes stand, as `find_plants`."""
         motion = self.clip.motion
         return tuple(find_plants(motion, self.poses, self.anatomy, up=self.up, first=self.first))
+
+    @cached_property
+    def phases(self) -> tuple[Plant, ...]:
+        """The plants cut to what a foot can be held for in one place, as `find_phases`."""
+        frame_time = self.clip.motion.frame_time
+        return tuple(find_phases(self.poses, self.anatomy, self.plants, up=self.up, frame_time=frame_time))
 
     @property
     def last(self) -> int:

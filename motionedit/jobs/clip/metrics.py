@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from motionedit.core.body.contacts import plants_of
 from motionedit.core.body.quality import foot_drift, foot_slide_max
 from motionedit.core.body.steps import own_steps
+from motionedit.core.feet.measures import foot_measures
 from motionedit.core.trace import Trace, trace_of
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ def edit_metrics(facts: ClipFacts, before: Trace, after: Trace | None, *, steps:
         Of the change that the edit made, None where the edited motion has another timing.
     """
     motion = facts.clip.motion
-    plants = plants_of(before.tracks, facts.anatomy, up=facts.up, first=facts.first, frame_time=motion.frame_time)
+    plants = facts.phases
     metrics: dict[str, Any] = {"before": clip_metrics(facts, before, plants, own_steps(motion, first=facts.first))}
     if after is None:
         return {**metrics, "after": dict.fromkeys(metrics["before"]), "foot_drift_max": None}
@@ -52,9 +52,17 @@ def edit_metrics(facts: ClipFacts, before: Trace, after: Trace | None, *, steps:
 
 def clip_metrics(facts: ClipFacts, trace: Trace, plants: Sequence[Plant], steps: Steps | None) -> dict[str, Any]:
     """Return what is measured of one motion: the clip's own, or an edited one with its change's `steps`."""
-    joint = None if steps is None else steps.joint
+    joint, frame_time = None if steps is None else steps.joint, facts.clip.motion.frame_time
+    feet = foot_measures(trace.tracks, plants, facts.anatomy, up=facts.up, first=facts.first, frame_time=frame_time)
     return {
-        "foot_slide_max": foot_slide_max(trace.tracks, plants, up=facts.up, frame_time=facts.clip.motion.frame_time),
+        "foot_slide_max": foot_slide_max(trace.tracks, plants, up=facts.up, frame_time=frame_time),
+        "foot_skate_mean": feet.skate_mean,
+        "foot_skate_ratio": feet.skate_ratio,
+        "foot_sliding_share": feet.sliding_share,
+        "foot_drift_max": feet.drift_max,
+        "floor_penetration_share": feet.penetration_share,
+        "floor_penetration_max": feet.penetration_max,
+        "foot_floating_max": feet.floating_max,
         "jerk_rms": trace.jerk_rms,
         "step_max": None if steps is None else 0.0 if joint is None else float(steps.degrees[joint]),
         "step_frame": None if steps is None or joint is None else int(steps.frames[joint]),

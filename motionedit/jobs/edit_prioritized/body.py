@@ -39,7 +39,8 @@ _SHORTEST_LEG, _LONGEST_LEG = 0.3, 1.5
 class SizedClip:
     """A clip as it is solved: its motion in normalised metres, its body, and what the user should know of them.
 
-    `scale` is normalised metres (leg length 0.85 m) per clip unit; `masses` are in clip units.
+    `scale` is normalised metres (leg length 0.85 m) per clip unit; `masses` are in clip units. `before` is the clip
+    itself, where its feet were made to stand before the edit, and `lowered` (F,) how far its pelvis was for that.
     """
 
     facts: ClipFacts
@@ -48,6 +49,13 @@ class SizedClip:
     masses: Masses
     scale: float
     warnings: tuple[str, ...]
+    before: Motion | None = None
+    lowered: FloatArray | None = None
+
+    @property
+    def input(self) -> Motion:
+        """The clip itself in normalised metres."""
+        return self.before or self.motion
 
 
 def sized_clip(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults: Faults) -> SizedClip:

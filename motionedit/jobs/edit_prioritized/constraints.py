@@ -20,8 +20,10 @@ from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.axes import GivenAxes
 from motionedit.jobs.clip.edit_record import DEFAULT_ANGLE_TOLERANCE, DEFAULT_TOLERANCE
 from motionedit.jobs.clip.faults import Faults
+from motionedit.jobs.edit_prioritized.feet_in_clip import FeetInClip
 from motionedit.spec import kinds
 from motionedit.spec.faults import listed
+from motionedit.spec.plants import PLANTS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -69,6 +71,7 @@ def clip_constraints(
     *,
     scale: float,
     faults: Faults,
+    relative: str = "",
 ) -> list[ClipConstraint]:
     """Return the spec's constraints in a clip; what the clip lacks goes to `faults`.
 
@@ -78,15 +81,17 @@ def clip_constraints(
         Frame of each event that the spec names.
     scale : float
         Normalised metres per clip unit.
+    relative : str
+        What files call the clip: its path below the given folder, or its name.
     """
-    found = []
+    found: list[ClipConstraint] = []
     for spec in loaded.model.constraints:
         own = Faults()
-        constraint = _Resolver(loaded, facts, events, scale, own).constraint(spec)
+        constraints = _Resolver(loaded, facts, events, scale, own, relative).constraints(spec)
         for error in own.errors:
             faults.add(error)
         met = spec.met_within
-        found.append(
+        found += [
             ClipConstraint(
                 constraint=replace(constraint, yields=not spec.counts_for_strict),
                 tolerance=DEFAULT_TOLERANCE / scale if met.position is None else met.position,
@@ -94,7 +99,8 @@ def clip_constraints(
                 may_give_way=met.off,
                 counts=spec.counts_for_strict,
             )
-        )
+            for constraint in constraints
+        ]
     return found
 
 
@@ -110,9 +116,10 @@ class _Resolver:
     events: Mapping[str, float]
     scale: float
     faults: Faults
+    relative: str
 
-    def constraint(self, spec: ConstraintItem) -> Constraint:
-        """Return the constraint, lengths in normalised metres."""
+    def constraints(self, spec: ConstraintItem) -> tuple[Constraint, ...]:
+        """Return the constraints that an item stands for, lengths in normalised metres."""
         place = resolve.Place(self.loaded, spec.keys, self.facts.clip.label)
         frame_time = self.facts.clip.motion.frame_time
         own = {each.key: each for each in spec.own_values()}
@@ -122,7 +129,7 @@ class _Resolver:
         measured = {key: given.pop(key) for key in spec.measure_keys}
         if measured:
             given["measure"] = axes.measure(counted=measured.get("axes", (0, 1, 2)), base=measured.get("relative_to"))
-        found = KINDS[spec.type](
+        found = KINDS[spec.type].several(
             name=str(spec.name),
             priority=spec.priority,
             weight=spec.weight,
@@ -130,9 +137,11 @@ class _Resolver:
             ease_in=spec.ease_in.in_frames(frame_time),
             ease_out=spec.ease_out.in_frames(frame_time),
             since=self.facts.first,
+            follow=spec.follow,
             **given,
         )
-        self._check_recruits(found, place)
+        for each in found:
+            self._check_recruits(each, place)
         return found
 
     def _value(self, own: OwnValue, constraint: Place) -> Any:  # noqa: ANN401  of any kind
@@ -142,10 +151,14 @@ class _Resolver:
             return tuple(joint for _, joint in self.facts.anatomy.foot_points)
         if value is None:
             return None
+        feet = FeetInClip(self.facts, self.events, self.faults, self.relative)
         ways: dict[Kind, Callable[[Any, Place], object]] = {
             kinds.EFFECTORS: lambda given, at: self._effector(given[0], at),
             kinds.EFFECTOR: self._effector,
             kinds.BODY_POINTS: self._body_points,
+            kinds.ANKLES: feet.ankles,
+            PLANTS: feet.plants,
+            kinds.OWN_HEIGHT: lambda given, _place: None if given == "input" else given,
             kinds.HEIGHT: lambda given, _place: Level(self.facts.up, given * self.scale),
             kinds.RECRUIT: self._rule,
             kinds.JOINT: self._joint,

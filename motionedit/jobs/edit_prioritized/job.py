@@ -9,9 +9,10 @@ import numpy as np
 
 from motionedit.core.body.steps import change_steps
 from motionedit.core.bvh import edited_pieces, unedited_bytes
-from motionedit.core.motion import Motion
+from motionedit.core.motion import Motion, scaled
 from motionedit.core.priorities.edit import PrioritizedEdit, RecruitingError, edit_by_priorities
 from motionedit.core.priorities.settings import LayeredSettings, PaperFilter, Passes
+from motionedit.core.priorities.targets import Follows
 from motionedit.core.trace import blocks_of, forward_blocks, frame_blocks
 from motionedit.dataclass import dataclass
 from motionedit.jobs.batch.one_clip import Outcome
@@ -29,6 +30,8 @@ from motionedit.jobs.edit_prioritized.constraints import clip_constraints
 from motionedit.jobs.edit_prioritized.loose_feet import loose_feet
 from motionedit.jobs.edit_prioritized.record import edit_record
 from motionedit.jobs.edit_prioritized.recruits import breach_error, breach_warnings, immovable_warnings, layer_lines
+from motionedit.jobs.edit_prioritized.reference import reference_facts, reference_files, refuse_missing_reference
+from motionedit.jobs.edit_prioritized.standing import on_feet
 from motionedit.jobs.preview.with_page import with_page
 
 if TYPE_CHECKING:
@@ -42,6 +45,7 @@ if TYPE_CHECKING:
     from motionedit.core.trace import Trace
     from motionedit.jobs.batch.plan import ClipTask, RunOptions
     from motionedit.jobs.batch.run import BatchResult
+    from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.jobs.edit_prioritized.body import SizedClip
     from motionedit.jobs.edit_prioritized.constraints import ClipConstraint
     from motionedit.spec.edit_prioritized import EditPrioritizedSpec
@@ -58,7 +62,9 @@ def run(
     UsageError
         As `plan`.
     """
-    return edit(loaded, plan(clips, output, options=options, depends=loaded.files), options=options)
+    refuse_missing_reference(loaded.model.reference)
+    depends = (*loaded.files, *reference_files(loaded.model.reference))
+    return edit(loaded, plan(clips, output, options=options, depends=depends), options=options)
 
 
 def edit(loaded: LoadedSpec[EditPrioritizedSpec], tasks: Sequence[ClipTask], *, options: RunOptions) -> BatchResult:
@@ -88,11 +94,22 @@ class EditByPriorities:
                 unedited_bytes(clip), record, warnings=sized.warnings, details=("no constraints: the same bytes",)
             )
         settings = self.settings(clip)
+        other = self._reference(clip, task)
+        if any(each.constraint.stands for each in constraints):
+            kept = sized.facts if other is None else other
+            sized, constraints = on_feet(self.loaded, sized, constraints, kept, curve=settings.curve)
         before = feet_of(sized.facts, blocks_of(sized.facts.poses), masses=sized.masses)
-        # What is read off the input has been read: an edit of a long clip needs the room.
+        # What is read off the input has been read, its phases with it: an edit of a long clip needs the room.
+        _ = sized.facts.phases
         sized.facts.forget_poses()
         try:
-            edit = edit_by_priorities(sized.motion, [c.constraint for c in constraints], sized.body, settings)
+            edit = edit_by_priorities(
+                sized.motion,
+                [c.constraint for c in constraints],
+                sized.body,
+                settings,
+                follows=Follows(sized.input, None if other is None else scaled(other.clip.motion, sized.scale)),
+            )
         except RecruitingError as error:
             asked = [c.constraint for c in constraints]
             raise breach_error(self.loaded, error.breach, asked, sized.facts) from None
@@ -114,6 +131,14 @@ class EditByPriorities:
         faults.raise_all(f"what the spec names and {task.label} lacks")
         return replace(sized, warnings=(*sized.warnings, *_warnings_of(constraints, sized.masses))), constraints
 
+    def _reference(self, clip: Clip, task: ClipTask) -> ClipFacts | None:
+        """Return the facts of the clip's reference, None where there is none."""
+        spec = self.loaded.model
+        if spec.reference is None:
+            return None
+        given = resolve.body(spec.body, clip.motion.skeleton, resolve.Place(self.loaded, ("body",), task.label))
+        return reference_facts(spec.reference, clip, task, up=spec.up, given=given)
+
     def _constraints(self, sized: SizedClip, task: ClipTask, faults: Faults) -> list[ClipConstraint]:
         spec = self.loaded.model
         place = resolve.Place(self.loaded, ("events",), task.label)
@@ -124,7 +149,8 @@ class EditByPriorities:
             return event_frames(spec.events, sized.facts, place, known=known)
 
         events = faults.get(frames, otherwise=none)
-        return clip_constraints(self.loaded, sized.facts, events, scale=sized.scale, faults=faults)
+        scale, relative = sized.scale, task.relative
+        return clip_constraints(self.loaded, sized.facts, events, scale=scale, faults=faults, relative=relative)
 
     def settings(self, clip: Clip) -> LayeredSettings:
         """Return how the spec wants a clip solved."""
@@ -157,7 +183,7 @@ class EditByPriorities:
         if changed:
             parts = (_in_clip_units(edit, sized, block) for block in frame_blocks(len(clip.motion)))
             after = feet_of(facts, forward_blocks(parts), masses=sized.masses)
-        steps = change_steps(sized.motion, edit.motion, first=facts.first)
+        steps = change_steps(sized.input, edit.motion, first=facts.first)
         rough = rough_lines(
             facts,
             edit.motion,

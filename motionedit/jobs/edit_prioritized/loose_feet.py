@@ -9,8 +9,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motionedit.core.body.contacts import plants_of
-
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -34,13 +32,10 @@ def loose_feet(sized: SizedClip, constraints: Sequence[Constraint], before: Trac
         By `feet_of`.
     """
     facts = sized.facts
-    plants = plants_of(
-        before.tracks, facts.anatomy, up=facts.up, first=facts.first, frame_time=facts.clip.motion.frame_time
-    )
     lines = []
     for foot, leg in zip(("left", "right"), facts.anatomy.legs or (), strict=False):
         free = ~_placed(sized, constraints, leg)
-        found = _drift(before, after, [plant for plant in plants if plant.foot == foot], free)
+        found = _drift(before, after, [plant for plant in facts.phases if plant.foot == foot], free)
         if found is not None and found[0] * sized.scale > _LOOSE:
             lines.append(
                 f"the {foot} foot moves by {found[0]:.3g} at frame {found[1]} while it is planted, and no constraint "

@@ -203,7 +203,7 @@ def _defects(facts: ClipFacts) -> list[dict[str, Any]]:
 
 def _metrics(facts: ClipFacts) -> dict[str, Any]:
     trace = feet_of(facts, blocks_of(facts.poses))
-    return clip_metrics(facts, trace, facts.plants, own_steps(facts.clip.motion, first=facts.first))
+    return clip_metrics(facts, trace, facts.phases, own_steps(facts.clip.motion, first=facts.first))
 
 
 def _contacts(facts: ClipFacts) -> list[dict[str, Any]]:
@@ -222,7 +222,7 @@ def _contacts(facts: ClipFacts) -> list[dict[str, Any]]:
 
 
 def _plants(facts: ClipFacts) -> list[dict[str, Any]]:
-    """Return when whole feet stand, with the phases of heel and toe."""
+    """Return when whole feet stand, with the phases of heel and toe, and those in which `footplants` hold them."""
     return [
         {
             "foot": plant.foot,
@@ -230,6 +230,14 @@ def _plants(facts: ClipFacts) -> list[dict[str, Any]]:
             "seconds": (plant.stop - plant.start + 1) * facts.clip.motion.frame_time,
             **{
                 part: [[phase.start, phase.stop] for phase in plant.phases if phase.part == part]
+                for part in ("heel", "toe")
+            },
+            "held": {
+                part: [
+                    [phase.start, phase.stop]
+                    for phase in facts.phases
+                    if (phase.foot, phase.part) == (plant.foot, part) and plant.start <= phase.start <= plant.stop
+                ]
                 for part in ("heel", "toe")
             },
         }

@@ -44,6 +44,7 @@ def _facts(record: dict[str, Any]) -> list[str]:
         ("hinges", _hinges(record["hinges"])),
         ("defects", _defects(record["defects"])),
         ("quality", _quality(record["metrics"])),
+        ("feet", _feet(record["metrics"])),
         *(("warning", warning) for warning in record["warnings"]),
     ]
     return [f"  {name:<12}{line}".rstrip() for name, text in facts for name, line in _labelled(name, text)]
@@ -78,6 +79,18 @@ def _unit(unit: dict[str, Any] | None) -> str:
 def _quality(metrics: dict[str, float]) -> str:
     jerk, slide = metrics["jerk_rms"], metrics["foot_slide_max"]
     return f"jerk {jerk:.6g} units/s^3, planted feet slide at up to {slide:.4g} units/s"
+
+
+def _feet(metrics: dict[str, float]) -> str:
+    """Return how well the feet stand, lengths in metres at a leg of 0.85 m."""
+    mean, ratio = metrics["foot_skate_mean"], metrics["foot_skate_ratio"]
+    sliding, drift = metrics["foot_sliding_share"], metrics["foot_drift_max"]
+    under, depth = metrics["floor_penetration_share"], metrics["floor_penetration_max"]
+    return (
+        f"toes skate at {100.0 * mean:.3g} cm/s, in {100.0 * ratio:.3g} % of frames; plants slide in "
+        f"{100.0 * sliding:.3g} %, drift by {100.0 * drift:.2g} cm; below the floor in {100.0 * under:.3g} %, "
+        f"by {100.0 * depth:.2g} cm (leg 0.85 m)"
+    )
 
 
 def _anatomy(anatomy: dict[str, Any]) -> Iterator[tuple[str, str]]:
@@ -141,8 +154,11 @@ def _plants(plants: Sequence[dict[str, Any]]) -> list[str]:
         for plant in plants:
             if plant["foot"] == foot:
                 start, stop = plant["frames"]
-                phases = (f"{part} {_spans(plant[part])}" for part in ("heel", "toe") if plant[part])
+                phases = [f"{part} {_spans(plant[part])}" for part in ("heel", "toe") if plant[part]]
                 lines.append(f"    {foot:<6}{start:>6} to {stop:>6}  {plant['seconds']:8.3f}  {'; '.join(phases)}")
+                held = [f"{part} {_spans(spans)}" for part, spans in plant["held"].items() if spans]
+                if held != phases:
+                    lines.append(f"    {'held':>32}  {'; '.join(held) or 'nowhere'}")
     return lines
 
 

@@ -5,6 +5,7 @@ from motionedit.core.priorities.kinds.com import CenterOfMass
 from motionedit.core.priorities.kinds.constraint import Constraint
 from motionedit.core.priorities.kinds.distance import Distance
 from motionedit.core.priorities.kinds.floor import Floor
+from motionedit.core.priorities.kinds.footplants import Footplants
 from motionedit.core.priorities.kinds.orientation import Orientation
 from motionedit.core.priorities.kinds.pose import Pose
 from motionedit.core.priorities.kinds.position import Position
@@ -12,5 +13,5 @@ from motionedit.core.priorities.kinds.posture import Posture
 
 # By their names in a spec.
 KINDS: dict[str, type[Constraint]] = {
-    kind.type: kind for kind in (Position, Orientation, Pose, CenterOfMass, Aim, Posture, Distance, Floor)
+    kind.type: kind for kind in (Position, Orientation, Pose, CenterOfMass, Aim, Posture, Distance, Floor, Footplants)
 }

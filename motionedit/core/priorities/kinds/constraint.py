@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 
@@ -20,9 +20,11 @@ from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
+    from typing import Self
 
     from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.body.center_of_mass import Masses
+    from motionedit.core.measure import Level
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.points import Columns
     from motionedit.core.priorities.problem import Task
@@ -224,6 +226,8 @@ class Constraint(ABC):
         The first frame after a rest pose, which no ease reads.
     yields : bool
         Nobody counts on it: where meeting it makes the motion step, it gives way.
+    follow : {"input", "reference"}
+        Whose paths and turns it reads.
     """
 
     type: ClassVar[str]
@@ -233,6 +237,10 @@ class Constraint(ABC):
     places_effector: ClassVar[bool] = False
     # Its place is the body's center of mass, which needs masses.
     weighs: ClassVar[bool] = False
+    # Its goals come from where feet stand, which is found before the edit.
+    stands: ClassVar[bool] = False
+    # What keys of a spec are called here, where it is not by their own names.
+    called: ClassVar[Mapping[str, str]] = {}
     # On a page: its symbol, and whether its places are looked at rather than gone to.
     symbol: ClassVar[Symbol] = "ring"
     looks: ClassVar[bool] = False
@@ -245,6 +253,12 @@ class Constraint(ABC):
     ease_out: float = 0.0
     since: int = 0
     yields: bool = False
+    follow: Literal["input", "reference"] = "input"
+
+    @classmethod
+    def several(cls, **given: Any) -> tuple[Self, ...]:  # noqa: ANN401  what its fields are
+        """Return the constraints that one item of a spec stands for: one, of most kinds."""
+        return (cls(**given),)
 
     @property
     def at(self) -> Effector | None:
@@ -255,6 +269,11 @@ class Constraint(ABC):
     def one_sided(self) -> bool:
         """Whether its task is a limit, met on all of one side: see `WeightedTask`."""
         return False
+
+    @property
+    def least(self) -> Level | None:
+        """The height below which it wants no foot; None where it says nothing of it."""
+        return None
 
     def active(self, frames: int) -> tuple[int, int]:
         """Return the first and last frame at which the constraint is active."""

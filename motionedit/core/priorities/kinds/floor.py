@@ -47,6 +47,11 @@ class Floor(Constraint):
         """Above the floor nothing is asked for."""
         return True
 
+    @property
+    def least(self) -> Level:
+        """The floor."""
+        return self.height
+
     def recruits(self, movable: Movable) -> Recruits:
         """Return the chains of all points, as far as the user lets them."""
         skeleton = movable.skeleton

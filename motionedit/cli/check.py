@@ -1,0 +1,79 @@
+"""The command `motionedit check`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from motionedit.cli.options import clips_argument, jobs_option, lenient_option, report_option, spec_option, up_option
+from motionedit.cli.verbosity import verbosity_options
+
+if TYPE_CHECKING:
+    from motionedit.jobs.check import Checked
+
+
+@click.command(
+    "check",
+    epilog="""\b
+    Example, a folder in which no toe may skate in a tenth of the frames:
+      motionedit check takes/ --limit foot_skate_ratio=0.1""",
+)
+@clips_argument
+@spec_option(required=False)
+@click.option(
+    "--limit",
+    "limits",
+    multiple=True,
+    metavar="MEASURE=NUMBER",
+    help="What a measure may be at most, such as foot_skate_ratio=0.1; may be repeated.",
+)
+@click.option(
+    "--limits",
+    "limits_file",
+    metavar="FILE",
+    type=click.Path(path_type=Path, dir_okay=False),
+    help="Limits, one 'measure: number' a line; --limit goes before it.",
+)
+@jobs_option
+@up_option
+@lenient_option
+@report_option
+@verbosity_options
+def command(
+    clips: tuple[Path, ...],
+    spec_path: Path | None,
+    limits: tuple[str, ...],
+    limits_file: Path | None,
+    jobs: int,
+    up: str,
+    lenient: bool,  # noqa: FBT001  click passes its options by name
+    report: Path | None,
+) -> int:
+    """Tell whether clips, and a spec for them, are fit for use.
+
+    Prints a line for each clip: rate, frames, unit, up, what of a body was found, skating and sliding feet, feet
+    below the floor or above it, jumps, flips and rest-pose frames; with a spec also what it names and the clip lacks.
+
+    Exits with 0; 3 where a clip passes a limit or the spec does not fit it; 1 where one cannot be read.
+
+    CLIPS are BVH files, folders of them, or '-' for standard input.
+    """
+    from motionedit.cli.finish import show_failures, write_report
+    from motionedit.jobs import check
+    from motionedit.jobs.batch.plan import find_clips, refuse_overwriting
+    from motionedit.report.record import report_bytes
+
+    if report is not None:
+        refuse_overwriting([report], [task.source for task in find_clips(clips) if task.source])
+    held = check.limits_of(limits, limits_file)
+    found: list[Checked] = []
+    for one in check.run(clips, limits=held, spec=spec_path, up=up, lenient=lenient, jobs=jobs):
+        found.append(one)
+        if one.line and str(report) != "-":
+            click.echo(one.line)
+    show_failures([one.failure for one in found if one.failure is not None])
+    if report is not None:
+        write_report(report_bytes("check", [one.record for one in found]), report)
+    return check.exit_code(found)

@@ -1,0 +1,97 @@
+"""A correction that is known while a foot stands, and eases between: as smooth as it can be, and near to nothing."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core.arrays import frozen
+
+if TYPE_CHECKING:
+    from motionedit.core.arrays import BoolArray, FloatArray
+
+# Seconds: how slowly a correction bends. The third difference weighs (BENDS / dt)^6 in its square,
+BENDS = 0.02
+# the correction itself so much: it fades to nothing within `BENDS` / _FADES^(1/6), half of it in 0.1 s.
+_FADES = 0.01
+_STIFF = 100.0
+# Seconds from what is known after which it has faded away.
+_FADED = 1.2
+_ORDER = 3  # of the difference: so many known frames in a row part what is before them from what is after
+
+
+def eased(
+    values: FloatArray,
+    known: BoolArray,
+    frame_time: float,
+    *,
+    bends: float = BENDS,
+    stiff: FloatArray | None = None,
+) -> FloatArray:
+    """Return a correction at all frames, shape (F, k), from its values at those that are `known`, shape (F,).
+
+    The others make sum (tau / dt)^6 |third difference|^2 + 0.01 |c|^2 least; what is known stands to the
+    bit. All zeros where nothing is known.
+
+    Parameters
+    ----------
+    bends : float
+        tau, seconds.
+    stiff : shape (F,), optional
+        0 to 1: where the correction shall fade at once, weighing `_STIFF` times as much.
+    """
+    found = np.where(known[:, None], values, 0.0)
+    frames = np.flatnonzero(known)
+    if not len(frames):
+        return found
+    reach = max(_ORDER, round(_FADED / frame_time))
+    weight = (bends / frame_time) ** (2 * _ORDER)
+    for start, stop in _stretches(known, reach):
+        mask = known[start:stop]
+        if stiff is None or not stiff[start:stop][~mask].any():
+            extension = _extension(mask.tobytes(), weight)
+        else:
+            extension = _extended(mask, weight, _FADES * (1.0 + _STIFF * stiff[start:stop]))
+        found[start:stop][~mask] = extension @ found[start:stop][mask]
+    return found
+
+
+def _stretches(known: BoolArray, reach: int) -> list[tuple[int, int]]:
+    """Return (start, stop) of the stretches that are solved by themselves: each with something known and something not.
+
+    They end within runs of at least `_ORDER` known frames, or where the correction has faded away.
+    """
+    fixed = known.copy()
+    at = np.flatnonzero(known)
+    distance = np.full(len(known), len(known))
+    frames = np.arange(len(known))
+    after = np.searchsorted(at, frames)
+    for nearest in (at[np.clip(after, 0, len(at) - 1)], at[np.clip(after - 1, 0, len(at) - 1)]):
+        distance = np.minimum(distance, np.abs(frames - nearest))
+    fixed |= distance > reach
+    # The first frames of a third difference all of which are fixed part the problem.
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], (~fixed).astype(np.int8), [0]))))
+    found: list[tuple[int, int, int]] = []
+    for first, stop in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
+        begin, end = max(first - _ORDER, 0), min(stop + _ORDER, len(known))
+        if found and first - found[-1][2] < _ORDER:
+            found[-1] = (found[-1][0], end, stop)
+        else:
+            found.append((begin, end, stop))
+    return [(begin, end) for begin, end, _ in found]
+
+
+@lru_cache(maxsize=512)
+def _extension(mask: bytes, weight: float) -> FloatArray:
+    """Return `_extended` of a mask of bytes, which many stretches share."""
+    known = np.frombuffer(mask, dtype=np.bool_)
+    return frozen(_extended(known, weight, np.full(len(known), _FADES)))
+
+
+def _extended(known: BoolArray, weight: float, fades: FloatArray) -> FloatArray:
+    """Return the matrix that makes the unknown frames of a stretch from its known ones, shape (n,)."""
+    difference = np.diff(np.eye(len(known)), n=_ORDER, axis=0)
+    normal = weight * difference.T @ difference + np.diag(fades)
+    return np.asarray(np.linalg.solve(normal[np.ix_(~known, ~known)], -normal[np.ix_(~known, known)]), dtype=np.float64)

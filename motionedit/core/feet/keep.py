@@ -1,0 +1,173 @@
+"""Feet kept: a motion whose feet stand where another one's stand, by its legs and, where they are short, its pelvis."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core import rotations as rot
+from motionedit.core.arrays import frozen
+from motionedit.core.body.bends import find_bends
+from motionedit.core.feet.goals import FootGoal, Ground, foot_goal
+from motionedit.core.feet.legs import legs_onto, turns_freely
+from motionedit.core.feet.pelvis import drop_needed, smooth_cover
+from motionedit.core.feet.reach import reach_of, released, stretch
+from motionedit.core.feet.stance import feet_of, foot_path, stance_of
+from motionedit.core.kinematics import WorldPoses, forward
+from motionedit.core.motion import Motion
+from motionedit.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from motionedit.core.arrays import FloatArray
+    from motionedit.core.body.anatomy import Anatomy
+    from motionedit.core.body.contacts import Plant
+    from motionedit.core.feet.stance import Foot, Stance
+
+
+# In the air a leg may stretch to this share of its length, or as far as it is already.
+_STRAIGHT = 0.998
+# Between these shares of its length corrections of a leg in the air fade.
+_NEAR = 0.975, 0.995
+_GIVE = 0.006  # of a leg: 5 mm
+
+
+@dataclass(frozen=True, eq=False)
+class Kept:
+    """A motion whose feet stand, the goals of its feet, and how far its pelvis was lowered, shape (F,)."""
+
+    motion: Motion
+    goals: tuple[FootGoal, ...]
+    lowered: FloatArray
+
+
+def keep_feet(
+    motion: Motion,
+    reference: Motion,
+    anatomy: Anatomy,
+    plants: Sequence[Plant],
+    *,
+    up: FloatArray,
+    travel: int,
+    first: int = 0,
+) -> Kept:
+    """Return a motion with planted feet that stand where another version of it has them.
+
+    A plant is one place: a heel's, a toe's, and the foot's turn while both are down; the ankle rolls over the toe,
+    and the foot comes down about the heel. Between plants the corrections ease (`eased`), so that the foot's own
+    path and roll in the air are kept. Legs alone are solved onto them (`legs_onto`); where a leg is too short the
+    pelvis is lowered smoothly. Without plants the motion is returned as it is.
+
+    Parameters
+    ----------
+    motion : Motion
+        The one to be mended: an edited one.
+    reference : Motion
+        The one whose places the plants keep, of the same frames and skeleton; the motion itself, to mend its sliding.
+    anatomy : Anatomy
+        In the motions' unit, as all lengths.
+    plants : sequence of Plant
+        When heels and toes stand, as `find_plants` of the reference.
+    up : shape (3,)
+        Signed unit axis.
+    travel : int
+        The joint that carries the travel.
+    first : int
+        The first frame after a rest pose; earlier ones stay.
+    """
+    poses = forward(motion)
+    theirs = poses if reference is motion else forward(reference)
+    stances = []
+    for foot in feet_of(anatomy):
+        here = [plant for plant in plants if plant.foot == foot.side]
+        stances.append((foot, stance_of(foot_path(theirs, foot), here)))
+    return onto_stances(motion, poses, stances, anatomy, up=up, travel=travel, first=first)
+
+
+def onto_stances(
+    motion: Motion,
+    poses: WorldPoses,
+    stances: Sequence[tuple[Foot, Stance]],
+    anatomy: Anatomy,
+    *,
+    up: FloatArray,
+    travel: int,
+    first: int,
+    floor: float | None = None,
+) -> Kept:
+    """Return a motion whose feet stand as given, as `keep_feet`; `poses` are its world transforms.
+
+    Where there is a `floor`, a height along up, no foot in the air goes below it.
+    """
+    stances = [
+        (foot, released(stance, poses.positions[:, foot.leg.thigh], reach_of(poses, foot))) for foot, stance in stances
+    ]
+    lowered = np.zeros(len(motion))
+    if not any(stance.down.any() for _, stance in stances):
+        return Kept(motion, (), lowered)
+    ground = Ground(up, floor, _GIVE * anatomy.leg_length, anatomy.leg_length)
+    bends = {bend.joint: bend for bend in find_bends(motion.skeleton, poses, anatomy, first=first)}
+    if motion.skeleton.position_axes[travel]:
+        # Heels that stand say how low the pelvis is; a foot on its toe rolls on instead.
+        for foot, stance in stances:
+            hip, reach = poses.positions[:, foot.leg.thigh], reach_of(poses, foot)
+            lowered = np.maximum(lowered, np.where(stance.heel, drop_needed(hip, stance.heel_place, reach, up), 0.0))
+        lowered[:first] = 0.0
+        lowered[first:] = smooth_cover(lowered[first:], motion.frame_time)
+    shift = -lowered[:, None] * up
+    goals = tuple(
+        foot_goal(
+            foot,
+            foot_path(poses, foot),
+            stance,
+            motion.frame_time,
+            hip=poses.positions[:, foot.leg.thigh] + shift,
+            reach=reach_of(poses, foot),
+            stiff=_stiff(poses, foot),
+            ground=ground,
+        )
+        for foot, stance in stances
+    )
+    solved = [g for g in goals if turns_freely(motion.skeleton, g.foot.leg) and g.foot.leg.knee in bends]
+    wanted = []
+    final = {goal.foot.side: goal for goal in goals}
+    for goal in solved:
+        places = _within_reach(
+            goal, poses.positions[:, goal.foot.leg.thigh] + shift, reach_of(poses, goal.foot, _STRAIGHT)
+        )
+        wanted.append((goal.foot.leg, bends[goal.foot.leg.knee], places, goal.turns))
+        final[goal.foot.side] = replace(goal, places=places)
+    stood = legs_onto(motion, poses, wanted, shift=shift)
+    done = shifted(stood, shift, poses, travel) if lowered.any() else stood
+    rotations = done.rotations.copy()
+    rotations[:first] = motion.rotations[:first]
+    return Kept(
+        Motion(done.skeleton, frozen(rotations), done.translations, done.frame_time), tuple(final.values()), lowered
+    )
+
+
+def _stiff(poses: WorldPoses, foot: Foot) -> FloatArray:
+    """Return how near to its reach a leg is, shape (F,): from 0 to 1 over `_NEAR`, smoothly."""
+    way, length = stretch(poses, foot)
+    near = np.clip((way / np.maximum(length, np.finfo(float).tiny) - _NEAR[0]) / (_NEAR[1] - _NEAR[0]), 0.0, 1.0)
+    return near * near * (3.0 - 2.0 * near)
+
+
+def _within_reach(goal: FootGoal, hip: FloatArray, reach: FloatArray) -> FloatArray:
+    """Return a foot's places, those in the air brought within reach: no leg straightens for a correction's end."""
+    way = goal.places - hip
+    far = np.linalg.norm(way, axis=1)
+    share = np.where(goal.down, 1.0, np.minimum(1.0, reach / np.maximum(far, np.finfo(float).tiny)))
+    return hip + share[:, None] * way
+
+
+def shifted(motion: Motion, shift: FloatArray, poses: WorldPoses, travel: int) -> Motion:
+    """Return a motion whose travel is shifted in the world, shape (F, 3)."""
+    parent = int(motion.skeleton.parents[travel])
+    local = shift if parent < 0 else rot.rotate(rot.conjugate(poses.rotations[:, parent]), shift)
+    translations = motion.translations.copy()
+    translations[:, int(np.searchsorted(motion.skeleton.translated, travel))] += local
+    return Motion(motion.skeleton, motion.rotations, frozen(translations), motion.frame_time)

@@ -1,0 +1,99 @@
+"""How well feet stand, measured as others do, at a leg of 0.85 m: skate, sliding in plants, and what is too deep.
+
+The floor is the plane up = 0 of the file.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core.units import STANDARD_LEG
+from motionedit.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from motionedit.core.arrays import FloatArray
+    from motionedit.core.body.anatomy import Anatomy
+    from motionedit.core.body.contacts import Plant
+
+_NEAR_FLOOR = 0.05  # m: a toe below it should not move (Kimodo)
+_SKATES = 0.2  # m/s: a toe near the floor that is faster skates (Kimodo)
+_SLIDES = 0.01  # m/s: a planted toe that is faster slides (HoloSoma)
+_UNDER = 0.01  # m: deeper is under the floor
+
+
+@dataclass(frozen=True)
+class FootMeasures:
+    """What is measured of a motion's feet, in metres at a leg of 0.85 m.
+
+    Attributes
+    ----------
+    skate_mean : float
+        Mean speed on the ground plane of toes below 5 cm, m/s; 0 where none is.
+    skate_ratio : float
+        Share of such frames in which the toe is faster than 0.2 m/s.
+    sliding_share : float
+        Share of planted frames in which the point moves on the ground plane by more than 1 cm/s.
+    penetration_share : float
+        Share of frames in which a heel or toe is below the floor by more than 1 cm.
+    penetration_max : float
+        How deep the deepest heel or toe is below the floor, m.
+    drift_max : float
+        How far a planted point is from its mean place at most, m.
+    floating_max : float
+        How high above the floor the highest plant of a toe stands, m.
+    """
+
+    skate_mean: float
+    skate_ratio: float
+    sliding_share: float
+    penetration_share: float
+    penetration_max: float
+    drift_max: float
+    floating_max: float
+
+
+def foot_measures(
+    tracks: FloatArray, plants: Sequence[Plant], anatomy: Anatomy, *, up: FloatArray, first: int, frame_time: float
+) -> FootMeasures:
+    """Return the measures of feet whose `sole_points` go along tracks, shape (F, P, 3), clip units.
+
+    Parameters
+    ----------
+    plants
+        When they stand; for an edit those of its input. Toes are counted in shares, heels where a foot has no toe.
+    first : int
+        The first frame after a rest pose; earlier ones are left out.
+    """
+    points = anatomy.sole_points
+    if not points or anatomy.leg_length <= 0.0 or len(tracks) - first < 2:
+        return FootMeasures(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    places = tracks * (STANDARD_LEG / anatomy.leg_length)
+    heights = places @ up
+    level = places - heights[..., None] * up
+    speeds = np.linalg.norm(np.diff(level, axis=0), axis=-1) / frame_time
+    toes = [p for p, point in enumerate(points) if point.part == "toe"] or list(range(len(points)))
+    near = (heights[first:-1, toes] < _NEAR_FLOOR) & (heights[first + 1 :, toes] < _NEAR_FLOOR)
+    skating = speeds[first:, toes][near]
+    slides, drifts, highest = [], [0.0], [0.0]
+    for plant in plants:
+        span = slice(plant.start, plant.stop + 1)
+        mean = places[span, plant.point].mean(axis=0)
+        drifts.append(float(np.linalg.norm(places[span, plant.point] - mean, axis=-1).max()))
+        if plant.point in toes:
+            slides.append(speeds[plant.start : plant.stop, plant.point] > _SLIDES)
+            highest.append(float(heights[span, plant.point].mean()))
+    sliding = np.concatenate(slides) if slides else np.zeros(0)
+    depth = -heights[first:].min(axis=1)
+    return FootMeasures(
+        skate_mean=float(skating.mean()) if len(skating) else 0.0,
+        skate_ratio=float((skating > _SKATES).mean()) if len(skating) else 0.0,
+        sliding_share=float(sliding.mean()) if len(sliding) else 0.0,
+        penetration_share=float((depth > _UNDER).mean()),
+        penetration_max=max(float(depth.max()), 0.0),
+        drift_max=max(drifts),
+        floating_max=max(highest),
+    )

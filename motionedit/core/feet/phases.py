@@ -1,0 +1,59 @@
+"""The phases of a motion's stances: plants as feet can keep them, from those that each point shows by itself."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from motionedit.core.body.contacts import sole_tracks
+from motionedit.core.feet.reach import reach_of, released
+from motionedit.core.feet.settled import settled
+from motionedit.core.feet.stance import feet_of, foot_path, stance_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from motionedit.core.arrays import FloatArray
+    from motionedit.core.body.anatomy import Anatomy
+    from motionedit.core.body.contacts import Plant
+    from motionedit.core.feet.stance import Foot
+    from motionedit.core.kinematics import WorldPoses
+
+_ROUNDS = 6
+_SHORTEST = 0.05  # s: what is left of a heel's plant, with its toe down for a part of it, or it is none
+
+
+def find_phases(
+    poses: WorldPoses, anatomy: Anatomy, plants: Sequence[Plant], *, up: FloatArray, frame_time: float
+) -> list[Plant]:
+    """Return plants as they can be held in one place, in the order of their first frames: `settled`, then `kept`."""
+    calm = settled(plants, sole_tracks(poses, anatomy), anatomy, up=up, frame_time=frame_time)
+    return sorted(kept(calm, poses, anatomy, frame_time), key=lambda plant: (plant.start, plant.foot, plant.point))
+
+
+def kept(plants: Sequence[Plant], poses: WorldPoses, anatomy: Anatomy, frame_time: float) -> list[Plant]:
+    """Return plants whose heels come up once the leg cannot hold them in one place any more (`released`)."""
+    found: list[Plant] = []
+    shortest = max(2, round(_SHORTEST / frame_time))
+    for foot in feet_of(anatomy):
+        here = [plant for plant in plants if plant.foot == foot.side]
+        for _ in range(_ROUNDS):
+            shorter = _held(here, poses, foot, shortest)
+            if shorter == here:
+                break
+            here = shorter
+        found += here
+    return found
+
+
+def _held(plants: Sequence[Plant], poses: WorldPoses, foot: Foot, shortest: int) -> list[Plant]:
+    stance = stance_of(foot_path(poses, foot), plants)
+    heel = released(stance, poses.positions[:, foot.leg.thigh], reach_of(poses, foot)).heel
+    found = []
+    for plant in plants:
+        stop = plant.stop
+        while plant.part == "heel" and stop >= plant.start and not heel[stop]:
+            stop -= 1
+        if stop == plant.stop or (stop - plant.start >= shortest and stance.toe[plant.start : stop + 1].any()):
+            found.append(replace(plant, stop=stop))
+    return found

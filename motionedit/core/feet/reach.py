@@ -1,0 +1,49 @@
+"""How far from its hip an ankle may be, and the heels that come up where it would be farther."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core.feet.stance import runs
+
+if TYPE_CHECKING:
+    from motionedit.core.arrays import FloatArray
+    from motionedit.core.feet.stance import Foot, Stance
+    from motionedit.core.kinematics import WorldPoses
+
+# A leg is stretched to this share of its length, or as far as it is already: nearer to straight, a millimetre at the
+# ankle is a centimetre at the knee.
+REACH = 0.994
+_ROUNDING = 1e-9
+
+
+def stretch(poses: WorldPoses, foot: Foot) -> tuple[FloatArray, FloatArray]:
+    """Return the way from hip to ankle, and the leg's length, shape (F,) each."""
+    hip, knee, ankle = (poses.positions[:, j] for j in (foot.leg.thigh, foot.leg.knee, foot.leg.ankle))
+    length = np.linalg.norm(knee - hip, axis=1) + np.linalg.norm(ankle - knee, axis=1)
+    return np.linalg.norm(ankle - hip, axis=1), length
+
+
+def reach_of(poses: WorldPoses, foot: Foot, share: float = REACH) -> FloatArray:
+    """Return how far from its hip an ankle may be, shape (F,): a share of the leg, or as far as it is already."""
+    way, length = stretch(poses, foot)
+    return np.maximum(share * length, way)
+
+
+def released(stance: Stance, hip: FloatArray, reach: FloatArray) -> Stance:
+    """Return a stance whose heels come up once the hip (F, 3) is out of their reach (F,), where the toe stays down.
+
+    A body that goes on over its foot ends a heel's plant; a strain that passes is the pelvis' to bear.
+    """
+    far = stance.flat & (np.linalg.norm(hip - stance.heel_place, axis=1) > reach * (1.0 + _ROUNDING))
+    if not far.any():
+        return stance
+    heel = stance.heel.copy()
+    for start, stop in runs(stance.flat):
+        if far[stop] and not stance.heel[stop + 1 : stop + 2].any():
+            near = np.flatnonzero(~far[start : stop + 1])
+            heel[start + (int(near[-1]) + 1 if len(near) else 0) : stop + 1] = False
+    return replace(stance, heel=heel)

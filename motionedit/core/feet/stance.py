@@ -1,0 +1,170 @@
+"""Where a foot stands: its phases, heel and toe down or one of them, and one place for each plant."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core import rotations as rot
+from motionedit.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from motionedit.core.arrays import BoolArray, FloatArray, IntArray
+    from motionedit.core.body.anatomy import Anatomy, Leg, SolePoint
+    from motionedit.core.body.contacts import Plant
+    from motionedit.core.kinematics import WorldPoses
+
+
+@dataclass(frozen=True, eq=False)
+class Foot:
+    """A leg, and the toe on which its foot stands: None where it has none."""
+
+    side: str
+    leg: Leg
+    toe: SolePoint | None
+
+
+def feet_of(anatomy: Anatomy) -> list[Foot]:
+    """Return the feet, left before right; none where no legs were found."""
+    toes = {point.foot: point for point in anatomy.sole_points if point.part == "toe"}
+    sides = zip(("left", "right"), anatomy.legs or (), strict=False)
+    return [Foot(side, leg, toes.get(side)) for side, leg in sides]
+
+
+@dataclass(frozen=True, eq=False)
+class FootPath:
+    """How a foot goes: its ankle (F, 3), its turn (F, 4), and its toe in the ankle's frame (F, 3), in some unit."""
+
+    ankle: FloatArray
+    turn: FloatArray
+    toe: FloatArray
+
+    @property
+    def toe_place(self) -> FloatArray:
+        """The toe in the world, shape (F, 3)."""
+        return self.ankle + rot.rotate(self.turn, self.toe)
+
+
+def foot_path(poses: WorldPoses, foot: Foot) -> FootPath:
+    """Return how a foot goes in a motion."""
+    ankle, turn = poses.positions[:, foot.leg.ankle], poses.rotations[:, foot.leg.ankle]
+    if foot.toe is None:
+        return FootPath(ankle, turn, np.zeros_like(ankle))
+    effector = foot.toe.effector
+    toe = poses.positions[:, effector.joint]
+    if effector.offset.any():
+        toe = toe + rot.rotate(poses.rotations[:, effector.joint], effector.offset)
+    return FootPath(ankle, turn, rot.rotate(rot.conjugate(turn), toe - ankle))
+
+
+@dataclass(frozen=True, eq=False)
+class Stance:
+    """Where and when a foot stands.
+
+    Attributes
+    ----------
+    heel, toe : shape (F,)
+        Whether that part is down.
+    heel_place, toe_place : shape (F, 3)
+        Where it stands then.
+    flat : shape (F,)
+        Whether the whole foot is: both parts.
+    turn : shape (F, 4)
+        How the foot is turned then.
+    whole : shape (F,)
+        The number of the stand to which a frame belongs, plants that hang together; -1 in the air.
+    """
+
+    heel: BoolArray
+    toe: BoolArray
+    heel_place: FloatArray
+    toe_place: FloatArray
+    turn: FloatArray
+    whole: IntArray
+
+    @property
+    def flat(self) -> BoolArray:
+        """Whether heel and toe are down, shape (F,)."""
+        return self.heel & self.toe
+
+    @property
+    def down(self) -> BoolArray:
+        """Whether anything is down, shape (F,)."""
+        return self.heel | self.toe
+
+
+def stance_of(path: FootPath, plants: Sequence[Plant]) -> Stance:
+    """Return where a foot stands in a motion, from the plants of its heel and its toe.
+
+    Every plant has one place, and the foot, while heel and toe are down, one turn: the mean of the motion's own.
+    Plants that share frames hang together, by the foot between them: they are moved as a whole, and as little as can
+    be, so that the mean of their ways from the motion's own places is nothing.
+    """
+    frames = len(path.ankle)
+    tracks = {"heel": path.ankle, "toe": path.toe_place}
+    number = np.full((2, frames), -1, dtype=np.intp)
+    for k, plant in enumerate(plants):
+        number[0 if plant.part == "heel" else 1, plant.start : plant.stop + 1] = k
+    turn = path.turn.copy()
+    links: list[tuple[int, int, FloatArray]] = []
+    for heel, toe in sorted({(int(a), int(b)) for a, b in number.T.tolist() if a >= 0 and b >= 0}):
+        both = (number[0] == heel) & (number[1] == toe)
+        turn[both] = mean_turn(path.turn[both])
+        links.append((heel, toe, rot.rotate(turn[both][0], path.toe[both].mean(axis=0))))
+    links += _meetings(path, plants)
+    whole, offsets = _chained(len(plants), links)
+    places = np.zeros((len(plants), 3))
+    for stand in set(whole):
+        members = [k for k in range(len(plants)) if whole[k] == stand]
+        spans = [slice(plants[k].start, plants[k].stop + 1) for k in members]
+        ways = [tracks[plants[k].part][span] - offsets[k] for k, span in zip(members, spans, strict=True)]
+        base = np.concatenate(ways).mean(axis=0)
+        places[members] = base + offsets[members]
+    numbers = np.where(number[0] >= 0, number[0], number[1])
+    stands = np.append(np.array(whole, dtype=np.intp), -1)
+    places = np.concatenate((places, np.zeros((1, 3))))
+    return Stance(number[0] >= 0, number[1] >= 0, places[number[0]], places[number[1]], turn, stands[numbers])
+
+
+def _meetings(path: FootPath, plants: Sequence[Plant]) -> list[tuple[int, int, FloatArray]]:
+    """Return the links of heels and toes of which one comes down as the other goes up: the way at that frame."""
+    links = []
+    for h, heel in enumerate(plants):
+        for t, toe in enumerate(plants):
+            if (heel.part, toe.part) == ("heel", "toe") and (heel.stop + 1 == toe.start or toe.stop + 1 == heel.start):
+                at = max(heel.start, toe.start)
+                links.append((h, t, rot.rotate(path.turn[at], path.toe[at])))
+    return links
+
+
+def mean_turn(turns: FloatArray) -> FloatArray:
+    """Return the mean of rotations that are near to each other, quaternions (n, 4), shape (4,)."""
+    same = np.where((turns @ turns[0] < 0.0)[:, None], -turns, turns).sum(axis=0)
+    mean: FloatArray = same / np.linalg.norm(same)
+    return mean
+
+
+def _chained(count: int, links: Sequence[tuple[int, int, FloatArray]]) -> tuple[list[int], FloatArray]:
+    """Return to which stand each plant belongs, and its offset (count, 3) within it.
+
+    Heels do not overlap heels, nor toes toes: so links never close a circle, and one way leads to each plant.
+    """
+    whole, offsets = list(range(count)), np.zeros((count, 3))
+    for heel, toe, way in links:
+        if whole[heel] == whole[toe]:
+            continue
+        members = [k for k in range(count) if whole[k] == whole[toe]]
+        # The toe's side is moved so that toe - heel is the way.
+        offsets[members] += offsets[heel] + way - offsets[toe]
+        for k in members:
+            whole[k] = whole[heel]
+    return whole, offsets
+
+
+def runs(there: BoolArray) -> list[tuple[int, int]]:
+    """Return (first, last) of the runs of True, shape (F,)."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], there.astype(np.int8), [0]))))
+    return [(int(a), int(b) - 1) for a, b in zip(edges[::2], edges[1::2], strict=True)]

@@ -1,0 +1,69 @@
+"""Stands moved as a whole: where the body's new path takes them, or onto one height."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from motionedit.core.arrays import FloatArray
+    from motionedit.core.feet.stance import Stance
+
+# Seconds over which the body follows the heights of its feet.
+_FOLLOWS = 0.25
+
+
+def carried(stance: Stance, shift: FloatArray) -> Stance:
+    """Return a stance each of whose stands is moved by the mean shift, shape (F, 3), of its frames."""
+    ways = np.zeros((len(shift), 3))
+    for stand in np.unique(stance.whole[stance.whole >= 0]):
+        here = stance.whole == stand
+        ways[here] = shift[here].mean(axis=0)
+    return replace(stance, heel_place=stance.heel_place + ways, toe_place=stance.toe_place + ways)
+
+
+def on_height(stance: Stance, height: float, up: FloatArray) -> Stance:
+    """Return a stance each of whose stands has the lower of its heel and toe on a height along up.
+
+    A stand of a heel alone is moved as the others are, by their mean: how thick a heel is, it does not show.
+    """
+    lifts: dict[int, float] = {}
+    stands = [int(stand) for stand in np.unique(stance.whole[stance.whole >= 0])]
+    for stand in stands:
+        here = stance.whole == stand
+        toes = stance.toe_place[here & stance.toe] @ up
+        heels = stance.heel_place[here & stance.heel] @ up
+        if len(toes):
+            lifts[stand] = height - min(float(toes.min()), float(heels.min(initial=np.inf)))
+    usual = float(np.mean(list(lifts.values()))) if lifts else 0.0
+    ways = np.zeros((len(stance.whole), 3))
+    for stand in stands:
+        ways[stance.whole == stand] = lifts.get(stand, usual) * up
+    return replace(stance, heel_place=stance.heel_place + ways, toe_place=stance.toe_place + ways)
+
+
+def body_shift(stances: Sequence[tuple[Stance, Stance]], frame_time: float, up: FloatArray) -> FloatArray:
+    """Return how the body comes along as its feet are lifted, shape (F, 3): from one stance to the other of each foot.
+
+    The mean lift of the feet that are down, linear between, smoothed over a quarter of a second.
+    """
+    frames = len(stances[0][0].whole)
+    total, count = np.zeros(frames), np.zeros(frames)
+    for before, after in stances:
+        way = np.where(before.heel[:, None], after.heel_place - before.heel_place, after.toe_place - before.toe_place)
+        total += np.where(before.down, way @ up, 0.0)
+        count += before.down
+    down = np.flatnonzero(count)
+    if not len(down) or not np.any(total):
+        return np.zeros((frames, 3))
+    lift = np.interp(np.arange(frames), down, total[down] / count[down])
+    half = max(1, round(_FOLLOWS / frame_time))
+    box = np.full(2 * half + 1, 1.0 / (2 * half + 1))
+    for _ in range(3):
+        lift = np.convolve(np.pad(lift, half, mode="edge"), box, mode="valid")
+    shift: FloatArray = lift[:, None] * up
+    return shift

@@ -1,0 +1,235 @@
+"""Are clips fit for use, and a spec for them: a line a clip, limits that are passed, and errors."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from motionedit.core.body import ground
+from motionedit.core.body.quality import find_defects
+from motionedit.core.body.steps import own_steps
+from motionedit.core.trace import blocks_of
+from motionedit.dataclass import dataclass
+from motionedit.errors import EXIT_CLIP_FAILED, EXIT_DONE, EXIT_OUT_OF_TOLERANCE, MotionEditError, UsageError
+from motionedit.jobs.batch.one_clip import read_task
+from motionedit.jobs.batch.plan import find_clips
+from motionedit.jobs.clip.facts import facts_of
+from motionedit.jobs.clip.metrics import clip_metrics, feet_of
+from motionedit.jobs.info.job import likely_unit
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+    from pathlib import Path
+
+    from motionedit.core.bvh import Clip
+    from motionedit.jobs.batch.plan import ClipTask
+    from motionedit.jobs.clip.facts import ClipFacts
+
+# What a limit may be set on, each with its words; a clip passes it where its measure is larger.
+MEASURES = {
+    "foot_skate_mean": "m/s",
+    "foot_skate_ratio": "share",
+    "foot_sliding_share": "share",
+    "foot_drift_max": "m",
+    "floor_penetration_share": "share",
+    "floor_penetration_max": "m",
+    "foot_floating_max": "m",
+    "jerk_rms": "units/s^3",
+    "step_max": "degrees",
+    "jumps": "count",
+    "flips": "count",
+    "rest_pose_frames": "count",
+    "frames": "count",
+}
+
+
+@dataclass(frozen=True)
+class Checked:
+    """What came of one clip: its record, its line, and why it cannot be read, or that it cannot."""
+
+    record: dict[str, Any]
+    line: str
+    failure: MotionEditError | None = None
+
+
+def limits_of(pairs: Sequence[str], file: Path | None = None) -> dict[str, float]:
+    """Return limits by measure, from a file of ``measure: number`` lines and ``measure=number`` words, which win.
+
+    Raises
+    ------
+    UsageError
+        A measure that is none, a limit that is no number, a file that cannot be read.
+    """
+    found: dict[str, float] = {}
+    if file is not None:
+        try:
+            lines = file.read_text(encoding="utf-8").splitlines()
+        except (OSError, UnicodeDecodeError) as error:
+            raise UsageError(f"cannot read the limits: {error}", file=str(file)) from None
+        for number, line in enumerate(lines, start=1):
+            text = line.partition("#")[0].strip()
+            if text:
+                found |= _limit(text, ":", where=f"{file}:{number}")
+    for pair in pairs:
+        found |= _limit(pair, "=", where="--limit")
+    return found
+
+
+def _limit(text: str, sign: str, *, where: str) -> dict[str, float]:
+    name, found, value = (part.strip() for part in text.partition(sign))
+    if not found:
+        raise UsageError(f"{where}: must be MEASURE{sign}NUMBER, not '{text}'")
+    if name not in MEASURES:
+        raise UsageError(f"{where}: no measure '{name}'; they are {', '.join(MEASURES)}")
+    try:
+        limit = float(value)
+    except ValueError:
+        limit = math.nan
+    if not math.isfinite(limit):
+        raise UsageError(f"{where}: {name}: must be a number, not '{value}'")
+    return {name: limit}
+
+
+def run(
+    clips: Sequence[Path],
+    *,
+    limits: Mapping[str, float],
+    spec: Path | None = None,
+    up: str = "auto",
+    lenient: bool = False,
+    jobs: int = 1,
+) -> Iterator[Checked]:
+    """Yield what came of each clip, in order, whatever the number of `jobs`.
+
+    Raises
+    ------
+    UsageError
+        No clip at all.
+    MotionEditError
+        A spec that is faulty whatever the clip.
+    """
+    tasks = find_clips(clips)
+    check = None if spec is None else _spec_check(spec, tuple(task.relative for task in tasks))
+    one = partial(_checked, limits=dict(limits), check=check, up=up, lenient=lenient)
+    if jobs == 1 or len(tasks) < 2:
+        yield from map(one, tasks)
+        return
+    from concurrent.futures import ProcessPoolExecutor
+
+    with ProcessPoolExecutor(jobs or None) as pool:
+        yield from pool.map(one, tasks)
+
+
+def exit_code(found: Sequence[Checked]) -> int:
+    """Return 1 where a clip cannot be read, else 3 where one passes a limit or a spec does not fit, else 0."""
+    statuses = {each.record["status"] for each in found}
+    if "failed" in statuses:
+        return EXIT_CLIP_FAILED
+    return EXIT_OUT_OF_TOLERANCE if "unfit" in statuses else EXIT_DONE
+
+
+def _checked(
+    task: ClipTask, *, limits: Mapping[str, float], check: _SpecCheck | None, up: str, lenient: bool
+) -> Checked:
+    try:
+        clip = read_task(task, lenient=lenient)
+        facts = facts_of(clip, up=up)
+    except MotionEditError as error:
+        return Checked({"clip": task.label, "status": "failed", "message": str(error)}, "", error)
+    measures = _measures(facts)
+    passed = [name for name, limit in limits.items() if measures[name] > limit]
+    errors = [] if check is None else check.errors(clip, task)
+    reasons = [f"{name} {measures[name]:.4g} above {limits[name]:.4g}" for name in passed] + errors
+    record = {
+        "clip": task.label,
+        "status": "unfit" if reasons else "ok",
+        "message": "; ".join(reasons) or None,
+        "frame_rate": facts.clip.motion.frame_rate,
+        "up": ground.axis_name(facts.up),
+        "unit": likely_unit(facts.anatomy.leg_length),
+        "found": _found(facts),
+        "measures": measures,
+        "passed": passed,
+        "spec_errors": errors,
+        "warnings": [*clip.warnings, *facts.warnings, *facts.anatomy.missing],
+    }
+    return Checked(record, _line(record))
+
+
+def _measures(facts: ClipFacts) -> dict[str, float]:
+    motion = facts.clip.motion
+    steps = own_steps(motion, first=facts.first)
+    measured = clip_metrics(facts, feet_of(facts, blocks_of(facts.poses)), facts.phases, steps)
+    defects = find_defects(motion, first=facts.first)
+    counted = {
+        "jumps": sum(len(defect.frames) for defect in defects),
+        "flips": sum(defect.flips for defect in defects),
+        "rest_pose_frames": facts.first,
+        "frames": len(motion),
+    }
+    return {name: counted[name] if name in counted else float(measured[name]) for name in MEASURES}
+
+
+def _found(facts: ClipFacts) -> list[str]:
+    anatomy = facts.anatomy
+    parts = {"legs": anatomy.legs, "arms": anatomy.arms, "head": anatomy.head}
+    return [part for part, found in parts.items() if found is not None]
+
+
+def _line(record: Mapping[str, Any]) -> str:
+    """Return a clip's line."""
+    measures, unit = record["measures"], record["unit"]
+    words = [
+        f"{record['frame_rate']:.4g} Hz",
+        f"{measures['frames']} frames",
+        "unit unknown" if unit is None else f"{unit['name']}{'' if unit['likely'] else '?'}",
+        f"{record['up']} up",
+        ", ".join(record["found"]) or "nothing of a body found",
+        f"skate {100.0 * measures['foot_skate_mean']:.3g} cm/s, {100.0 * measures['foot_skate_ratio']:.3g} %",
+        f"sliding {100.0 * measures['foot_sliding_share']:.3g} %",
+        f"under floor {100.0 * measures['floor_penetration_share']:.3g} %",
+        f"floating {100.0 * measures['foot_floating_max']:.3g} cm",
+        f"{measures['jumps']} jumps, {measures['flips']} flips",
+        f"rest pose {measures['rest_pose_frames']}",
+    ]
+    reasons = f": {record['message']}" if record["message"] else ""
+    return f"{record['clip']}: {record['status']}{reasons} ({'; '.join(words)})"
+
+
+@dataclass(frozen=True)
+class _SpecCheck:
+    """A spec of edit-prioritized that clips are held against; of other commands it is read, and that is all."""
+
+    spec: Path
+    command: str
+    others: tuple[str, ...]
+
+    def errors(self, clip: Clip, task: ClipTask) -> list[str]:
+        """Return what the spec names and the clip lacks, a line each."""
+        if self.command != "edit-prioritized":
+            return []
+        from motionedit.jobs.edit_prioritized.job import EditByPriorities
+        from motionedit.spec.load import load_spec
+
+        try:
+            EditByPriorities(load_spec(self.spec, "edit-prioritized"), self.others).resolved(clip, task)
+        except MotionEditError as error:
+            return [str(each) for each in error.errors]
+        return []
+
+
+def _spec_check(spec: Path, others: tuple[str, ...]) -> _SpecCheck:
+    """Return what holds clips against a spec, which is read whole.
+
+    Raises
+    ------
+    MotionEditError
+        Its faults.
+    """
+    from motionedit.spec import SPEC_COMMANDS
+    from motionedit.spec.load import load_spec, spec_command
+
+    command = spec_command(spec, SPEC_COMMANDS)
+    load_spec(spec, command)  # type: ignore[call-overload]  # one of them
+    return _SpecCheck(spec, command, others)

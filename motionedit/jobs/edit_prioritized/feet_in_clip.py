@@ -1,0 +1,106 @@
+"""The feet and plants that a spec names, found in a clip."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import PurePosixPath
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core.kinematics import Effector
+from motionedit.dataclass import dataclass
+from motionedit.jobs.clip import resolve
+from motionedit.spec.faults import listed
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from motionedit.core.feet.asked import GivenPlants
+    from motionedit.jobs.clip.facts import ClipFacts
+    from motionedit.jobs.clip.faults import Faults
+    from motionedit.jobs.clip.resolve import Place
+    from motionedit.spec.plants import PlantsSpec
+
+
+@dataclass(frozen=True, eq=False)
+class FeetInClip:
+    """Where ankles and plants are looked for: a clip, its events, and what files call it; faults are collected."""
+
+    facts: ClipFacts
+    events: Mapping[str, float]
+    faults: Faults
+    relative: str
+
+    def ankles(self, named: str | Sequence[str], place: Place) -> tuple[Effector, ...]:
+        """Return the ankles that are named, or those of all legs."""
+        known = [leg.ankle for leg in self.facts.anatomy.legs or ()]
+        joints = tuple(known) if isinstance(named, str) else self._joints(named, place)
+        if not known:
+            self.faults.add(
+                place.error(f"no feet found in {place.clip}; body: in a spec says which joints are the legs")
+            )
+        for i, joint in enumerate(joints):
+            self._refuse_no_ankle(joint, place.at(i))
+        return tuple(Effector(joint, np.zeros(3)) for joint in joints)
+
+    def _refuse_no_ankle(self, joint: int, place: Place) -> None:
+        names, known = self.facts.clip.motion.skeleton.names, [leg.ankle for leg in self.facts.anatomy.legs or ()]
+        if joint not in known:
+            ankles = listed([names[j] for j in known])
+            self.faults.add(place.error(f"'{names[joint]}' is no ankle in {place.clip}; they are {ankles}"))
+
+    def _ankle(self, foot: str, place: Place) -> int | None:
+        """Return the ankle of a foot that is called left, right, or by its joint."""
+        sides = dict(zip(("left", "right"), self.facts.anatomy.legs or (), strict=False))
+        if foot in sides:
+            return sides[foot].ankle
+        joint = self._joint(foot, place)
+        if joint is not None:
+            self._refuse_no_ankle(joint, place)
+        return joint
+
+    def plants(self, given: PlantsSpec, place: Place) -> dict[int, GivenPlants] | None:
+        """Return the plants that the spec or its file gives, by ankle; None where they are to be found."""
+        found: dict[int, GivenPlants] = {}
+        if given.by_foot is not None:
+            motion = self.facts.clip.motion
+            for foot, intervals in given.by_foot.items():
+                joint = self._ankle(foot, place.at(foot))
+                for i, interval in enumerate(intervals):
+                    span: tuple[int, int] | None = self.faults.get(
+                        partial(
+                            resolve.frame_range,
+                            interval,
+                            place.at(foot, i),
+                            frames=len(motion),
+                            frame_time=motion.frame_time,
+                            events=self.events,
+                        ),
+                        otherwise=None,
+                    )
+                    if joint is not None and span is not None:
+                        found[joint] = (*found.get(joint, ()), ("heel", *span), ("toe", *span))
+            return found
+        if given.rows is None:
+            return None
+        mine = {self.relative, PurePosixPath(self.relative).stem}
+        for row in given.rows:
+            if row.clip in mine:
+                joint = self._ankle(row.foot, place)
+                if row.last > self.facts.last:
+                    self.faults.add(
+                        place.error(f"frame {row.last} is outside {place.clip}, whose last is {self.facts.last}")
+                    )
+                elif joint is not None:
+                    parts = ("heel", "toe") if row.part == "foot" else (row.part,)
+                    found[joint] = (*found.get(joint, ()), *((part, row.first, row.last) for part in parts))
+        return found
+
+    def _joint(self, name: str, place: Place) -> int | None:
+        return self.faults.get(lambda: resolve.joint(name, self.facts.clip.motion.skeleton, place), otherwise=None)
+
+    def _joints(self, names: Sequence[str], place: Place) -> tuple[int, ...]:
+        none: tuple[int, ...] = ()
+        skeleton = self.facts.clip.motion.skeleton
+        return self.faults.get(lambda: resolve.joints(names, skeleton, place), otherwise=none)

@@ -1,0 +1,61 @@
+"""The reference of a clip: another version of it, whose plants and paths constraints keep or follow."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from motionedit.core.skeleton import same_skeleton
+from motionedit.errors import ClipError, UsageError
+from motionedit.jobs.batch.one_clip import read_task
+from motionedit.jobs.batch.plan import ClipTask, folder_clips
+from motionedit.jobs.clip.facts import facts_of
+
+if TYPE_CHECKING:
+    from motionedit.core.body.anatomy import GivenBody
+    from motionedit.core.bvh import Clip
+    from motionedit.jobs.clip.facts import ClipFacts
+
+_SAME_TIME = 1e-6  # s
+
+
+def refuse_missing_reference(reference: str | None) -> None:
+    """Raise a UsageError where what is given is not there."""
+    if reference is not None and not Path(reference).exists():
+        raise UsageError("no such clip or folder to be the reference", file=reference)
+
+
+def reference_files(reference: str | None) -> list[Path]:
+    """Return the files of a reference: none of them is ever overwritten, and outputs depend on them."""
+    if reference is None:
+        return []
+    path = Path(reference)
+    return [clip.source for clip in folder_clips(path) if clip.source] if path.is_dir() else [path]
+
+
+def reference_facts(
+    reference: str, clip: Clip, task: ClipTask, *, up: str, given: GivenBody, lenient: bool = False
+) -> ClipFacts:
+    """Return the facts of a clip's reference: the file itself, or the clip of the same relative name in a folder.
+
+    Raises
+    ------
+    ClipError
+        It is not there, cannot be read, or is no version of the clip: another skeleton, frame count or rate.
+    """
+    path = Path(reference)
+    path = path / task.relative if path.is_dir() else path
+    if not path.is_file():
+        raise ClipError(f"has no reference: there is no {path}", file=task.label)
+    other = read_task(ClipTask(path, str(path), None, task.relative), lenient=lenient)
+    mine, theirs = clip.motion, other.motion
+    if not same_skeleton(mine.skeleton, theirs.skeleton):
+        raise ClipError(f"its reference {path} has another skeleton", file=task.label)
+    if len(mine) != len(theirs) or abs(mine.frame_time - theirs.frame_time) > _SAME_TIME:
+        raise ClipError(
+            f"its reference {path} has {len(theirs)} frames at {theirs.frame_rate:.6g} Hz, not {len(mine)} at "
+            f"{mine.frame_rate:.6g} Hz",
+            file=task.label,
+        )
+    return facts_of(replace(other, label=str(path)), up=up, given=given)

@@ -1,0 +1,157 @@
+"""Where feet shall stand in a clip, found before the edit: goals for each foot, and a motion that meets them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core.body.contacts import Plant
+from motionedit.core.feet.keep import onto_stances, shifted
+from motionedit.core.feet.stance import Stance, feet_of, foot_path, runs, stance_of
+from motionedit.core.feet.stands import body_shift, carried, on_height
+from motionedit.core.kinematics import forward
+from motionedit.core.motion import scaled
+from motionedit.core.priorities.kinds.constraint import Scene, Targets
+from motionedit.core.priorities.sight import sight_of
+from motionedit.jobs.clip.facts import Poses
+from motionedit.jobs.clip.faults import Faults
+from motionedit.jobs.edit_prioritized.body import sized_clip
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from motionedit.core.arrays import BoolArray, FloatArray
+    from motionedit.core.feet.asked import AsksToStand
+    from motionedit.core.feet.goals import FootGoal
+    from motionedit.core.feet.stance import Foot
+    from motionedit.core.priorities.kinds.constraint import Constraint
+    from motionedit.core.priorities.trajectories import Curve
+    from motionedit.jobs.clip.facts import ClipFacts
+    from motionedit.jobs.edit_prioritized.body import SizedClip
+    from motionedit.jobs.edit_prioritized.constraints import ClipConstraint
+    from motionedit.spec.edit_prioritized import EditPrioritizedSpec
+    from motionedit.spec.load import LoadedSpec
+
+
+def on_feet(
+    loaded: LoadedSpec[EditPrioritizedSpec],
+    sized: SizedClip,
+    constraints: Sequence[ClipConstraint],
+    reference: ClipFacts,
+    *,
+    curve: Curve,
+) -> tuple[SizedClip, list[ClipConstraint]]:
+    """Return a clip whose feet stand already, by its legs alone, and constraints that know where.
+
+    Parameters
+    ----------
+    reference : ClipFacts
+        The clip whose plants and places are kept: the clip's own, or another version of it.
+    """
+    facts, scale = sized.facts, sized.scale
+    standing = [each for each in constraints if each.constraint.stands]
+    stances = _stances(sized, standing, reference)
+    if not any(stance.down.any() for _, _, stance in stances):
+        warned = replace(sized, warnings=(*sized.warnings, "footplants: no foot stands in it; nothing is held"))
+        return warned, [each for each in constraints if each not in standing]
+    shift = _path_shift(sized, constraints, curve) if any(ask.follows_path for ask, _, _ in stances) else None
+    placed: list[tuple[Foot, Stance]] = []
+    lifts = []
+    for ask, foot, stance in stances:
+        moved = stance if shift is None or not ask.follows_path else carried(stance, shift)
+        lifted = moved if ask.height is None else on_height(moved, ask.height, facts.up)
+        lifts.append((moved, lifted))
+        placed.append((foot, lifted))
+    lift = body_shift(lifts, facts.clip.motion.frame_time, facts.up)
+    total = lift if shift is None else shift + lift
+    motion, poses = facts.clip.motion, facts.poses
+    if np.any(total):
+        motion = shifted(motion, total, poses, facts.travel)
+        poses = forward(motion)
+    floors = [each.constraint.least.height / scale for each in constraints if each.constraint.least is not None]
+    kept = onto_stances(
+        motion,
+        poses,
+        placed,
+        facts.anatomy,
+        up=facts.up,
+        travel=facts.travel,
+        first=facts.first,
+        floor=max(floors, default=None),
+    )
+    stood = replace(facts, clip=replace(facts.clip, motion=kept.motion), world=Poses(kept.motion))
+    again = sized_clip(loaded, stood, Faults())
+    found = replace(
+        sized, motion=scaled(kept.motion, scale), body=again.body, before=sized.motion, lowered=scale * kept.lowered
+    )
+    goals = {goal.foot.leg.ankle: goal for goal in kept.goals}
+    return found, [part for each in constraints for part in _with_goals(each, goals, constraints, sized)]
+
+
+def _stances(
+    sized: SizedClip, standing: Sequence[ClipConstraint], reference: ClipFacts
+) -> list[tuple[AsksToStand, Foot, Stance]]:
+    """Return what is asked of each foot, and where it stands in the reference."""
+    feet = {foot.leg.ankle: foot for foot in feet_of(sized.facts.anatomy)}
+    found: dict[int, tuple[AsksToStand, Foot, Stance]] = {}
+    for each in standing:
+        ask: AsksToStand = each.constraint  # type: ignore[assignment]  # it stands
+        foot = feet[ask.effector.joint]
+        if ask.plants is None:
+            plants = [plant for plant in reference.phases if plant.foot == foot.side]
+        else:
+            plants = [Plant(foot.side, part, foot.leg.ankle, 0, a, b, 0.0) for part, a, b in ask.plants]  # type: ignore[arg-type]
+        found.setdefault(ask.effector.joint, (ask, foot, stance_of(foot_path(reference.poses, foot), plants)))
+    return list(found.values())
+
+
+def _path_shift(sized: SizedClip, constraints: Sequence[ClipConstraint], curve: Curve) -> FloatArray:
+    """Return how far positions asked of the joint that carries the travel move it, shape (F, 3), clip units."""
+    shift, travel = np.zeros((len(sized.motion), 3)), sized.facts.travel
+    before = sight_of(sized.motion, [travel], None)
+    for each in constraints:
+        ask = each.constraint
+        if ask.stands or ask.at is None or ask.at.joint != travel or np.any(ask.at.offset) or ask.waits_for_others:
+            continue
+        targets = ask.targets(Scene(before, curve, {}, lambda: before))
+        goal = ask.goal(targets)
+        if goal is not None:
+            shift[targets.span] = (goal[1] - before.poses.positions[targets.span, travel]) / sized.scale
+    return shift
+
+
+def _with_goals(
+    each: ClipConstraint, goals: dict[int, FootGoal], constraints: Sequence[ClipConstraint], sized: SizedClip
+) -> list[ClipConstraint]:
+    """Return a constraint as it is, or one for each stretch in which it says where its foot is."""
+    if not each.constraint.stands:
+        return [each]
+    ask: AsksToStand = each.constraint  # type: ignore[assignment]  # it stands
+    goal, first = goals[ask.effector.joint], sized.facts.first
+    here = goal.down | ~_placed_by_others(goal.foot, constraints, sized)
+    here[:first] = False
+    if not goal.down.any():
+        return []
+    parts = []
+    for number, (start, stop) in enumerate(runs(here)):
+        span = slice(start, stop + 1)
+        targets = Targets(start, stop, sized.scale * goal.places[span], goal.turns[span])
+        held: Constraint = ask.within(targets, number=number)  # type: ignore[assignment]  # it is one
+        parts.append(replace(each, constraint=held))
+    return parts
+
+
+def _placed_by_others(foot: Foot, constraints: Sequence[ClipConstraint], sized: SizedClip) -> BoolArray:
+    """Return the frames at which another constraint places a foot, shape (F,): in the air it goes there."""
+    frames, skeleton = len(sized.motion), sized.motion.skeleton
+    placed = np.zeros(frames, dtype=np.bool_)
+    for each in constraints:
+        ask = each.constraint
+        if ask.stands or not ask.places_effector or ask.at is None:
+            continue
+        if foot.leg.ankle in skeleton.chain(ask.at.joint) and ask.points:
+            first, last = ask.active(frames)
+            placed[first : last + 1] = True
+    return placed

@@ -1,0 +1,177 @@
+"""Feet from the command line: held, followed, re-placed, put on a floor; and folders that are checked."""
+
+import json
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import motionedit
+from motionedit.core.body.contacts import sole_tracks
+from motionedit.core.kinematics import forward
+from motionedit.jobs.clip.facts import facts_of
+
+DATA = Path(__file__).parents[2] / "data"
+WALK, SKATING = DATA / "walk.bvh", DATA / "walk-skating.bvh"
+FEET = {"name": "feet", "type": "footplants", "priority": 10}
+
+
+@pytest.fixture
+def edit(run, tmp_path):
+    """Return an editor: constraints and options in, what was written and its record out."""
+
+    def invoke(constraints, *arguments, clip=SKATING, code=0):
+        spec = {"schema": "motionedit/edit-prioritized/v1", "constraints": constraints}
+        (tmp_path / "s.yaml").write_text(json.dumps(spec, indent=1))
+        done = run("edit-prioritized", clip, "-s", "s.yaml", "-o", "e.bvh", "--report", "r.json", *map(str, arguments))
+        assert done.exit_code == code, done.stderr
+        if code:
+            return done.stderr
+        return facts_of(motionedit.read(tmp_path / "e.bvh")), json.loads((tmp_path / "r.json").read_text())["clips"][0]
+
+    return invoke
+
+
+def drift(after, plants):
+    tracks = sole_tracks(forward(after.clip.motion), after.anatomy)
+    return max(np.ptp(tracks[p.start : p.stop + 1, p.point], axis=0).max() for p in plants)
+
+
+def test_three_lines_hold_the_feet_in_the_written_file(edit):
+    after, record = edit([{"type": "footplants"}])
+    assert drift(after, facts_of(motionedit.read(SKATING)).phases) < 0.001
+    assert record["metrics"]["before"]["foot_sliding_share"] == 1.0
+    assert record["metrics"]["after"]["foot_sliding_share"] == 0.0
+    assert record["metrics"]["after"]["foot_drift_max"] < 1e-5
+    assert [each["name"] for each in record["constraints"]] == ["footplants", "footplants-2"]
+    assert record["status"] == "ok"
+
+
+def test_a_hand_that_reaches_leaves_the_feet_alone(edit):
+    hand = {"type": "position", "effector": "RightHand", "priority": 4}
+    after, record = edit([FEET, {**hand, "points": [{"hold": [60, 90], "shift": [0, 20, 25]}]}])
+    assert drift(after, facts_of(motionedit.read(SKATING)).phases) < 0.01
+    assert record["constraints"][2]["error_max"] < 0.01
+
+
+def test_a_foot_in_the_air_goes_where_another_constraint_puts_it(edit):
+    before = facts_of(motionedit.read(WALK))
+    left = [plant for plant in before.phases if plant.foot == "left"]
+    gap = next((a.stop, b.start) for a, b in pairwise(left) if b.start - a.stop > 8)
+    middle = sum(gap) // 2
+    kick = {"type": "position", "effector": "LeftFoot", "priority": 5, "ease_in": 2, "ease_out": 2}
+    after, record = edit([FEET, {**kick, "points": [{"at": middle, "shift": [0, 8, 0]}]}], clip=WALK)
+    assert drift(after, before.phases) < 0.01
+    assert record["constraints"][-1]["error_max"] < 0.01
+
+
+def test_plants_stand_where_the_reference_has_them(edit):
+    after, _ = edit([FEET], "--reference", WALK)
+    truth = facts_of(motionedit.read(WALK))
+    mine, theirs = (sole_tracks(forward(each.clip.motion), truth.anatomy) for each in (after, truth))
+    for plant in truth.phases:
+        span = slice(plant.start, plant.stop + 1)
+        assert np.linalg.norm((mine[span, plant.point] - theirs[span, plant.point]).mean(axis=0)) < 0.1
+
+
+def test_a_reference_that_is_none_is_refused(edit, tmp_path):
+    assert "no such clip or folder" in edit([FEET], "--reference", "nowhere", code=2)
+    assert "its reference" in edit([FEET], "--reference", DATA / "kick.bvh", code=1)
+    (tmp_path / "empty").mkdir()
+    assert "has no reference" in edit([FEET], "--reference", tmp_path / "empty", code=1)
+
+
+def test_what_follows_the_reference_rides_its_path(edit):
+    hand = {"type": "position", "effector": "LeftFoot", "priority": 1, "follow": "reference"}
+    after, _ = edit([hand], "--reference", WALK)
+    ankle = after.clip.motion.skeleton.names.index("LeftFoot")
+    truth = forward(motionedit.read(WALK).motion).positions[:, ankle]
+    assert forward(after.clip.motion).positions[:, ankle] == pytest.approx(truth, abs=1e-3)
+
+
+def test_plants_go_with_the_path_as_a_whole(edit):
+    way = {"type": "position", "effector": "Hips", "priority": 5}
+    points = [{"during": ["0%", "100%"], "shift": [20, 0, 0]}]
+    after, record = edit([{**FEET, "at": "path"}, {**way, "points": points}], clip=WALK)
+    before = facts_of(motionedit.read(WALK))
+    assert drift(after, before.phases) < 0.01
+    moved = forward(after.clip.motion).positions - before.poses.positions
+    assert np.median(moved[..., 0]) == pytest.approx(20.0)
+    assert np.abs(moved - [20.0, 0.0, 0.0]).max() < 2.0
+    assert record["metrics"]["after"]["jerk_rms"] < 1.15 * record["metrics"]["before"]["jerk_rms"]
+
+
+def test_feet_stand_on_a_height_and_nothing_of_them_goes_below(edit):
+    after, record = edit([{**FEET, "height": 5}, {"type": "floor", "height": 5, "priority": 9}], clip=WALK)
+    tracks = sole_tracks(forward(after.clip.motion), after.anatomy)[..., 1]
+    assert tracks.min() > 5.0 - 1e-3
+    for plant in facts_of(motionedit.read(WALK)).phases:
+        if plant.part == "toe":
+            assert tracks[plant.start : plant.stop + 1, plant.point] == pytest.approx(5.0, abs=1e-3)
+    assert record["metrics"]["after"]["foot_drift_max"] < 1e-5
+
+
+def test_plants_of_a_file_or_the_spec_are_taken(edit, tmp_path):
+    after, _ = edit([{**FEET, "feet": ["LeftFoot"], "plants": {"LeftFoot": [[24, 30]]}}])
+    ankle = after.clip.motion.skeleton.names.index("LeftFoot")
+    assert np.ptp(forward(after.clip.motion).positions[24:31, ankle], axis=0).max() < 1e-3
+    (tmp_path / "p.csv").write_text("clip,foot,part,first,last\nwalk-skating,left,foot,24,30\nother,left,toe,1,2\n")
+    again, _ = edit([{**FEET, "plants": "p.csv"}])
+    assert np.ptp(forward(again.clip.motion).positions[24:31, ankle], axis=0).max() < 1e-3
+
+
+@pytest.mark.parametrize(
+    ("table", "message"),
+    [
+        ("clip,foot\n", "p.csv:1: the first line must be clip,foot,part,first,last"),
+        ("clip,foot,part,first,last\na,left,nail,1,2\n", "p.csv:2: part must be heel, toe or foot (both), not 'nail'"),
+        ("clip,foot,part,first,last\na,left,toe,9,2\n", "p.csv:2: ends at 2, before it begins at 9"),
+    ],
+)
+def test_a_table_of_plants_that_is_none_is_refused(edit, tmp_path, table, message):
+    (tmp_path / "p.csv").write_text(table)
+    assert message in edit([{**FEET, "plants": "p.csv"}], code=2)
+
+
+def test_a_body_without_legs_has_no_feet(edit, clip):
+    path = clip("stick.bvh")
+    message = edit([FEET], clip=path, code=2)
+    assert "no feet found" in message
+
+
+def test_check_tells_of_each_clip_and_of_limits_that_are_passed(run, tmp_path):
+    done = run("check", WALK, SKATING, "--limit", "foot_sliding_share=0.5", "--report", "r.json")
+    assert done.exit_code == 3
+    first, second = done.stdout.splitlines()
+    assert first.startswith(f"{WALK}: ok (24 Hz; 145 frames; cm; y up; legs, arms, head;")
+    assert second.startswith(f"{SKATING}: unfit: foot_sliding_share 1 above 0.5 (")
+    clips = json.loads((tmp_path / "r.json").read_text())["clips"]
+    assert [each["status"] for each in clips] == ["ok", "unfit"]
+    assert run("check", WALK, SKATING).exit_code == 0
+    assert run("check", WALK, SKATING, "-j", "2", "--limit", "foot_sliding_share=0.5").stdout == done.stdout
+
+
+def test_check_takes_limits_of_a_file_and_refuses_what_is_no_limit(run, tmp_path):
+    (tmp_path / "l.yaml").write_text("# CI\njumps: 0\nfoot_sliding_share: 0.5  # of held frames\n")
+    assert run("check", SKATING, "--limits", "l.yaml").exit_code == 3
+    assert run("check", SKATING, "--limits", "l.yaml", "--limit", "foot_sliding_share=1").exit_code == 0
+    for given, message in (
+        ("skate=1", "no measure 'skate'"),
+        ("jumps", "must be MEASURE=NUMBER"),
+        ("jumps=a", "a number"),
+    ):
+        done = run("check", WALK, "--limit", given)
+        assert done.exit_code == 2
+        assert message in done.stderr
+
+
+def test_check_holds_clips_against_a_spec(run, tmp_path):
+    (tmp_path / "s.yaml").write_text(
+        "schema: motionedit/edit-prioritized/v1\nconstraints: [{type: position, effector: Nose, points: [{at: 3}]}]\n"
+    )
+    done = run("check", WALK, "-s", "s.yaml")
+    assert done.exit_code == 3
+    assert "s.yaml:2: constraints.0.effector" in done.stdout
+    (tmp_path / "bad.bvh").write_text("HIERARCHY\n")
+    assert run("check", WALK, "bad.bvh").exit_code == 1

@@ -1,0 +1,107 @@
+"""Feet kept on the walk that skates: every plant in one place, by the legs alone, near to the truth."""
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import motionedit
+from motionedit.core.body.bends import find_bends
+from motionedit.core.body.contacts import sole_tracks
+from motionedit.core.body.quality import jerk_rms
+from motionedit.core.feet.keep import keep_feet
+from motionedit.core.feet.legs import legs_onto
+from motionedit.core.feet.pelvis import drop_needed, smooth_cover
+from motionedit.core.kinematics import forward
+from motionedit.jobs.clip.facts import facts_of
+
+DATA = Path(__file__).parents[4] / "data"
+
+
+@cache
+def facts(name):
+    return facts_of(motionedit.read(DATA / name))
+
+
+def kept(name, reference=None):
+    mine, theirs = facts(name), facts(reference or name)
+    return keep_feet(
+        mine.clip.motion,
+        theirs.clip.motion,
+        mine.anatomy,
+        theirs.phases,
+        up=mine.up,
+        travel=mine.travel,
+        first=mine.first,
+    )
+
+
+def drift(motion, of):
+    tracks = sole_tracks(forward(motion), of.anatomy)
+    return max(np.ptp(tracks[p.start : p.stop + 1, p.point], axis=0).max() for p in of.phases)
+
+
+@pytest.mark.parametrize("name", ["walk.bvh", "walk-skating.bvh", "kick.bvh"])
+def test_every_plant_is_one_place_and_the_motion_stays_smooth(name):
+    clip, found = facts(name), kept(name).motion
+    assert drift(clip.clip.motion, clip) > 0.01
+    assert drift(found, clip) < 1e-9
+    jerks = [jerk_rms(forward(m).positions, frame_time=m.frame_time) for m in (found, clip.clip.motion)]
+    assert jerks[0] < 1.1 * jerks[1]
+
+
+def test_nothing_but_legs_moves():
+    clip, found = facts("walk-skating.bvh"), kept("walk-skating.bvh")
+    legs = [j for leg in clip.anatomy.legs for j in (leg.thigh, leg.knee, leg.ankle)]
+    others = np.setdiff1d(np.arange(len(clip.clip.motion.skeleton)), legs)
+    assert np.array_equal(found.motion.rotations[:, others], clip.clip.motion.rotations[:, others])
+    assert np.abs(found.motion.translations - clip.clip.motion.translations).max() == found.lowered.max() < 0.5
+
+
+def test_the_walk_that_skates_comes_nearer_to_its_truth():
+    truth = forward(facts("walk.bvh").clip.motion).positions
+
+    def apart(motion):
+        return np.sqrt(((forward(motion).positions - truth) ** 2).sum(axis=-1).mean())
+
+    assert apart(kept("walk-skating.bvh").motion) < 0.7 * apart(facts("walk-skating.bvh").clip.motion)
+
+
+def test_plants_stand_where_the_reference_has_them():
+    clip, found = facts("walk.bvh"), kept("walk-skating.bvh", "walk.bvh").motion
+    tracks, theirs = (sole_tracks(forward(m), clip.anatomy) for m in (found, clip.clip.motion))
+    for plant in clip.phases:
+        span = slice(plant.start, plant.stop + 1)
+        way = tracks[span, plant.point].mean(axis=0) - theirs[span, plant.point].mean(axis=0)
+        assert np.linalg.norm(way) < 0.1
+
+
+def test_legs_go_where_they_are_told_and_a_far_place_straightens_them():
+    clip = facts("walk.bvh")
+    motion, poses = clip.clip.motion, clip.poses
+    bends = {bend.joint: bend for bend in find_bends(motion.skeleton, poses, clip.anatomy, first=0)}
+    leg = clip.anatomy.legs[0]
+    near = 0.9 * poses.positions[:, leg.ankle] + 0.1 * poses.positions[:, leg.thigh]
+    turns = poses.rotations[:, leg.knee]
+    after = forward(legs_onto(motion, poses, [(leg, bends[leg.knee], near, turns)]))
+    assert after.positions[:, leg.ankle] == pytest.approx(near, abs=1e-9)
+    assert np.abs(np.sum(after.rotations[:, leg.ankle] * turns, axis=1)) == pytest.approx(1.0)
+    far = poses.positions[:, leg.thigh] - [0.0, 500.0, 0.0]
+    after = forward(legs_onto(motion, poses, [(leg, bends[leg.knee], far, turns)]))
+    hip, knee, ankle = (after.positions[:, j] for j in (leg.thigh, leg.knee, leg.ankle))
+    bones = np.linalg.norm(knee - hip, axis=1) + np.linalg.norm(ankle - knee, axis=1)
+    assert np.linalg.norm(ankle - hip, axis=1) == pytest.approx(bones, rel=1e-6)
+
+
+def test_a_pelvis_comes_down_as_far_as_a_leg_asks_and_smoothly():
+    hip, ankle = np.array([[0.0, 1.0, 0.0]] * 60), np.array([[0.3, 0.0, 0.0]] * 60)
+    up = np.array([0.0, 1.0, 0.0])
+    reach = np.where(np.arange(60) == 30, 0.99, 1.2)
+    needed = drop_needed(hip, ankle, reach, up)
+    assert np.flatnonzero(needed).tolist() == [30]
+    assert np.hypot(0.3, 1.0 - needed[30]) == pytest.approx(0.99)
+    cover = smooth_cover(needed, 1.0 / 60.0)
+    assert (cover >= needed - 1e-12).all()
+    assert np.abs(np.diff(cover)).max() < 0.15 * needed[30]
+    assert cover[0] == cover[-1] == 0.0
