@@ -134,6 +134,18 @@ def test_a_table_of_plants_that_is_none_is_refused(edit, tmp_path, table, messag
     assert message in edit([{**FEET, "plants": "p.csv"}], code=2)
 
 
+def test_where_no_foot_stands_nothing_is_done(run, tmp_path):
+    text = WALK.read_text().splitlines()
+    at = next(i for i, line in enumerate(text) if line.startswith("Frames:"))
+    short = [*text[:at], "Frames: 1", *text[at + 1 : at + 3]]
+    (tmp_path / "short.bvh").write_text("\n".join(short) + "\n")
+    (tmp_path / "s.yaml").write_text("schema: motionedit/edit-prioritized/v1\nconstraints: [{type: footplants}]\n")
+    done = run("edit-prioritized", "short.bvh", "-s", "s.yaml", "-o", "e.bvh")
+    assert done.exit_code == 0
+    assert "no foot stands in it" in done.stderr
+    assert (tmp_path / "e.bvh").read_bytes() == (tmp_path / "short.bvh").read_bytes()
+
+
 def test_a_body_without_legs_has_no_feet(edit, clip):
     path = clip("stick.bvh")
     message = edit([FEET], clip=path, code=2)

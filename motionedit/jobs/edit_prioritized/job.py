@@ -86,18 +86,13 @@ class EditByPriorities:
     def __call__(self, clip: Clip, task: ClipTask) -> Outcome:
         """Return the edited clip, and how near each constraint came."""
         sized, constraints = self.resolved(clip, task)
-        if not constraints:
-            feet = feet_of(sized.facts, blocks_of(sized.facts.poses), masses=sized.masses)
-            still = change_steps(sized.motion, sized.motion, first=sized.facts.first)
-            record = {**self._about(sized, feet, feet, still), "constraints": []}
-            return Outcome(
-                unedited_bytes(clip), record, warnings=sized.warnings, details=("no constraints: the same bytes",)
-            )
         settings = self.settings(clip)
         other = self._reference(clip, task)
         if any(each.constraint.stands for each in constraints):
             kept = sized.facts if other is None else other
             sized, constraints = on_feet(self.loaded, sized, constraints, kept, curve=settings.curve)
+        if not constraints:
+            return self._unedited(clip, sized)
         before = feet_of(sized.facts, blocks_of(sized.facts.poses), masses=sized.masses)
         # What is read off the input has been read, its phases with it: an edit of a long clip needs the room.
         _ = sized.facts.phases
@@ -114,6 +109,15 @@ class EditByPriorities:
             asked = [c.constraint for c in constraints]
             raise breach_error(self.loaded, error.breach, asked, sized.facts) from None
         return self._outcome(sized, constraints, edit, settings, before=before)
+
+    def _unedited(self, clip: Clip, sized: SizedClip) -> Outcome:
+        """Return a clip of which nothing is asked, or nothing that is in it."""
+        feet = feet_of(sized.facts, blocks_of(sized.facts.poses), masses=sized.masses)
+        still = change_steps(sized.motion, sized.motion, first=sized.facts.first)
+        record = {**self._about(sized, feet, feet, still), "constraints": []}
+        return Outcome(
+            unedited_bytes(clip), record, warnings=sized.warnings, details=("no constraints: the same bytes",)
+        )
 
     def resolved(self, clip: Clip, task: ClipTask) -> tuple[SizedClip, list[ClipConstraint]]:
         """Return a clip in normalised metres, and the spec's constraints in it.
