@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from motionedit.cli.boundary import complain, warn
-from motionedit.errors import MotionEditError, SpecError
+from motionedit.errors import EXIT_DONE, MISSED, MotionEditError, SpecError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -23,16 +23,8 @@ if TYPE_CHECKING:
 def finish_batch(result: BatchResult, options: RunOptions, *, command: str, spec: Mapping[str, Any] | None) -> int:
     """Print and write all that a run came to; return its exit code."""
     from motionedit.report.record import report_bytes
-    from motionedit.report.table import results_table
 
-    if options.verbosity >= 0:
-        for warning in result.warnings:
-            warn(warning)
-        if result.records and not options.dry_run:
-            click.echo(results_table(result.records, result.seconds, verbosity=options.verbosity), err=True)
-        if result.current:
-            click.echo(f"{result.current} up to date", err=True)
-    show_failures(result.failures)
+    _say(result, options)
     on_stdout = options.report is not None and str(options.report) == "-"
     if options.dry_run:
         _show_plan(result, err=on_stdout)
@@ -45,6 +37,41 @@ def finish_batch(result: BatchResult, options: RunOptions, *, command: str, spec
         report = report_bytes(command, result.records, spec=spec)
         write_report(report, options.report, dry_run=options.dry_run)
     return result.exit_code
+
+
+def _say(result: BatchResult, options: RunOptions) -> None:
+    """Say on standard error what became of the clips: warnings, the table, what failed or was missed, the count."""
+    from motionedit.report.table import count_line, results_table
+
+    made = [(record, time) for record, time in zip(result.records, result.seconds, strict=True) if time is not None]
+    if options.verbosity >= 0:
+        for warning in result.warnings:
+            warn(warning)
+        if made and not options.dry_run:
+            records, seconds = zip(*made, strict=True)
+            click.echo(results_table(records, seconds, verbosity=options.verbosity), err=True)
+        if result.current:
+            click.echo(f"{result.current} up to date", err=True)
+    _show_missed(result, options)
+    show_failures(result.failures)
+    if len(result.records) > 1 and (made or result.exit_code) and _worth_a_count(result, options):
+        click.echo(count_line(result.records), err=True)
+
+
+def _show_missed(result: BatchResult, options: RunOptions) -> None:
+    """Name the clips whose goals were not met, and why, where no warning has: those of an earlier run, and with -q.
+
+    As errors where they are counted as such.
+    """
+    say = complain if options.strict else warn
+    for record, time in zip(result.records, result.seconds, strict=True):
+        if record["status"] in MISSED and (time is None or options.verbosity < 0) and (options.strict or time is None):
+            say(f"{record['clip']}: {record['status'].replace('_', ' ')}: {record['message']}")
+
+
+def _worth_a_count(result: BatchResult, options: RunOptions) -> bool:
+    """Tell whether the line that counts is wanted: with -q only where something went wrong."""
+    return not options.dry_run and (options.verbosity >= 0 or result.exit_code != EXIT_DONE)
 
 
 def show_failures(failures: Sequence[MotionEditError]) -> None:

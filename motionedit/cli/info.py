@@ -52,14 +52,14 @@ def command(
     """
     from motionedit.cli.finish import show_failures, write_report
     from motionedit.errors import EXIT_CLIP_FAILED, EXIT_DONE
-    from motionedit.jobs.batch.plan import find_clips, refuse_overwriting
+    from motionedit.jobs.batch.outputs import refuse_clashes
+    from motionedit.jobs.batch.plan import find_clips
     from motionedit.jobs.info import job as info
     from motionedit.report.record import report_bytes
 
     if bool(at) != bool(joints):
         raise click.UsageError("--at and --joint go together: when, and what of the body")
-    if report is not None:
-        refuse_overwriting([report], [task.source for task in find_clips(clips) if task.source])
+    refuse_clashes([("the report", report)], [task.source for task in find_clips(clips)])
     found = info.run(clips, at=list(at), joints=list(joints), contacts=contacts, up=up, lenient=lenient)
     if str(report) != "-" and found.text:
         click.echo(found.text.rstrip("\n"))

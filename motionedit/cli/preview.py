@@ -48,7 +48,7 @@ def command(
 
     CLIPS are BVH files, folders of them, or '-' for standard input.
     """
-    from motionedit.jobs.batch.plan import refuse_existing
+    from motionedit.jobs.batch.outputs import refuse_existing
     from motionedit.jobs.preview import job as preview
 
     if not overwrite:

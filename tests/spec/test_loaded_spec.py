@@ -93,7 +93,7 @@ def test_a_file_without_permission_is_answered_with_the_reason(tmp_path):
 def test_a_device_without_end_is_not_read_to_its_end():
     with pytest.raises(MotionEditError) as caught:
         load_spec(Path("/dev/zero"), "edit-pc")
-    assert str(caught.value.errors[0]) == "/dev/zero: larger than 4 MB; is it the right file?"
+    assert str(caught.value.errors[0]) == "/dev/zero: a pipe or a device, not a file"
 
 
 def test_naming_the_specs_loads_neither_yaml_nor_pydantic():
