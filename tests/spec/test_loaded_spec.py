@@ -111,3 +111,9 @@ def test_loading_a_spec_loads_no_numpy(tmp_path):
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert not {"numpy", "scipy", "click"} & set(done.stdout.split())
+
+
+def test_more_constraints_than_can_be_solved_in_any_time_are_refused_in_words():
+    spec = {"constraints": [{"type": "position", "effector": "LeftHand", "priority": n} for n in range(1000)]}
+    with pytest.raises(MotionEditError, match="constraints: are 1000; one spec has 100 at most"):
+        load_spec(spec, "edit-prioritized")

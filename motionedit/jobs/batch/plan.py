@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -21,6 +22,11 @@ if TYPE_CHECKING:
     from motionedit.jobs.batch.verdicts import Verdict, Verdicts
 
 STDIN_LABEL = "<stdin>"
+# What nobody who types it means as a folder's name.
+_NO_FOLDER = re.compile(
+    r"\.(abc|amc|asf|blend|c3d|csv|dae|fbx|gif|glb|gltf|html|jpg|json|mp4|np[yz]|obj|png|svg|trc|txt|usd[acz]?|xml|ya?ml|zip)",
+    re.IGNORECASE,
+)
 
 
 @contextlib.contextmanager
@@ -234,6 +240,9 @@ def _with_outputs(tasks: list[ClipTask], output: str) -> list[ClipTask]:
         return [replace(tasks[0], output=target)]
     if target.exists() and not target.is_dir():
         raise UsageError("is a file; give a folder, or a name ending in .bvh for one clip", file=output)
+    if _NO_FOLDER.fullmatch(target.suffix) and not target.is_dir():
+        message = f"clips are written as .bvh, not as {target.suffix}; give such a name, or a folder"
+        raise UsageError(message, file=output)
     if any(task.source is None for task in tasks):
         raise UsageError("a clip from standard input has no name: give -o FILE.bvh or -o -")
     return [replace(task, output=target / task.relative) for task in tasks]
