@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from motionedit.cli.words import printable
 from motionedit.errors import EXIT_CLIP_FAILED, EXIT_DONE, EXIT_INTERRUPTED, EXIT_USAGE, MotionEditError
 
 if TYPE_CHECKING:
@@ -41,12 +42,12 @@ def run_guarded(call: Callable[[], int | None]) -> int:
 
 def complain(message: str) -> None:
     """Say one error on standard error."""
-    click.echo(f"motionedit: error: {' '.join(message.split())}", err=True)
+    click.echo(f"motionedit: error: {printable(' '.join(message.split()))}", err=True)
 
 
 def warn(message: str) -> None:
     """Say one warning on standard error."""
-    click.echo(f"motionedit: warning: {' '.join(message.split())}", err=True)
+    click.echo(f"motionedit: warning: {printable(' '.join(message.split()))}", err=True)
 
 
 def show_unexpected(error: Exception, *, verbosity: int) -> None:
@@ -72,8 +73,9 @@ def _explained(error: Exception) -> tuple[list[str], int]:
     if isinstance(error, click.ClickException):
         return [_usage(error)], EXIT_USAGE
     if isinstance(error, OSError) and error.strerror:
-        place = "" if error.filename is None else f"{error.filename}: "
-        return [f"{place}{error.strerror}"], EXIT_CLIP_FAILED
+        # Every file that is opened is named: what has no name is one of the streams, and only those written to fill.
+        place = "standard output" if error.filename is None else error.filename
+        return [f"{place}: {error.strerror}"], EXIT_CLIP_FAILED
     if isinstance(error, MemoryError):
         return ["out of memory"], EXIT_CLIP_FAILED
     return [f"unexpected {type(error).__name__}: {error}; please report it (-vv shows where)"], EXIT_CLIP_FAILED

@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 import sys
 from collections import Counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TextIO
 
 import click
 
 from motionedit.cli.boundary import complain, warn
-from motionedit.errors import EXIT_DONE, MISSED, MotionEditError, SpecError
+from motionedit.cli.words import printable
+from motionedit.errors import EXIT_DONE, MISSED, ClipError, MotionEditError, SpecError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -30,13 +31,26 @@ def finish_batch(result: BatchResult, options: RunOptions, *, command: str, spec
         _show_plan(result, err=on_stdout)
     elif result.content is not None:
         write_stdout(result.content)
-    elif not on_stdout:
-        for path in result.paths:
-            click.echo(os.fsencode(path))  # as bytes: a name need not be text
+    elif not on_stdout and result.paths:
+        _list(result.paths)
     if options.report is not None:
         report = report_bytes(command, result.records, spec=spec)
         write_report(report, options.report, dry_run=options.dry_run)
     return result.exit_code
+
+
+def _list(paths: Sequence[str]) -> None:
+    """Print the files written, one a line: as bytes for other programs, since a name need not be text."""
+    stream = _standard_output()
+    for path in paths:
+        click.echo(printable(path) if stream.isatty() else os.fsencode(path))
+
+
+def _standard_output() -> TextIO:
+    """Return standard output; a ClipError where whoever started the program has closed it."""
+    if sys.stdout is None:
+        raise ClipError("is closed", file="standard output")
+    return sys.stdout
 
 
 def _say(result: BatchResult, options: RunOptions) -> None:
@@ -49,7 +63,7 @@ def _say(result: BatchResult, options: RunOptions) -> None:
             warn(warning)
         if made and not options.dry_run:
             records, seconds = zip(*made, strict=True)
-            click.echo(results_table(records, seconds, verbosity=options.verbosity), err=True)
+            click.echo(printable(results_table(records, seconds, verbosity=options.verbosity)), err=True)
         if result.current:
             click.echo(f"{result.current} up to date", err=True)
     _show_missed(result, options)
@@ -90,7 +104,8 @@ def show_failures(failures: Sequence[MotionEditError]) -> None:
 
 def write_report(report: bytes, path: Path, *, dry_run: bool = False) -> None:
     """Write a report to its file, or to standard output for ``-``."""
-    from motionedit.jobs.batch.files import atomic_write, clean_leftovers
+    from motionedit.jobs.batch.files import clean_leftovers
+    from motionedit.jobs.batch.one_clip import write_file
 
     if str(path) == "-":
         write_stdout(report)
@@ -98,18 +113,19 @@ def write_report(report: bytes, path: Path, *, dry_run: bool = False) -> None:
         click.echo(f"would write the report {path}")
     else:
         clean_leftovers([path.parent])
-        atomic_write(path, report)
+        write_file(path, report)
 
 
 def write_stdout(data: bytes) -> None:
     """Write bytes, such as a clip, to standard output as they are."""
-    sys.stdout.buffer.write(data)
-    sys.stdout.buffer.flush()
+    stream = _standard_output()
+    stream.buffer.write(data)
+    stream.buffer.flush()
 
 
 def _show_plan(result: BatchResult, *, err: bool) -> None:
     for heading, lines in result.details:
-        click.echo(f"would write {heading}", err=err)
+        click.echo(f"would write {printable(heading)}", err=err)
         for line in lines:
             click.echo(f"  {line}", err=err)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import click
@@ -54,5 +55,5 @@ def command(
     if not overwrite:
         refuse_existing([Path(output)])
     for path in preview.run(clips, Path(output), report=report, up=up, lenient=lenient):
-        click.echo(path)
+        click.echo(os.fsencode(path))  # as bytes: a name need not be text
     return 0

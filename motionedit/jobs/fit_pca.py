@@ -19,8 +19,8 @@ from motionedit.core.pca.streaming import MOST_COMPONENTS
 from motionedit.core.skeleton_match import match_joints
 from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError, ModelError, MotionEditError, UsageError, together
-from motionedit.jobs.batch.files import atomic_write, clean_leftovers, place
-from motionedit.jobs.batch.one_clip import read_task
+from motionedit.jobs.batch.files import clean_leftovers, place
+from motionedit.jobs.batch.one_clip import read_task, write_file
 from motionedit.jobs.batch.outputs import refuse_clashes
 from motionedit.jobs.batch.plan import ClipTask
 from motionedit.jobs.batch.run import values_in_order
@@ -81,8 +81,7 @@ def run(folder: Path, output: Path, loaded: LoadedSpec[FitPcaSpec] | None, optio
     refuse_clashes(written, [*sources, folder / NAME, *(() if loaded is None else loaded.files)])
     made = fit(database, loaded, options=options)
     clean_leftovers([output.parent])
-    output.parent.mkdir(parents=True, exist_ok=True)
-    atomic_write(output, model_bytes(made.model))
+    write_file(output, model_bytes(made.model))
     return made.report
 
 

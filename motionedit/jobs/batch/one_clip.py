@@ -166,6 +166,8 @@ def read_task(task: ClipTask, *, lenient: bool) -> Clip:
         return task.clip
     try:
         if task.source is None:
+            if sys.stdin is None:
+                raise ClipError("standard input is closed", file=task.label)
             return parse_clip(sys.stdin.buffer.read(), label=task.label, lenient=lenient)
         return read_clip(task.source, label=task.label, lenient=lenient)
     except OSError as error:

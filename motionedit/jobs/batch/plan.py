@@ -182,6 +182,9 @@ def plan(
         raise UsageError("--update compares the times of files: it does not go with '-'")
     if options.preview and output == "-":
         raise UsageError("--preview writes a page next to each clip: it does not go with -o -")
+    sources = [task.source for task in found if task.source is not None]
+    broken = [source for source in sources if not {"\n", "\r"}.isdisjoint(str(source))]
+    refuse_paths(broken, "a line break in its name: files are listed one a line; rename it")
     tasks = _with_outputs(found, output)
     if options.preview:
         tasks = [replace(task, page=task.output and task.output.with_suffix(".html")) for task in tasks]

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from motionedit.dataclass import dataclass
 from motionedit.errors import EXIT_CLIP_FAILED, EXIT_USAGE, MotionEditError, UsageError
-from motionedit.jobs.batch.files import atomic_write
+from motionedit.jobs.batch.one_clip import write_file
 from motionedit.jobs.batch.plan import find_clips, plan
 from motionedit.jobs.batch.run import BatchResult, earlier, failed_record, map_tasks, run_each
 from motionedit.jobs.batch.verdicts import run_key, verdicts_in
@@ -67,7 +67,7 @@ def run(loaded: LoadedSpec[NormalizeSpec], clips: Sequence[Path], output: Path, 
     first = partial(_remove_list, output / NAME)
     normalized = normalize(loaded, anew, options=options, before_writing=first, verdicts=verdicts)
     if normalized.normalization is not None and not options.dry_run:
-        atomic_write(output / NAME, normalization_bytes(normalized.normalization))
+        write_file(output / NAME, normalization_bytes(normalized.normalization))
     return normalized.result
 
 
