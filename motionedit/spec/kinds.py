@@ -150,7 +150,7 @@ JOINTS_OR_NONE = Kind(
 # The same, where feet and toes found in the skeleton stand for what is not given.
 FEET = Kind(_plainly(values.parse_joints), "a list of joints", _JOINTS)
 VECTOR = Kind(_plainly(scalars.vector), "three numbers [x, y, z]", _VECTOR)
-DIRECTION = Kind(_plainly(scalars.direction), "a direction [x, y, z]", _VECTOR)
+DIRECTION = Kind(_plainly(scalars.direction), "a direction [x, y, z]", {**_VECTOR, "not": {"items": {"const": 0}}})
 AXES = Kind(
     _plainly(scalars.axes),
     "a list of some of x, y, z",
