@@ -73,9 +73,8 @@ def _explained(error: Exception) -> tuple[list[str], int]:
     if isinstance(error, click.ClickException):
         return [_usage(error)], EXIT_USAGE
     if isinstance(error, OSError) and error.strerror:
-        # Every file that is opened is named: what has no name is one of the streams, and only those written to fill.
-        place = "standard output" if error.filename is None else error.filename
-        return [f"{place}: {error.strerror}"], EXIT_CLIP_FAILED
+        place = "" if error.filename is None else f"{error.filename}: "
+        return [f"{place}{error.strerror}"], EXIT_CLIP_FAILED
     if isinstance(error, MemoryError):
         return ["out of memory"], EXIT_CLIP_FAILED
     return [f"unexpected {type(error).__name__}: {error}; please report it (-vv shows where)"], EXIT_CLIP_FAILED

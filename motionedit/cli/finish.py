@@ -5,13 +5,13 @@ from __future__ import annotations
 import os
 import sys
 from collections import Counter
-from typing import TYPE_CHECKING, Any, TextIO
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from motionedit.cli.boundary import complain, warn
-from motionedit.cli.words import printable
-from motionedit.errors import EXIT_DONE, MISSED, ClipError, MotionEditError, SpecError
+from motionedit.cli.words import printable, to_stdout
+from motionedit.errors import EXIT_DONE, MISSED, MotionEditError, SpecError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -41,16 +41,8 @@ def finish_batch(result: BatchResult, options: RunOptions, *, command: str, spec
 
 def _list(paths: Sequence[str]) -> None:
     """Print the files written, one a line: as bytes for other programs, since a name need not be text."""
-    stream = _standard_output()
     for path in paths:
-        click.echo(printable(path) if stream.isatty() else os.fsencode(path))
-
-
-def _standard_output() -> TextIO:
-    """Return standard output; a ClipError where whoever started the program has closed it."""
-    if sys.stdout is None:
-        raise ClipError("is closed", file="standard output")
-    return sys.stdout
+        to_stdout(printable(path) if sys.stdout is not None and sys.stdout.isatty() else os.fsencode(path))
 
 
 def _say(result: BatchResult, options: RunOptions) -> None:
@@ -118,9 +110,7 @@ def write_report(report: bytes, path: Path, *, dry_run: bool = False) -> None:
 
 def write_stdout(data: bytes) -> None:
     """Write bytes, such as a clip, to standard output as they are."""
-    stream = _standard_output()
-    stream.buffer.write(data)
-    stream.buffer.flush()
+    to_stdout(data, end=False)
 
 
 def _show_plan(result: BatchResult, *, err: bool) -> None:

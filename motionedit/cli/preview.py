@@ -16,6 +16,7 @@ from motionedit.cli.options import (
     up_option,
 )
 from motionedit.cli.verbosity import verbosity_options
+from motionedit.cli.words import to_stdout
 
 
 @click.command(
@@ -55,5 +56,5 @@ def command(
     if not overwrite:
         refuse_existing([Path(output)])
     for path in preview.run(clips, Path(output), report=report, up=up, lenient=lenient):
-        click.echo(os.fsencode(path))  # as bytes: a name need not be text
+        to_stdout(os.fsencode(path))  # as bytes: a name need not be text
     return 0

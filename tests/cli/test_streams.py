@@ -95,7 +95,7 @@ def test_a_line_break_in_a_name_is_refused_since_files_are_listed_one_a_line(run
     ("arguments", "redirect", "message"),
     [
         (["-o", "out", "--report", "/dev/full"], "", "/dev/full: cannot be written: No space left on device"),
-        (["-o", "-"], "> /dev/full", "standard output: No space left on device"),
+        (["-o", "-"], "> /dev/full", "standard output: cannot be written: No space left on device"),
         (["-o", "out"], ">&-", "standard output: is closed"),
     ],
 )
