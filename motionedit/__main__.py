@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
-import signal
 import sys
-
-from motionedit.interrupts import EXIT_CODE, INTERRUPTED, leave_at_once
 
 
 def main() -> None:
     """Run one command line, and exit with its code."""
-    leave_at_once()
     try:
+        # Inside, since any import may be interrupted.
+        import signal
+
+        from motionedit.interrupts import leave_at_once
+
+        leave_at_once()
         from motionedit.cli import main as program
 
-        program()
-    except KeyboardInterrupt:  # while it was said that one was answered
-        sys.stderr.write(INTERRUPTED)
-        sys.exit(EXIT_CODE)
-    finally:
-        # All is written and said: what the interpreter still does to end is not worth a traceback.
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
+        try:
+            program()
+        finally:
+            # All is written and said: what the interpreter still does to end is not worth a traceback.
+            signal.signal(signal.SIGINT, signal.SIG_DFL)
+    except KeyboardInterrupt:  # before the first is answered, or while one is
+        sys.stderr.write("motionedit: error: interrupted\n")
+        sys.exit(130)
 
 
 if __name__ == "__main__":

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from types import FrameType
 
-INTERRUPTED = "motionedit: error: interrupted\n"
-EXIT_CODE = 130
+_INTERRUPTED = "motionedit: error: interrupted\n"
+_EXIT_CODE = 130
 
 
 def leave_at_once() -> None:
@@ -30,5 +30,5 @@ def clean_up_first() -> None:
 
 
 def _leave(_signal: int, _frame: FrameType | None) -> None:
-    os.write(2, INTERRUPTED.encode())
-    os._exit(EXIT_CODE)
+    os.write(2, _INTERRUPTED.encode())
+    os._exit(_EXIT_CODE)
