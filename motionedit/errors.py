@@ -14,6 +14,10 @@ EXIT_OUT_OF_TOLERANCE = 3
 EXIT_INTERRUPTED = 130
 
 
+# The statuses of clips that --strict counts: a goal that was not met, an edit that a viewer would see.
+MISSED = frozenset({"rough", "out_of_tolerance", "unreachable"})
+
+
 class MotionEditError(Exception):
     """Root of all errors that a user can cause; `str()` is one line, ``FILE:LINE: KEY: what; remedy``.
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from motionedit.cli.words import printable
 from motionedit.errors import EXIT_CLIP_FAILED, EXIT_DONE, EXIT_INTERRUPTED, EXIT_USAGE, MotionEditError
 
 if TYPE_CHECKING:
@@ -41,12 +42,12 @@ def run_guarded(call: Callable[[], int | None]) -> int:
 
 def complain(message: str) -> None:
     """Say one error on standard error."""
-    click.echo(f"motionedit: error: {' '.join(message.split())}", err=True)
+    click.echo(f"motionedit: error: {printable(' '.join(message.split()))}", err=True)
 
 
 def warn(message: str) -> None:
     """Say one warning on standard error."""
-    click.echo(f"motionedit: warning: {' '.join(message.split())}", err=True)
+    click.echo(f"motionedit: warning: {printable(' '.join(message.split()))}", err=True)
 
 
 def show_unexpected(error: Exception, *, verbosity: int) -> None:

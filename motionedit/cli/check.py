@@ -61,18 +61,20 @@ def command(
     CLIPS are BVH files, folders of them, or '-' for standard input.
     """
     from motionedit.cli.finish import show_failures, write_report
+    from motionedit.cli.words import printable, to_stdout
     from motionedit.jobs import check
-    from motionedit.jobs.batch.plan import find_clips, refuse_overwriting
+    from motionedit.jobs.batch.outputs import refuse_clashes
+    from motionedit.jobs.batch.plan import find_clips
     from motionedit.report.record import report_bytes
 
-    if report is not None:
-        refuse_overwriting([report], [task.source for task in find_clips(clips) if task.source])
+    given = [task.source for task in find_clips(clips)]
+    refuse_clashes([("the report", report)], [*given, spec_path, limits_file])
     held = check.limits_of(limits, limits_file)
     found: list[Checked] = []
     for one in check.run(clips, limits=held, spec=spec_path, up=up, lenient=lenient, jobs=jobs):
         found.append(one)
         if one.line and str(report) != "-":
-            click.echo(one.line)
+            to_stdout(printable(one.line))
     show_failures([one.failure for one in found if one.failure is not None])
     if report is not None:
         write_report(report_bytes("check", [one.record for one in found]), report)

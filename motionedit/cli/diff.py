@@ -10,6 +10,7 @@ import click
 
 from motionedit.cli.options import lenient_option, not_negative, report_option
 from motionedit.cli.verbosity import verbosity_of, verbosity_options
+from motionedit.cli.words import printable, to_stdout
 
 if TYPE_CHECKING:
     from motionedit.jobs.diff import Comparison
@@ -90,12 +91,12 @@ def _print(comparisons: list[Comparison], *, verbosity: int) -> None:
     """Print what differs, and how many pairs do; pairs that are the same only where they are few or asked for."""
     for one in comparisons:
         if one.status in ("different", "missing"):
-            click.echo(f"{one.name}: {one.status}: {one.message}")
+            to_stdout(printable(f"{one.name}: {one.status}: {one.message}"))
         elif one.status == "same" and (len(comparisons) == 1 or verbosity > 0):
-            click.echo(f"{one.name}: same")
+            to_stdout(printable(f"{one.name}: same"))
     if len(comparisons) > 1:
         counts = Counter(one.status.replace("_", " ") for one in comparisons)
-        click.echo(f"{len(comparisons)} clips: " + ", ".join(f"{n} {status}" for status, n in counts.items()))
+        to_stdout(f"{len(comparisons)} clips: " + ", ".join(f"{n} {status}" for status, n in counts.items()))
 
 
 def _write(comparisons: list[Comparison], report: Path) -> None:

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from motionedit.cli.boundary import complain, warn
-from motionedit.errors import MotionEditError, SpecError
+from motionedit.cli.words import printable, to_stdout
+from motionedit.errors import EXIT_DONE, MISSED, MotionEditError, SpecError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -23,28 +24,60 @@ if TYPE_CHECKING:
 def finish_batch(result: BatchResult, options: RunOptions, *, command: str, spec: Mapping[str, Any] | None) -> int:
     """Print and write all that a run came to; return its exit code."""
     from motionedit.report.record import report_bytes
-    from motionedit.report.table import results_table
 
-    if options.verbosity >= 0:
-        for warning in result.warnings:
-            warn(warning)
-        if result.records and not options.dry_run:
-            click.echo(results_table(result.records, result.seconds, verbosity=options.verbosity), err=True)
-        if result.current:
-            click.echo(f"{result.current} up to date", err=True)
-    show_failures(result.failures)
+    _say(result, options)
     on_stdout = options.report is not None and str(options.report) == "-"
     if options.dry_run:
         _show_plan(result, err=on_stdout)
     elif result.content is not None:
         write_stdout(result.content)
-    elif not on_stdout:
-        for path in result.paths:
-            click.echo(os.fsencode(path))  # as bytes: a name need not be text
+    elif not on_stdout and result.paths:
+        _list(result.paths)
     if options.report is not None:
         report = report_bytes(command, result.records, spec=spec)
         write_report(report, options.report, dry_run=options.dry_run)
     return result.exit_code
+
+
+def _list(paths: Sequence[str]) -> None:
+    """Print the files written, one a line: as bytes for other programs, since a name need not be text."""
+    for path in paths:
+        to_stdout(printable(path) if sys.stdout is not None and sys.stdout.isatty() else os.fsencode(path))
+
+
+def _say(result: BatchResult, options: RunOptions) -> None:
+    """Say on standard error what became of the clips: warnings, the table, what failed or was missed, the count."""
+    from motionedit.report.table import count_line, results_table
+
+    made = [(record, time) for record, time in zip(result.records, result.seconds, strict=True) if time is not None]
+    if options.verbosity >= 0:
+        for warning in result.warnings:
+            warn(warning)
+        if made and not options.dry_run:
+            records, seconds = zip(*made, strict=True)
+            click.echo(printable(results_table(records, seconds, verbosity=options.verbosity)), err=True)
+        if result.current:
+            click.echo(f"{result.current} up to date", err=True)
+    _show_missed(result, options)
+    show_failures(result.failures)
+    if len(result.records) > 1 and (made or result.exit_code) and _worth_a_count(result, options):
+        click.echo(count_line(result.records), err=True)
+
+
+def _show_missed(result: BatchResult, options: RunOptions) -> None:
+    """Name the clips whose goals were not met, and why, where no warning has: those of an earlier run, and with -q.
+
+    As errors where they are counted as such.
+    """
+    say = complain if options.strict else warn
+    for record, time in zip(result.records, result.seconds, strict=True):
+        if record["status"] in MISSED and (time is None or options.verbosity < 0) and (options.strict or time is None):
+            say(f"{record['clip']}: {record['status'].replace('_', ' ')}: {record['message']}")
+
+
+def _worth_a_count(result: BatchResult, options: RunOptions) -> bool:
+    """Tell whether the line that counts is wanted: with -q only where something went wrong."""
+    return not options.dry_run and (options.verbosity >= 0 or result.exit_code != EXIT_DONE)
 
 
 def show_failures(failures: Sequence[MotionEditError]) -> None:
@@ -63,7 +96,8 @@ def show_failures(failures: Sequence[MotionEditError]) -> None:
 
 def write_report(report: bytes, path: Path, *, dry_run: bool = False) -> None:
     """Write a report to its file, or to standard output for ``-``."""
-    from motionedit.jobs.batch.files import atomic_write, clean_leftovers
+    from motionedit.jobs.batch.files import clean_leftovers
+    from motionedit.jobs.batch.one_clip import write_file
 
     if str(path) == "-":
         write_stdout(report)
@@ -71,18 +105,17 @@ def write_report(report: bytes, path: Path, *, dry_run: bool = False) -> None:
         click.echo(f"would write the report {path}")
     else:
         clean_leftovers([path.parent])
-        atomic_write(path, report)
+        write_file(path, report)
 
 
 def write_stdout(data: bytes) -> None:
     """Write bytes, such as a clip, to standard output as they are."""
-    sys.stdout.buffer.write(data)
-    sys.stdout.buffer.flush()
+    to_stdout(data, end=False)
 
 
 def _show_plan(result: BatchResult, *, err: bool) -> None:
     for heading, lines in result.details:
-        click.echo(f"would write {heading}", err=err)
+        click.echo(f"would write {printable(heading)}", err=err)
         for line in lines:
             click.echo(f"  {line}", err=err)
 

@@ -58,7 +58,8 @@ def command(
         raise click.UsageError("--set overrides a key of a spec: give -s too")
     from motionedit.cli.finish import write_report
     from motionedit.jobs import fit_pca
-    from motionedit.jobs.batch.plan import RunOptions, refuse_existing
+    from motionedit.jobs.batch.outputs import refuse_existing
+    from motionedit.jobs.batch.plan import RunOptions
     from motionedit.report.record import report_bytes
     from motionedit.spec.load import load_spec
 

@@ -51,18 +51,19 @@ def command(
     CLIPS are BVH files, folders of them, or '-' for standard input.
     """
     from motionedit.cli.finish import show_failures, write_report
+    from motionedit.cli.words import printable, to_stdout
     from motionedit.errors import EXIT_CLIP_FAILED, EXIT_DONE
-    from motionedit.jobs.batch.plan import find_clips, refuse_overwriting
+    from motionedit.jobs.batch.outputs import refuse_clashes
+    from motionedit.jobs.batch.plan import find_clips
     from motionedit.jobs.info import job as info
     from motionedit.report.record import report_bytes
 
     if bool(at) != bool(joints):
         raise click.UsageError("--at and --joint go together: when, and what of the body")
-    if report is not None:
-        refuse_overwriting([report], [task.source for task in find_clips(clips) if task.source])
+    refuse_clashes([("the report", report)], [task.source for task in find_clips(clips)])
     found = info.run(clips, at=list(at), joints=list(joints), contacts=contacts, up=up, lenient=lenient)
     if str(report) != "-" and found.text:
-        click.echo(found.text.rstrip("\n"))
+        to_stdout(printable(found.text.rstrip("\n")))
     show_failures(found.failures)
     if report is not None:
         write_report(report_bytes("info", found.records), report)

@@ -107,7 +107,7 @@ _BEFORE = (
     click.option(
         "--update",
         is_flag=True,
-        help="Skip outputs newer than their clip, the spec, the model and the event files, whatever --set says.",
+        help="Skip outputs that are newer than all they are made from and would be made the same.",
     ),
     overwrite_option,
 )

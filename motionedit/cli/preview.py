@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import click
@@ -15,6 +16,7 @@ from motionedit.cli.options import (
     up_option,
 )
 from motionedit.cli.verbosity import verbosity_options
+from motionedit.cli.words import to_stdout
 
 
 @click.command(
@@ -48,11 +50,11 @@ def command(
 
     CLIPS are BVH files, folders of them, or '-' for standard input.
     """
-    from motionedit.jobs.batch.plan import refuse_existing
+    from motionedit.jobs.batch.outputs import refuse_existing
     from motionedit.jobs.preview import job as preview
 
     if not overwrite:
         refuse_existing([Path(output)])
     for path in preview.run(clips, Path(output), report=report, up=up, lenient=lenient):
-        click.echo(path)
+        to_stdout(os.fsencode(path))  # as bytes: a name need not be text
     return 0

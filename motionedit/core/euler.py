@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     GivenRows = Callable[[int, int], FloatArray]
 
 _TURN = 2.0 * np.pi
+_MOST_WOUND = 1e8  # degrees: six of the digits after the point are left
 # Within this angle (rad, 1e-4 degrees) of gimbal lock the last angle is kept. The rebuilt rotation is off by no more
 # than that; a wider band would cost more than the 2e-4 degrees that are promised.
 GIMBAL_BAND = np.radians(1e-4)
@@ -59,7 +60,7 @@ def joint_angles(motion: Motion, *, start: FloatArray) -> FloatArray:
         for first in range(0, len(group.joints), step):
             joints, columns = group.joints[first : first + step], group.columns[first : first + step]
             q = np.ascontiguousarray(motion.rotations.transpose(2, 0, 1)[:, :, joints])
-            angles = _angles_of_joints(q, group.axes, np.radians(start[columns.T]))
+            angles = _angles_of_joints(q, group.axes, _radians(start[columns.T]))
             values[:, columns.reshape(-1)] = np.degrees(angles).transpose(1, 2, 0).reshape(len(motion), -1)
     return values
 
@@ -98,9 +99,9 @@ def joint_pieces(motion: Motion, joint: int, *, given: GivenRows, touched: BoolA
     q = motion.rotations[:, joint]
     pieces = []
     for start, stop in runs(touched):
-        angles, plain = _run(q, axes, lambda a, b: np.radians(given(a, b)[:, columns]), start, stop)
+        angles, plain = _run(q, axes, lambda a, b: _radians(given(a, b)[:, columns]), start, stop)
         keep = not plain or len(q) <= size
-        seed = np.radians(given(max(start - 1, 0), max(start, 1))[0, columns])
+        seed = _radians(given(max(start - 1, 0), max(start, 1))[0, columns])
         cuts = [start, *range((start // size + 1) * size, stop, size), stop]
         for first, last in pairwise(cuts):
             kept = np.degrees(angles[first - start : last - start]) if keep else None
@@ -224,6 +225,14 @@ def _distances(before: FloatArray, after: FloatArray, seed: FloatArray) -> Float
     d -= _TURN * np.rint(d * (1.0 / _TURN))
     distance: FloatArray = np.abs(d, out=d).sum(axis=0)
     return distance
+
+
+def _radians(degrees: FloatArray) -> FloatArray:
+    """Return a file's angles in radians, those that no body has wound up to without their whole turns.
+
+    Near such an angle no other one can be written: the digits would not reach below a turn.
+    """
+    return np.radians(np.where(np.abs(degrees) > _MOST_WOUND, np.fmod(degrees, 360.0), degrees))
 
 
 def _unwrap(angles: FloatArray, seed: FloatArray) -> FloatArray:

@@ -20,7 +20,8 @@ from motionedit.errors import (
     UsageError,
 )
 from motionedit.jobs.batch.one_clip import read_task
-from motionedit.jobs.batch.plan import find_clips, folder_clips, refuse_missing, refuse_overwriting
+from motionedit.jobs.batch.outputs import refuse_clashes
+from motionedit.jobs.batch.plan import find_clips, folder_clips, refuse_missing
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -117,8 +118,7 @@ def run(
         Something given does not exist, one is a folder and the other is not, or both folders hold no clip.
     """
     pairs = _pairs(a, b)
-    if report is not None:
-        refuse_overwriting([report], [task.source for _, *two in pairs for task in two if task and task.source])
+    refuse_clashes([("the report", report)], [task.source for _, *two in pairs for task in two if task])
     comparisons = []
     for name, first, second in pairs:
         if first is None or second is None:

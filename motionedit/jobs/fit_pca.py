@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import chain
+from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,9 +19,10 @@ from motionedit.core.pca.streaming import MOST_COMPONENTS
 from motionedit.core.skeleton_match import match_joints
 from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError, ModelError, MotionEditError, UsageError, together
-from motionedit.jobs.batch.files import atomic_write, clean_leftovers
-from motionedit.jobs.batch.one_clip import read_task
-from motionedit.jobs.batch.plan import ClipTask, refuse_overwriting
+from motionedit.jobs.batch.files import clean_leftovers, place
+from motionedit.jobs.batch.one_clip import read_task, write_file
+from motionedit.jobs.batch.outputs import refuse_clashes
+from motionedit.jobs.batch.plan import ClipTask
 from motionedit.jobs.batch.run import values_in_order
 from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.kept_rules import body_said, kept_body, with_body
@@ -77,12 +79,12 @@ class Database:
 def run(folder: Path, output: Path, loaded: LoadedSpec[FitPcaSpec] | None, options: RunOptions) -> FitReport:
     """Fit a model to the clips that a folder's normalization.json lists, and write it; see `fit`."""
     database = database_in(folder)
-    sources = [task.source for task in database.tasks if task.source is not None]
-    refuse_overwriting([output], [*sources, folder / NAME, *(() if loaded is None else loaded.files)])
+    sources = [task.source for task in database.tasks]
+    written = [("the model", output), ("the report", options.report)]
+    refuse_clashes(written, [*sources, folder / NAME, *(() if loaded is None else loaded.files)])
     made = fit(database, loaded, options=options)
     clean_leftovers([output.parent])
-    output.parent.mkdir(parents=True, exist_ok=True)
-    atomic_write(output, model_bytes(made.model))
+    write_file(output, model_bytes(made.model))
     return made.report
 
 
@@ -101,8 +103,22 @@ def database_in(folder: Path) -> Database:
         raise UsageError(f"{what}; give the folder that 'motionedit normalize' wrote", file=str(folder))
     normalization = read_normalization(folder)
     paths = [folder / each.clip for each in normalization.clips]
+    _refuse_strangers(normalization, folder)
     tasks = [ClipTask(path, str(path), None, each.clip) for path, each in zip(paths, normalization.clips, strict=True)]
     return Database(normalization, tasks, str(folder), str(folder / NAME))
+
+
+def _refuse_strangers(normalization: Normalization, folder: Path) -> None:
+    """Raise a ModelError where a clip is listed twice, or is none of the folder's."""
+    found: set[str] = set()
+    for each in normalization.clips:
+        path = PurePath(each.clip)
+        if path.is_absolute() or ".." in path.parts:
+            raise ModelError(f"lists {each.clip}, which is not below its folder", file=str(folder / NAME))
+        name = place(folder / path)
+        if name in found:
+            raise ModelError(f"lists {each.clip} twice; run 'motionedit normalize' again", file=str(folder / NAME))
+        found.add(name)
 
 
 def fit(database: Database, loaded: LoadedSpec[FitPcaSpec] | None, *, options: RunOptions) -> Fit:
@@ -201,6 +217,10 @@ def _read(item: _Listed) -> Motion:
     clip = read_task(item.task, lenient=False)
     if len(clip.motion) != item.frames:
         message = f"has {len(clip.motion)} frames, {NAME} says {item.frames}; run 'motionedit normalize' again"
+        raise ClipError(message, file=item.task.label)
+    if item.task.clip is None and clip.sha256 != item.listed.written:
+        message = f"is not the clip that {NAME} lists (changed since, or of another run)"
+        message = f"{message}; run 'motionedit normalize' again"
         raise ClipError(message, file=item.task.label)
     return clip.motion
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from hashlib import sha256
 from pathlib import Path
 from typing import Any, SupportsIndex
 
@@ -59,9 +61,14 @@ class Normalized:
         target = path_of(folder)
         if target.name.lower().endswith(".bvh"):
             raise UsageError("several files are written; give a folder", file=str(target))
-        files = {target / clip.label: text_of(clip) for clip in self.clips}
-        files[target / NAME] = normalization_bytes(self.normalization)
-        write_files(files, inputs=self.inputs)
+        texts = [text_of(clip) for clip in self.clips]
+        listed = [
+            replace(each, written=sha256(text).hexdigest())
+            for each, text in zip(self.normalization.clips, texts, strict=True)
+        ]
+        files = {target / clip.label: text for clip, text in zip(self.clips, texts, strict=True)}
+        last = {target / NAME: normalization_bytes(replace(self.normalization, clips=tuple(listed)))}
+        write_files(files, inputs=self.inputs, last=last)
         return target
 
     def __repr__(self) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from motionedit.errors import together
 from motionedit.jobs.batch.files import clean_leftovers
 from motionedit.jobs.batch.one_clip import write_file
-from motionedit.jobs.batch.plan import refuse_overwriting
+from motionedit.jobs.batch.outputs import refuse_clashes
 from motionedit.library.file_errors import file_errors
 from motionedit.library.paths import AnyPath, path_of
 from motionedit.report.record import report_bytes
@@ -65,8 +65,12 @@ def text_of(clip: Clip) -> bytes:
 
 
 @file_errors()
-def write_files(files: Mapping[Path, bytes], *, inputs: Iterable[Path]) -> None:
+def write_files(
+    files: Mapping[Path, bytes], *, inputs: Iterable[Path], last: Mapping[Path, bytes] | None = None
+) -> None:
     """Write files, each whole or not at all, after it was seen that none is an input.
+
+    Those of `last` list the others: they are removed first and written last, so that no list is of other files.
 
     Raises
     ------
@@ -75,7 +79,10 @@ def write_files(files: Mapping[Path, bytes], *, inputs: Iterable[Path]) -> None:
     MotionEditError
         One cannot be written.
     """
-    refuse_overwriting(list(files), list(inputs))
+    lists = {} if last is None else dict(last)
+    refuse_clashes([(path.name, path) for path in (*files, *lists)], inputs)
     clean_leftovers({path.parent for path in files})
-    for path, content in files.items():
+    for path in lists:
+        path.unlink(missing_ok=True)
+    for path, content in (*files.items(), *lists.items()):
         write_file(path, content)

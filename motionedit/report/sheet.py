@@ -234,7 +234,7 @@ def _draw_names(axes: Axes, row: list[Body], colors: list[str]) -> None:
     start = 12.0
     for body, color in zip(row, colors, strict=True):
         name = axes.annotate(
-            body.label,
+            body.label.encode(errors="replace").decode(),  # a file's name need not be text
             corner,
             (start, -8.0),
             textcoords="offset points",

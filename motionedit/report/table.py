@@ -40,7 +40,7 @@ def number(value: object) -> str:
 
 
 def results_table(records: Sequence[dict[str, Any]], seconds: Sequence[float], *, verbosity: int = 0) -> str:
-    """Return the results of a run: a row per clip, a line that counts them, with -v the goals of each clip."""
+    """Return the results of a run: a row per clip, with -v the goals of each clip."""
     shown = [
         (record, time)
         for record, time in zip(records, seconds, strict=True)
@@ -56,10 +56,13 @@ def results_table(records: Sequence[dict[str, Any]], seconds: Sequence[float], *
         blocks.append(text_table(headings, [_row(record, time) for record, time in shown]))
     if verbosity > 0:
         blocks += [_goals_table(record) for record, _ in shown if _goals(record)]
-    if len(records) > 1:
-        counts = Counter(record["status"] for record in records)
-        blocks.append(f"{len(records)} clips: " + ", ".join(f"{n} {status}" for status, n in counts.items()))
     return "\n".join(blocks)
+
+
+def count_line(records: Sequence[dict[str, Any]]) -> str:
+    """Return the line that counts clips by their status, which ends a run of several."""
+    counts = Counter(record["status"] for record in records)
+    return f"{len(records)} clips: " + ", ".join(f"{n} {status}" for status, n in counts.items())
 
 
 def _unit(records: Sequence[dict[str, Any]]) -> str:

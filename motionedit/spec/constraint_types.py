@@ -91,6 +91,15 @@ class AimConstraint(Recruiting, Placed, EffectorItem, ConstraintItem):
     has_position = False
     has_angle = True
     only_warns = True
+    between_keys = (
+        {"anyOf": [{"required": ["target"]}, {"required": ["points"]}]},
+        {"not": {"required": ["target", "relative_to"]}},
+        {
+            "if": {"required": ["target"]},
+            "then": {"properties": {"points": {"items": {"not": {"required": ["position"]}}}}},
+            "else": {"properties": {"points": {"items": {"required": ["position"]}, "minItems": 1}}},
+        },
+    )
 
     type: Literal["aim"] = Field(description="The type: aim.")
     axis: Annotated[Vector, kinds.DIRECTION] = Field(

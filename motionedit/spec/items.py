@@ -6,7 +6,7 @@ from typing import Annotated, Any, Self, TypeVar
 from pydantic import Field, PrivateAttr
 
 from motionedit.spec import kinds
-from motionedit.spec.faults import Fault, Keys, dotted
+from motionedit.spec.faults import Fault, Keys, dotted, faulty
 from motionedit.spec.model import SpecModel, mappings_in
 from motionedit.spec.values import EffectorSpec
 
@@ -93,20 +93,25 @@ def measured_in_itself(data: Mapping[str, Any]) -> Iterator[Fault]:
             return
 
 
+# Ten times what the largest specs in use ask for.
+MOST_ITEMS = 100
+
 AnyItem = TypeVar("AnyItem", bound=Item)
 
 
 def taken_apart(items: Sequence[AnyItem], key: str) -> tuple[AnyItem, ...]:
     """Return the items that a list at `key` stands for, each with its name and place in the file."""
     used = {item.name for item in items if item.name}
+    parts = [(i, n, part) for i, item in enumerate(items) for n, part in enumerate(item.apart())]
+    if len(parts) > MOST_ITEMS:
+        raise faulty(f"are {len(parts)}; one spec has {MOST_ITEMS} at most: their time grows faster than their number")
     found: list[AnyItem] = []
-    for i, item in enumerate(items):
-        for n, part in enumerate(item.apart()):
-            base = part.name or part.default_name
-            # The first item of a given name keeps it; every other name is numbered until it is free.
-            name = base if n == 0 and part.name else _free_name(base, used)
-            used.add(name)
-            found.append(part._place((key, i), name))  # noqa: SLF001 (the module of its class)
+    for i, n, part in parts:
+        base = part.name or part.default_name
+        # The first item of a given name keeps it; every other name is numbered until it is free.
+        name = base if n == 0 and part.name else _free_name(base, used)
+        used.add(name)
+        found.append(part._place((key, i), name))  # noqa: SLF001 (the module of its class)
     return tuple(found)
 
 

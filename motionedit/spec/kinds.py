@@ -162,7 +162,7 @@ FEET = Kind(_plainly(values.parse_joints), "a list of joints", _JOINTS)
 ANKLES = either(("auto",), JOINTS)
 OWN_HEIGHT = either_number("input")
 VECTOR = Kind(_plainly(scalars.vector), "three numbers [x, y, z]", _VECTOR)
-DIRECTION = Kind(_plainly(scalars.direction), "a direction [x, y, z]", _VECTOR)
+DIRECTION = Kind(_plainly(scalars.direction), "a direction [x, y, z]", {**_VECTOR, "not": {"items": {"const": 0}}})
 AXES = Kind(
     _plainly(scalars.axes),
     "a list of some of x, y, z",

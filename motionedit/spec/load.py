@@ -132,7 +132,8 @@ def load_spec(spec: Spec, command: str, **changes: Unpack[Overrides]) -> LoadedS
     listed = frozenset(own.value) if own is not None and isinstance(own.value, dict) else frozenset()
     tree, found = _with_events(tree, changes.get("events", {}))
     faults += found
-    tree, found = apply_overrides(tree, changes.get("overrides", ()))
+    overrides = changes.get("overrides", ())
+    tree, found = apply_overrides(tree, overrides, known=model_of(command).model_fields if overrides else ())
     faults += found
     data = tree.plain()
     if other := _other_command(data, command):

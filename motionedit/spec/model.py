@@ -76,6 +76,8 @@ class SpecModel(BaseModel):
     exactly_one: ClassVar[tuple[tuple[str, ...], ...]] = ()
     at_most_one: ClassVar[tuple[tuple[str, ...], ...]] = ()
     at_least_one: ClassVar[tuple[tuple[str, ...], ...]] = ()
+    # What `faults_between_keys` refuses, as far as JSON Schema can say it, for editors.
+    between_keys: ClassVar[tuple[Mapping[str, Any], ...]] = ()
     # What stands at a key that is unknown here but not elsewhere: "belongs to ...".
     foreign_keys: ClassVar[Mapping[str, str]] = {}
 
@@ -94,7 +96,7 @@ class SpecModel(BaseModel):
     def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         json = handler.resolve_ref_schema(handler(schema))
         json["properties"] = {key: value for key, value in json["properties"].items() if key in cls.key_names()}
-        rules: list[dict[str, Any]] = []
+        rules: list[dict[str, Any]] = [dict(rule) for rule in cls.between_keys]
         for kind, groups in (("oneOf", cls.exactly_one), ("anyOf", cls.at_least_one)):
             rules += [{kind: [{"required": [key]} for key in group]} for group in groups]
         for group in cls.at_most_one:

@@ -10,14 +10,15 @@ from motionedit.spec.syntax import DEEPEST
 from motionedit.spec.yaml_tree import Node, read_tree
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
 
-def apply_overrides(root: Node, overrides: Sequence[str]) -> tuple[Node, list[Fault]]:
+def apply_overrides(root: Node, overrides: Sequence[str], *, known: Collection[str] = ()) -> tuple[Node, list[Fault]]:
     """Return the tree with each ``KEY=VALUE`` in place, and the faults of those that cannot be.
 
     A key is a dotted path; an item of a list is named by its index or its `name`. A missing key of a mapping is
-    made; whether it may stand there, the spec's model says afterwards.
+    made; whether it may stand there, the spec's model says afterwards. A goal or constraint may be named without its
+    list, as in ``ball.weight``, where its name is no key that the spec has or may have (`known`).
     """
     faults: list[Fault] = []
     for override in overrides:
@@ -29,10 +30,19 @@ def apply_overrides(root: Node, overrides: Sequence[str]) -> tuple[Node, list[Fa
             keys = path.strip().split(".")
             if len(keys) > DEEPEST:
                 raise faulty(f"is a path of more than {DEEPEST} keys")
-            root = _replaced(root, keys, _value(text, source), ())
+            root = _replaced(root, _from_list(root, keys, known), _value(text, source), ())
         except FaultyValueError as error:
             faults += [Fault(fault.message, file=source) for fault in error.faults]
     return root, faults
+
+
+def _from_list(root: Node, keys: list[str], known: Collection[str]) -> list[str]:
+    """Return a path with the list in front whose item its first key names; the path itself where none does."""
+    if len(keys) < 2 or keys[0] in known or not isinstance(root.value, dict) or keys[0] in root.value:
+        return keys
+    lists = [key for key, node in root.value.items() if isinstance(node.value, list)]
+    named = [key for key in lists if keys[0] in map(_item_name, root.value[key].value)]
+    return [named[0], *keys] if len(named) == 1 else keys
 
 
 def _value(text: str, source: str) -> Node:

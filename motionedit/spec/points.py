@@ -26,6 +26,7 @@ class Point(SpecModel):
 
     exactly_one = (("hold", "during", "at"),)
     at_most_one = (("position", "shift"), LENGTH_KEYS)
+    between_keys = tuple({"not": {"required": ["during", key]}} for key in ("position", "orientation"))
 
     hold: Annotated[Interval | None, kinds.INTERVAL] = Field(
         default=None, description="Stands still from a to b, [a, b]. One of hold, during, at is needed."

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from motionedit.regular_files import read_file
 from motionedit.spec.faults import Fault
 
 if TYPE_CHECKING:
@@ -20,8 +21,7 @@ _UTF16 = (b"\xff\xfe", b"\xfe\xff")
 def read_text(path: Path) -> tuple[str, Fault | None]:
     """Return a file's text without a byte order mark, and what is wrong with it; the text is then empty."""
     try:
-        with path.open("rb") as file:
-            data = file.read(MOST_BYTES + 1)
+        data = read_file(path, most=MOST_BYTES + 1)
     except (OSError, ValueError) as error:
         return "", Fault(_reason(error))
     if len(data) > MOST_BYTES:

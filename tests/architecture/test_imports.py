@@ -14,17 +14,19 @@ FILES = sorted(PACKAGE.rglob("*.py"))
 
 # What a room may import of the others.
 MAY_IMPORT = {
-    "cli": {"cli", "jobs", "spec", "core", "report", "errors", "dataclass"},
-    "library": {"library", "jobs", "spec", "core", "report", "errors", "dataclass"},
-    "jobs": {"jobs", "spec", "core", "report", "errors", "dataclass"},
-    "spec": {"spec", "errors", "dataclass"},
-    "core": {"core", "errors", "dataclass"},
-    "report": {"report", "errors", "dataclass"},
+    "cli": {"cli", "jobs", "spec", "core", "report", "errors", "dataclass", "regular_files", "interrupts"},
+    "library": {"library", "jobs", "spec", "core", "report", "errors", "dataclass", "regular_files", "interrupts"},
+    "jobs": {"jobs", "spec", "core", "report", "errors", "dataclass", "regular_files", "interrupts"},
+    "spec": {"spec", "errors", "dataclass", "regular_files", "interrupts"},
+    "core": {"core", "errors", "dataclass", "regular_files", "interrupts"},
+    "report": {"report", "errors", "dataclass", "regular_files", "interrupts"},
     "errors": set(),
     "dataclass": set(),
+    "regular_files": set(),
+    "interrupts": set(),
     "version": set(),
     "__init__": {"library", "core", "errors"},
-    "__main__": {"cli"},
+    "__main__": {"cli", "interrupts"},
 }
 # The rooms (and files) in which an outside package may be imported.
 HOMES = {

@@ -161,3 +161,15 @@ def test_an_edit_in_pieces_is_the_edit_and_no_piece_is_long(monkeypatch):
     assert b"".join(pieces) == edited_bytes(clip, turned(clip), touched=touched)
     assert len(pieces) > 20
     assert max(map(len, pieces)) < 600
+
+
+def test_an_angle_beyond_sense_in_one_frame_changes_no_other():
+    data = TEXT.splitlines()
+    row = next(i for i, line in enumerate(data) if line.startswith("Frame Time")) + 1
+    words = data[row].split()
+    words[4] = "3e50"
+    clip = read("\n".join([*data[:row], " ".join(words), *data[row + 1 :], ""]).encode())
+    edit = turned(clip)
+    after = read(edited_bytes(clip, edit, touched=frames(clip, on=[1, 2]), moved=frames(clip)[:, :1]))
+    assert np.abs(after.values[1:]).max() < 1000.0
+    np.testing.assert_allclose(rot.angle_between(after.motion.rotations[1:], edit.rotations[1:]), 0.0, atol=1e-5)

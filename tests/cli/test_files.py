@@ -205,3 +205,56 @@ def test_where_files_have_no_numbers_their_places_tell_them_apart(tmp_path, monk
 def test_capitals_make_another_place_only_where_the_system_says_so(monkeypatch, system, same):
     monkeypatch.setattr(files.sys, "platform", system)
     assert (place(Path("out/Walk.bvh")) == place(Path("out/walk.bvh"))) == same
+
+
+@pytest.mark.skipif(files.fcntl is None, reason="without locks nothing is taken for a leftover while it is open")
+def test_a_file_that_another_run_takes_for_a_leftover_before_it_is_locked_is_begun_again(tmp_path, monkeypatch):
+    usual, taken = files.fcntl.flock, []
+
+    def flock(stream, how):
+        if not taken:
+            taken.append(Path(stream.name))
+            taken[0].unlink()
+        usual(stream, how)
+
+    monkeypatch.setattr(files.fcntl, "flock", flock)
+    atomic_write(tmp_path / "walk.bvh", b"whole")
+    assert taken
+    assert (tmp_path / "walk.bvh").read_bytes() == b"whole"
+    assert names_in(tmp_path) == ["walk.bvh"]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="the system has no such modes")
+def test_a_file_that_is_replaced_keeps_its_mode(tmp_path):
+    path = tmp_path / "walk.bvh"
+    path.write_bytes(b"old")
+    path.chmod(0o640)
+    atomic_write(path, b"new")
+    assert path.stat().st_mode & 0o777 == 0o640
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no such pipes")
+def test_a_pipe_that_nobody_reads_is_an_error_and_no_reason_to_wait(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(OSError, match="No such device"):
+        atomic_write(tmp_path / "pipe", b"")
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no such pipes")
+def test_pipes_and_devices_in_place_of_files_are_refused_in_words(run, clip, copy_spec):
+    os.mkfifo("pipe.bvh")
+    Path("out").mkdir()
+    os.mkfifo("out/.x.motionedit-partial")  # a leftover that is none
+    Path("pc.yaml").write_text("schema: motionedit/edit-pc/v1\ngoals: []\n")
+    walk = clip()
+    for arguments in (
+        ("info", "pipe.bvh"),
+        ("info", "/dev/zero"),
+        ("edit-prioritized", walk, "-s", "pipe.bvh", "-o", "out"),
+        ("edit-prioritized", walk, "pipe.bvh", "-s", copy_spec, "-o", "out"),
+        ("edit-pc", walk, "-s", "pc.yaml", "-m", "pipe.bvh", "-o", "out"),
+        ("preview", walk, "--report", "pipe.bvh", "-o", "p.html"),
+    ):
+        result = run(*arguments)
+        assert result.exit_code in (1, 2), arguments
+        assert "a pipe or a device, not a file" in result.stderr

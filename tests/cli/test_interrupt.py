@@ -8,49 +8,84 @@ from pathlib import Path
 
 import pytest
 
+# The program, whose work on b.bvh says that it has begun and does not end.
+STUCK = """
+import sys, time
+from motionedit.__main__ import main
+from motionedit.jobs.edit_prioritized.job import EditByPriorities
+usual = EditByPriorities.__call__
+def stuck(self, clip, task):
+    if task.relative == "b.bvh":
+        open("begun", "wb").close()
+        time.sleep(60)
+    return usual(self, clip, task)
+EditByPriorities.__call__ = stuck
+main()
+"""
+
+
+@pytest.fixture
+def stuck(clip, copy_spec, tmp_path):
+    """Return a function that starts the program on three clips and waits until it works on the second."""
+    for name in "abc":
+        clip(f"in/{name}.bvh")
+
+    def start(jobs):
+        process = subprocess.Popen(
+            [sys.executable, "-c", STUCK, "edit-prioritized", "in", "-s", copy_spec, "-o", "out", "-j", jobs],
+            cwd=tmp_path,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
+            # A shell's background job ignores Ctrl-C, and so would what it starts.
+            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # noqa: PLW1509  no threads here
+        )
+        while not (tmp_path / "begun").exists():
+            assert process.poll() is None
+        return process
+
+    return start
+
 
 @pytest.mark.parametrize("jobs", ["1", "2"])
-def test_ctrl_c_ends_the_run_at_once_and_leaves_nothing_half_written(clip, copy_spec, tmp_path, jobs):
-    clip("in/a.bvh")
-    clip("in/c.bvh")
-    # A clip that never comes: opening a pipe to write waits until the program has come to reading it.
-    os.mkfifo(tmp_path / "in/b.bvh")
-    process = subprocess.Popen(
-        [sys.executable, "-m", "motionedit", "edit-prioritized", "in", "-s", copy_spec, "-o", "out", "-j", jobs],
-        cwd=tmp_path,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-        # A shell's background job ignores Ctrl-C, and so would what it starts.
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # noqa: PLW1509  no threads here
-    )
-    with (tmp_path / "in/b.bvh").open("wb"):
-        # As a terminal does: to every process of the run.
-        os.killpg(process.pid, signal.SIGINT)
-        out, err = process.communicate(timeout=20)
+def test_ctrl_c_ends_the_run_at_once_and_leaves_nothing_half_written(stuck, tmp_path, jobs):
+    process = stuck(jobs)
+    # As a terminal does: to every process of the run.
+    os.killpg(process.pid, signal.SIGINT)
+    out, err = process.communicate(timeout=20)
     assert process.returncode == 130
     assert (out, err) == ("", "motionedit: error: interrupted\n")
-    assert {path.name for path in (tmp_path / "out").glob("*")} <= {"a.bvh", "c.bvh"}
+    assert {path.name for path in (tmp_path / "out").glob("[!.]*")} <= {"a.bvh", "c.bvh"}
+    assert not list((tmp_path / "out").glob(".*-partial"))
     with pytest.raises(ProcessLookupError):
         os.killpg(process.pid, 0)
 
 
-def test_a_killed_worker_is_one_line_and_the_clips_that_were_done_stay(clip, copy_spec, tmp_path):
-    clip("in/a.bvh")
-    os.mkfifo(tmp_path / "in/b.bvh")
-    process = subprocess.Popen(
-        [sys.executable, "-m", "motionedit", "edit-prioritized", "in", "-s", copy_spec, "-o", "out", "-j", "2"],
-        cwd=tmp_path,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-    with (tmp_path / "in/b.bvh").open("wb"):
-        for worker in Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split():
-            os.kill(int(worker), signal.SIGKILL)
-        out, err = process.communicate(timeout=20)
+def test_a_killed_worker_is_one_line(stuck):
+    process = stuck("2")
+    workers = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+    assert len(workers) == 2
+    for worker in workers:
+        os.kill(int(worker), signal.SIGKILL)
+    out, err = process.communicate(timeout=20)
     assert process.returncode == 1
     assert "in/b.bvh: its worker process was killed" in err
     assert "Traceback" not in err
-    assert set(out.split()) <= {"out/a.bvh"}
+    assert set(out.split()) <= {"out/a.bvh", "out/c.bvh"}
+
+
+def test_ctrl_c_while_modules_are_loaded_is_one_line_too():
+    code = """
+import os, signal, sys
+class Interrupting:
+    def find_spec(self, name, path=None, target=None):
+        if name == "click":
+            os.kill(os.getpid(), signal.SIGINT)
+sys.meta_path.insert(0, Interrupting())
+signal.signal(signal.SIGINT, signal.default_int_handler)
+from motionedit.__main__ import main
+main()
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=20, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "motionedit: error: interrupted\n")

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from motionedit.jobs.batch import run as batch
-from motionedit.jobs.batch.plan import ClipTask
+from motionedit.jobs.batch.plan import ClipTask, RunOptions
 
 ROOT = Path(__file__).resolve().parents[2]
 WALK = ROOT / "data" / "walk.bvh"
@@ -202,7 +202,7 @@ def test_pages_are_the_same_bytes_for_any_number_of_workers(run, clip, spec, tmp
     written = []
     for jobs in (1, 2):
         run("edit-prioritized", "takes", "-s", spec, "-o", "out", "--preview", "-j", jobs)
-        written.append({path.name: path.read_bytes() for path in sorted((tmp_path / "out").iterdir())})
+        written.append({path.name: path.read_bytes() for path in sorted((tmp_path / "out").glob("[!.]*"))})
     assert written[0] == written[1]
     assert list(written[0]) == ["0.bvh", "0.html", "1.bvh", "1.html", "2.bvh", "2.html"]
 
@@ -252,7 +252,8 @@ def test_update_makes_a_page_anew_that_is_older_than_the_spec(run, clip, spec, t
 
 def test_a_worker_elsewhere_gets_the_page_s_whole_path():
     task = ClipTask(Path("a.bvh"), "a.bvh", Path("out/a.bvh"), "a.bvh", page=Path("out/a.html"))
-    assert all(path.is_absolute() for path in batch._absolute(task).outputs)
+    placed = batch._placed(task, RunOptions(scheduler="tcp://127.0.0.1:1"))
+    assert all(path.is_absolute() for path in placed.outputs)
 
 
 def test_clips_that_would_share_a_page_are_refused(run, clip, spec):
@@ -276,7 +277,7 @@ def test_a_clip_that_fails_has_no_page(run, clip, spec, tmp_path):
     result = run("edit-prioritized", "takes", "-s", spec, "-o", "out", "--preview")
     assert result.exit_code == 1
     assert result.stdout.splitlines() == ["out/good.bvh", "out/good.html"]
-    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["good.bvh", "good.html"]
+    assert sorted(path.name for path in (tmp_path / "out").glob("[!.]*")) == ["good.bvh", "good.html"]
 
 
 def test_a_page_that_cannot_be_written_fails_its_clip_by_name(run, clip, spec, tmp_path):

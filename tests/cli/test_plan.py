@@ -69,6 +69,8 @@ def test_standard_input_and_output():
 @pytest.mark.parametrize(
     ("clips", "output", "message"),
     [
+        (["takes"], "x.fbx", "x.fbx: clips are written as .bvh, not as .fbx"),
+        (["takes/a.bvh"], "x.JSON", "x.JSON: clips are written as .bvh, not as .JSON"),
         (["takes"], "x.bvh", "-o x.bvh: 3 clips cannot go to x.bvh; give a folder"),
         (["takes"], "-", "-o -: 3 clips cannot go to standard output; give a folder"),
         (["-"], "out", "a clip from standard input has no name"),

@@ -14,7 +14,7 @@ from functools import partial
 import pytest
 
 from motionedit.errors import UsageError
-from motionedit.jobs.batch import pool
+from motionedit.jobs.batch import processes
 from motionedit.jobs.batch.plan import RunOptions
 from motionedit.jobs.batch.pool import WorkerDiedError, results_in_order
 
@@ -81,7 +81,7 @@ def test_workers_are_only_a_few_items_ahead_of_the_results_that_are_taken(tmp_pa
         assert next(results) == 0
         time.sleep(2.0)  # time for a hundred items in each worker
         begun = len(list(tmp_path.iterdir()))
-        assert begun <= 2 * pool._AHEAD
+        assert begun <= 2 * processes.AHEAD
         assert [next(results) for _ in range(100)] == list(range(1, 101))
 
 
@@ -98,7 +98,7 @@ def test_closing_early_leaves_no_worker():
 
 
 def test_workers_that_are_started_anew_give_the_same_results(monkeypatch):
-    monkeypatch.setattr(pool.sys, "platform", "darwin")
+    monkeypatch.setattr(processes.sys, "platform", "darwin")
     assert list(results_in_order(math.isqrt, [16, 9, 4], options=RunOptions(jobs=2))) == [4, 3, 2]
 
 
@@ -108,7 +108,7 @@ def test_a_batch_of_workers_that_are_started_anew_writes_the_same_bytes(clip, ru
     spec.write_text(json.dumps({"schema": "motionedit/edit-prioritized/v1", "constraints": [lift]}), encoding="utf-8")
     clips = [clip(f"in/{seed}.bvh", seed=seed) for seed in range(2)]
     assert run("edit-prioritized", "in", "-s", spec, "-o", "one").exit_code == 0
-    monkeypatch.setattr(pool.sys, "platform", "darwin")
+    monkeypatch.setattr(processes.sys, "platform", "darwin")
     assert run("edit-prioritized", "in", "-s", spec, "-o", "two", "-j", "2").exit_code == 0
     for path in clips:
         written = (tmp_path / "one" / path.name).read_bytes()
@@ -116,7 +116,7 @@ def test_a_batch_of_workers_that_are_started_anew_writes_the_same_bytes(clip, ru
 
 
 def test_a_wait_for_a_result_is_many_short_ones_so_that_ctrl_c_is_heard_in_between(monkeypatch):
-    monkeypatch.setattr(pool, "_SECONDS_WITHOUT_CTRL_C", 0.01)
+    monkeypatch.setattr(processes, "SECONDS_WITHOUT_CTRL_C", 0.01)
     assert list(results_in_order(slow_first, range(2), options=RunOptions(jobs=2))) == [0, 1]
 
 

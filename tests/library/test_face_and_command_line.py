@@ -19,8 +19,8 @@ def test_normalized_clips_are_those_of_the_command_line(command_line, tmp_path):
     )
     result = motionedit.normalize("data/golf", "configs/golf-normalize.yaml")
     result.write(tmp_path / "b")
-    names = sorted(path.name for path in (tmp_path / "a").iterdir())
-    assert sorted(path.name for path in (tmp_path / "b").iterdir()) == names
+    names = sorted(path.name for path in (tmp_path / "a").glob("[!.]*"))
+    assert sorted(path.name for path in (tmp_path / "b").glob("[!.]*")) == names
     for name in names:
         assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
     assert result.report == {**report, "clips": [without_output(record) for record in report["clips"]]}

@@ -93,7 +93,7 @@ def test_a_file_without_permission_is_answered_with_the_reason(tmp_path):
 def test_a_device_without_end_is_not_read_to_its_end():
     with pytest.raises(MotionEditError) as caught:
         load_spec(Path("/dev/zero"), "edit-pc")
-    assert str(caught.value.errors[0]) == "/dev/zero: larger than 4 MB; is it the right file?"
+    assert str(caught.value.errors[0]) == "/dev/zero: a pipe or a device, not a file"
 
 
 def test_naming_the_specs_loads_neither_yaml_nor_pydantic():
@@ -111,3 +111,9 @@ def test_loading_a_spec_loads_no_numpy(tmp_path):
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert not {"numpy", "scipy", "click"} & set(done.stdout.split())
+
+
+def test_more_constraints_than_can_be_solved_in_any_time_are_refused_in_words():
+    spec = {"constraints": [{"type": "position", "effector": "LeftHand", "priority": n} for n in range(1000)]}
+    with pytest.raises(MotionEditError, match="constraints: are 1000; one spec has 100 at most"):
+        load_spec(spec, "edit-prioritized")

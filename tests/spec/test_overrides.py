@@ -26,6 +26,12 @@ def test_a_list_item_is_named_by_its_name_its_effector_or_its_index(load):
     assert (ball.shift, hand.weight, head.at.percent, head.weight) == ((1.0, 2.0, 3.0), 2.0, 71.2, 5.0)
 
 
+def test_a_goal_is_named_without_its_list_where_its_name_is_no_key(load):
+    loaded = load(TEXT, "edit-pc", "ball.weight=3", "Head.weight=5")
+    assert [goal.weight for goal in loaded.model.goals] == [3.0, 1.0, 5.0]
+    assert load(TEXT.replace("name: ball", "name: solver"), "edit-pc", "solver.method=damped", "unit=cm").model.unit
+
+
 def test_the_overrides_are_in_the_data_for_reports_and_the_keys_keep_their_order(load):
     loaded = load(TEXT, "edit-pc", "goals.0.shift=[1, 2, 3]", "unit=cm")
     assert loaded.data["goals"][0]["shift"] == [1, 2, 3]

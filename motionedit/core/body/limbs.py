@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 _LENGTH_TOLERANCE = 0.3
 _NAMED_TOLERANCE = 0.7  # where names are left and right of each other: bones read off one frame of a video are 1 to 2
 _LENGTH_FLOOR = 0.02  # of the height: below it any two bones are alike
+# Branches of one joint beyond which only the longest are looked at: pairs of them are compared, and no body has more.
+_MOST_BRANCHES = 48
 _LONGEST_CHAIN = 24  # joints: longer ones are ropes and tails, and every three joints of a chain are tried
 _SHORTEST_LIMB = 0.1  # of the height: fingers and faces come in pairs too
 _RATIO_LIMIT = 2.5  # upper to lower bone; CMU's upper arm is up to 1.9 forearms
@@ -92,7 +94,7 @@ def find_limb_pairs(tree: Tree) -> tuple[LimbPair, ...]:
     found = [
         pair
         for base, children in enumerate(skeleton.children)
-        for a, b in combinations(children, 2)
+        for a, b in combinations(_foremost(tree, children), 2)
         if (pair := _limb_pair(tree, base, (a, b))) is not None
     ]
     mirrored = [pair for pair in found if side_of_chains(skeleton.names, pair.chains)]
@@ -211,7 +213,8 @@ class Tree:
         if level == _LONGEST_CHAIN:
             return []
         names, children = self.skeleton.names, self.skeleton.children
-        options = [(c, d, self.match(c, d, level=level + 1)) for c in children[a] for d in children[b]]
+        mine, theirs = _foremost(self, children[a]), _foremost(self, children[b])
+        options = [(c, d, self.match(c, d, level=level + 1)) for c in mine for d in theirs]
         return sorted(options, key=lambda o: (side_of_names(names[o[0]], names[o[1]]) == 0, -o[2].total, o[0], o[1]))
 
     def _reaches(self) -> FloatArray:
@@ -231,6 +234,14 @@ class Tree:
             if len(branches) > 1:
                 longest = max(longest, sum(sorted(branches)[-2:]))
         return longest
+
+
+def _foremost(tree: Tree, children: Sequence[int]) -> list[int]:
+    """Return the branches of a joint among which limbs, or what hangs on them, are looked for, in their order."""
+    if len(children) <= _MOST_BRANCHES:
+        return list(children)
+    longest = sorted(children, key=lambda child: (-tree.lengths[child] - tree.reach[child], child))
+    return sorted(longest[:_MOST_BRANCHES])
 
 
 def _limb_pair(tree: Tree, base: int, first: tuple[int, int]) -> LimbPair | None:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
 
 # Real rigs stay under a thousand joints; the limit keeps a hostile file from taking minutes.
-MAX_JOINTS = 10_000
+MAX_JOINTS = 2_000
 
 _CHANNELS = {f"{axis}{kind}".lower().encode(): f"{axis}{kind}" for axis in "XYZ" for kind in ("position", "rotation")}
 _KEYWORDS = frozenset((b"root", b"joint", b"end", b"offset", b"channels", b"motion", b"hierarchy"))

@@ -16,6 +16,7 @@ from motionedit.core.bvh.text import BvhText
 from motionedit.core.motion import Motion, write_poses
 from motionedit.dataclass import dataclass
 from motionedit.errors import BvhError
+from motionedit.regular_files import NotAFileError, read_file
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -131,7 +132,9 @@ def read_clip(path: Path, *, label: str | None = None, lenient: bool = False) ->
     """
     name = str(path) if label is None else label
     try:
-        data = path.read_bytes()
+        data = read_file(path)
+    except NotAFileError as error:
+        raise BvhError(f"{error.strerror}; a pipe is given as '-'", file=name) from error
     except OSError as error:
         raise BvhError(f"cannot be read: {error.strerror or error}", file=name) from error
     return parse_clip(data, label=name, lenient=lenient, source=path)

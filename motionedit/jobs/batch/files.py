@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import stat
 import sys
 import time
 from typing import TYPE_CHECKING, BinaryIO
@@ -12,6 +13,8 @@ try:
     import fcntl
 except ImportError:  # Windows, where a file that a run has open cannot be removed anyway
     fcntl = None  # type: ignore[assignment]
+
+from motionedit.interrupts import clean_up_first
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -26,29 +29,26 @@ _SECONDS_BETWEEN_TRIES = 0.05
 def atomic_write(path: Path, data: bytes | Iterable[bytes | memoryview]) -> None:
     """Write a file, whole or in pieces, by way of a temporary one in the same folder, renamed when it is whole.
 
-    Folders on the way are made. An error or an interrupt leaves the old file, or none, and no temporary one.
+    Folders on the way are made. An error or an interrupt leaves the old file, or none, and no temporary one. A file
+    that is replaced gives the new one its mode.
 
     Raises
     ------
     OSError
         The folder cannot be made or written, or the disk is full.
     """
+    clean_up_first()
     path.parent.mkdir(parents=True, exist_ok=True)
     pieces = (data,) if isinstance(data, bytes) else data
     if path.exists() and not path.is_file():
-        # A device or a pipe, such as /dev/stdout: there is nothing to rename.
-        with path.open("wb") as stream:
-            stream.writelines(pieces)
+        _write_through(path, pieces)
         return
-    # Not `tempfile`: its files are closed to the group, and the rename would keep them so.
-    temporary = path.with_name(f".{path.name[:40]}.{os.urandom(4).hex()}{_PARTIAL}")
+    temporary, stream = _held_temporary(path)
     try:
-        with temporary.open("xb") as stream:
-            # A file system without locks only keeps what a killed run leaves.
-            with contextlib.suppress(OSError):
-                _hold(stream)
+        with stream:
             stream.writelines(pieces)
             stream.flush()
+            _take_mode(path, temporary)
             if fcntl is not None:  # renamed while it is held, so that no other run takes it for a leftover
                 temporary.replace(path)
         if fcntl is None:
@@ -89,6 +89,28 @@ def place(path: Path) -> str:
     return real.casefold() if sys.platform in ("win32", "darwin") else real
 
 
+def _write_through(path: Path, pieces: Iterable[bytes | memoryview]) -> None:
+    """Write to a device or a pipe, such as /dev/stdout: there is nothing to rename."""
+    # A pipe that nobody reads is an error (ENXIO), not a reason to wait.
+    handle = os.open(path, os.O_WRONLY | getattr(os, "O_NONBLOCK", 0))
+    with open(handle, "wb") as stream:  # noqa: PTH123  of a handle
+        if hasattr(os, "set_blocking"):
+            os.set_blocking(handle, True)
+        stream.writelines(pieces)
+
+
+def _held_temporary(path: Path) -> tuple[Path, BinaryIO]:
+    """Return a new hidden file in the folder of another, open and held."""
+    start = os.fsdecode(os.fsencode(path.name)[:40])  # file systems count the bytes of a name
+    while True:
+        # Not `tempfile`: its files are closed to the group, and the rename would keep them so.
+        temporary = path.with_name(f".{start}.{os.urandom(4).hex()}{_PARTIAL}")
+        stream = temporary.open("xb")
+        if _held(stream, temporary):
+            return temporary, stream
+        stream.close()
+
+
 def _replace_when_let_go(temporary: Path, path: Path) -> None:
     """Give a closed file its name, though others may have the old one open for a moment, as on Windows."""
     until = time.monotonic() + _SECONDS_TO_REPLACE
@@ -107,12 +129,32 @@ def _remove_leftover(path: Path) -> None:
     if fcntl is None:  # one that is open here, too, could not be removed
         path.unlink()
         return
+    if not stat.S_ISREG(path.lstat().st_mode):  # a pipe of such a name would be waited for
+        return
     with path.open("rb") as stream:
-        _hold(stream)
+        fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
         path.unlink()
 
 
-def _hold(stream: BinaryIO) -> None:
-    """Lock an open temporary file: the lock dies with its process, so a file without one is a leftover."""
-    if fcntl is not None:
-        fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+def _held(stream: BinaryIO, path: Path) -> bool:
+    """Lock an open temporary file: the lock dies with its process, so a file without one is a leftover.
+
+    Between its making and its lock another run may have taken it for one, and removed it: then it is not held.
+    """
+    if fcntl is None:
+        return True
+    try:
+        fcntl.flock(stream, fcntl.LOCK_EX)  # a run that cleans holds it for a moment only
+    except OSError:
+        return True  # a file system without locks only keeps what a killed run leaves
+    try:
+        return os.path.samestat(os.fstat(stream.fileno()), path.stat())
+    except FileNotFoundError:
+        return False
+
+
+def _take_mode(old: Path, new: Path) -> None:
+    """Give a file the mode of the one that it will replace, where there is one."""
+    # Where the old one is another user's the mode may not be ours to give; the content is.
+    with contextlib.suppress(OSError):
+        new.chmod(stat.S_IMODE(old.stat().st_mode))

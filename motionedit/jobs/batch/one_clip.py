@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import sys
 import time
 from dataclasses import field, replace
@@ -12,7 +13,7 @@ from motionedit.errors import ClipError, MotionEditError
 from motionedit.jobs.batch.files import atomic_write
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Iterator
     from pathlib import Path
 
     from motionedit.core.bvh import Clip
@@ -60,11 +61,16 @@ class Work(Protocol):
 
 @dataclass(frozen=True)
 class Done:
-    """What a worker sends back: an Outcome without its arrays, or errors."""
+    """What a worker sends back: an Outcome without its arrays, or errors.
+
+    `digest` is the SHA-256 of the file that was written; `current` says that an earlier run made it.
+    """
 
     outcome: Outcome = field(default_factory=lambda: Outcome(None))
     written: bool = False
     errors: tuple[MotionEditError, ...] = ()
+    digest: str | None = None
+    current: bool = False
     seconds: float = 0.0
 
 
@@ -73,13 +79,13 @@ class RunOne:
     """All that is done to one clip, as a worker runs it."""
 
     options: RunOptions
+    work: Work
 
-    def __call__(self, pair: tuple[ClipTask, Work]) -> Done:
+    def __call__(self, task: ClipTask) -> Done:
         """Return what became of a clip; with -vv an error that is no user's is raised, to show its place."""
-        task, work = pair
         start = time.perf_counter()
         try:
-            done = self._run(task, work)
+            done = self._run(task)
         except MotionEditError as error:
             done = Done(errors=error.errors)
         except Exception as error:
@@ -89,9 +95,9 @@ class RunOne:
             done = Done(errors=(ClipError(" ".join(message.split()), file=task.label),))
         return replace(done, seconds=time.perf_counter() - start)
 
-    def _run(self, task: ClipTask, work: Work) -> Done:
+    def _run(self, task: ClipTask) -> Done:
         clip = read_task(task, lenient=self.options.lenient)
-        outcome = work(clip, task)
+        outcome = self.work(clip, task)
         warnings = (*clip.warnings, *outcome.warnings)
         content = outcome.content
         if content is None or self.options.dry_run:
@@ -101,12 +107,33 @@ class RunOne:
             content = b"".join(content)
         if isinstance(content, bytes) and self.options.verify:
             record = {**record, "verify": _verify(clip, content, outcome.motion or clip.motion)}
+        digest = None
         if task.output is not None:
-            write_file(task.output, content)
-            content = None
+            sha256 = hashlib.sha256()
+            write_file(task.output, _counted(content, sha256))
+            content, digest = None, sha256.hexdigest()
         if task.page is not None and outcome.page is not None:
             write_file(task.page, outcome.page())
-        return Done(Outcome(content, record, outcome.status, warnings), written=True)
+        return Done(Outcome(content, record, outcome.status, warnings), written=True, digest=digest)
+
+
+@dataclass(frozen=True)
+class RunOwn:
+    """All that is done to one clip that has its own work."""
+
+    options: RunOptions
+
+    def __call__(self, pair: tuple[ClipTask, Work]) -> Done:
+        """Return what became of the clip."""
+        task, work = pair
+        return RunOne(self.options, work)(task)
+
+
+def _counted(content: bytes | Iterable[bytes | memoryview], sha256: hashlib._Hash) -> Iterator[bytes | memoryview]:
+    """Yield the pieces of a file, and let the digest know each."""
+    for piece in (content,) if isinstance(content, bytes) else content:
+        sha256.update(piece)
+        yield piece
 
 
 def write_file(path: Path, content: bytes | Iterable[bytes | memoryview]) -> None:
@@ -139,6 +166,8 @@ def read_task(task: ClipTask, *, lenient: bool) -> Clip:
         return task.clip
     try:
         if task.source is None:
+            if sys.stdin is None:
+                raise ClipError("standard input is closed", file=task.label)
             return parse_clip(sys.stdin.buffer.read(), label=task.label, lenient=lenient)
         return read_clip(task.source, label=task.label, lenient=lenient)
     except OSError as error:

@@ -4,21 +4,29 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from motionedit.dataclass import dataclass
 from motionedit.errors import UsageError
-from motionedit.jobs.batch.files import identity, place
+from motionedit.jobs.batch.files import identity
+from motionedit.jobs.batch.outputs import refuse_clashes, refuse_existing, refuse_paths
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from contextlib import AbstractContextManager
 
     from motionedit.core.bvh import Clip
+    from motionedit.jobs.batch.verdicts import Verdict, Verdicts
 
 STDIN_LABEL = "<stdin>"
+# What nobody who types it means as a folder's name.
+_NO_FOLDER = re.compile(
+    r"\.(abc|amc|asf|blend|c3d|csv|dae|fbx|gif|glb|gltf|html|jpg|json|mp4|np[yz]|obj|png|svg|trc|txt|usd[acz]?|xml|ya?ml|zip)",
+    re.IGNORECASE,
+)
 
 
 @contextlib.contextmanager
@@ -92,6 +100,8 @@ class ClipTask:
         With `update`: the output is newer than all it depends on, and stays as it is; and so is its page.
     page : Path or None
         With `preview`: the page next to the output.
+    verdict : Verdict or None
+        Of a current output, where verdicts are kept: what the run that made it had to say of it.
     clip : Clip or None
         The clip itself, where it is in memory already: then nothing is read.
     """
@@ -102,6 +112,7 @@ class ClipTask:
     relative: str
     current: bool = False
     page: Path | None = None
+    verdict: Verdict | None = None
     clip: Clip | None = None
 
     @property
@@ -136,7 +147,15 @@ def folder_clips(folder: Path, *, leave_out: Path | None = None) -> list[ClipTas
     return [ClipTask(clip, str(clip), None, clip.relative_to(folder).as_posix()) for clip in found]
 
 
-def plan(clips: Sequence[Path], output: str, *, options: RunOptions, depends: Sequence[Path] = ()) -> list[ClipTask]:
+def plan(
+    clips: Sequence[Path],
+    output: str,
+    *,
+    options: RunOptions,
+    depends: Sequence[Path] = (),
+    writes: Sequence[tuple[str, Path]] = (),
+    verdicts: Verdicts | None = None,
+) -> list[ClipTask]:
     """Return one task per clip, every rule about files checked before any work.
 
     Parameters
@@ -147,6 +166,10 @@ def plan(clips: Sequence[Path], output: str, *, options: RunOptions, depends: Se
         A name ending in ``.bvh`` is that file, ``-`` is standard output, anything else is a folder.
     depends
         The spec, model and event files: none of them is overwritten, and `update` compares times with them.
+    writes
+        What the run writes beside clips, pages and report: what it is, and its file.
+    verdicts
+        What is known of earlier outputs: with `update` those of which nothing is are made again.
 
     Raises
     ------
@@ -159,15 +182,17 @@ def plan(clips: Sequence[Path], output: str, *, options: RunOptions, depends: Se
         raise UsageError("--update compares the times of files: it does not go with '-'")
     if options.preview and output == "-":
         raise UsageError("--preview writes a page next to each clip: it does not go with -o -")
+    sources = [task.source for task in found if task.source is not None]
+    broken = [source for source in sources if not {"\n", "\r"}.isdisjoint(str(source))]
+    refuse_paths(broken, "a line break in its name: files are listed one a line; rename it")
     tasks = _with_outputs(found, output)
     if options.preview:
         tasks = [replace(task, page=task.output and task.output.with_suffix(".html")) for task in tasks]
-    _refuse_shared_outputs(tasks, options.report)
-    outputs = [path for task in tasks for path in task.outputs]
-    inputs = [task.source for task in tasks if task.source is not None]
-    refuse_overwriting([*outputs, *([options.report] if options.report else [])], [*inputs, *depends])
+    outputs = [(task.label, path) for task in tasks for path in task.outputs]
+    inputs = [task.source for task in tasks]
+    refuse_clashes([("the report", options.report), *writes, *outputs], [*inputs, *depends])
     if options.update:
-        tasks = [replace(task, current=_is_current(task, depends)) for task in tasks]
+        tasks = [_recalled(task, verdicts) if _is_current(task, depends) else task for task in tasks]
     if not options.overwrite:
         refuse_existing([path for task in tasks if not task.current for path in task.outputs])
     return tasks
@@ -175,27 +200,7 @@ def plan(clips: Sequence[Path], output: str, *, options: RunOptions, depends: Se
 
 def refuse_missing(clips: Sequence[Path]) -> None:
     """Raise a UsageError where a clip or folder does not exist; ``-`` always does."""
-    _refuse([p for p in clips if str(p) != "-" and not p.exists()], "no such file or folder")
-
-
-def refuse_existing(outputs: Sequence[Path]) -> None:
-    """Raise the UsageError of --no-overwrite where any of the outputs exists."""
-    _refuse([path for path in outputs if os.path.lexists(path)], "exists, and --no-overwrite is given")
-
-
-def refuse_overwriting(outputs: Sequence[Path], inputs: Sequence[Path]) -> None:
-    """Raise a UsageError where an output is an input, by whatever name or link."""
-    taken = {identity(path) for path in inputs}
-    _refuse(
-        [path for path in outputs if identity(path) in taken],
-        "is an input of this run, and an input is never overwritten; write to another file or folder",
-    )
-
-
-def _refuse(paths: Sequence[Path], reason: str) -> None:
-    if paths:
-        others = f" (and {len(paths) - 1} more)" if len(paths) > 1 else ""
-        raise UsageError(reason + others, file=str(paths[0]))
+    refuse_paths([p for p in clips if str(p) != "-" and not p.exists()], "no such file or folder")
 
 
 def _expand(path: Path, leave_out: Path | None) -> list[ClipTask]:
@@ -238,19 +243,18 @@ def _with_outputs(tasks: list[ClipTask], output: str) -> list[ClipTask]:
         return [replace(tasks[0], output=target)]
     if target.exists() and not target.is_dir():
         raise UsageError("is a file; give a folder, or a name ending in .bvh for one clip", file=output)
+    if _NO_FOLDER.fullmatch(target.suffix) and not target.is_dir():
+        message = f"clips are written as .bvh, not as {target.suffix}; give such a name, or a folder"
+        raise UsageError(message, file=output)
     if any(task.source is None for task in tasks):
         raise UsageError("a clip from standard input has no name: give -o FILE.bvh or -o -")
     return [replace(task, output=target / task.relative) for task in tasks]
 
 
-def _refuse_shared_outputs(tasks: list[ClipTask], report: Path | None) -> None:
-    first = {} if report is None else {place(report): "the report"}
-    for task in tasks:
-        for output in task.outputs:
-            name = place(output)
-            if name in first:
-                raise UsageError(f"{first[name]} and {task.label} would both be written to {output}")
-            first[name] = task.label
+def _recalled(task: ClipTask, verdicts: Verdicts | None) -> ClipTask:
+    """Return a task whose output is newer than all it is made from; current where its verdict is known, too."""
+    verdict = None if verdicts is None or task.output is None else verdicts.recall(task.output)
+    return replace(task, current=verdicts is None or verdict is not None, verdict=verdict)
 
 
 def _is_current(task: ClipTask, depends: Sequence[Path]) -> bool:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from contextlib import closing
+import os
+from contextlib import closing, suppress
 from dataclasses import field, replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -12,25 +13,27 @@ from motionedit.errors import (
     EXIT_DONE,
     EXIT_OUT_OF_TOLERANCE,
     EXIT_USAGE,
+    MISSED,
     ClipError,
     MotionEditError,
 )
 from motionedit.jobs.batch.files import clean_leftovers
-from motionedit.jobs.batch.one_clip import Done, RunOne
+from motionedit.jobs.batch.one_clip import Done, Outcome, RunOne, RunOwn
 from motionedit.jobs.batch.plan import no_progress
 from motionedit.jobs.batch.pool import results_in_order
+from motionedit.jobs.batch.verdicts import Verdict
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Sequence
 
     from motionedit.jobs.batch.one_clip import Work
     from motionedit.jobs.batch.plan import ClipTask, RunOptions
+    from motionedit.jobs.batch.verdicts import Verdicts
 
 Item = TypeVar("Item")
 Value = TypeVar("Value")
 
-# What --strict counts: a goal that was not met, an edit that a viewer would see.
-_MISSED = frozenset({"rough", "out_of_tolerance", "unreachable"})
+_NANOSECONDS_STALE = 1_000_000_000
 
 
 @dataclass(frozen=True)
@@ -49,8 +52,8 @@ class BatchResult:
         Why clips failed; one clip may have several.
     exit_code : int
         As the command should end.
-    seconds : list of float
-        Wall time of each record's clip.
+    seconds : list of float or None
+        Wall time of each record's clip; None where an earlier run made it.
     details : list of (str, tuple of str)
         For --dry-run: a line for each clip, and the lines that belong to it.
     contents : list of (bytes or None)
@@ -64,7 +67,7 @@ class BatchResult:
     warnings: list[str]
     failures: list[MotionEditError]
     exit_code: int
-    seconds: list[float] = field(default_factory=list)
+    seconds: list[float | None] = field(default_factory=list)
     details: list[tuple[str, tuple[str, ...]]] = field(default_factory=list)
     contents: list[bytes | None] = field(default_factory=list)
     current: int = 0
@@ -75,39 +78,100 @@ class BatchResult:
         return next((content for content in self.contents if content is not None), None)
 
 
-def run_batch(tasks: Sequence[ClipTask], work: Work, options: RunOptions) -> BatchResult:
+def run_batch(
+    tasks: Sequence[ClipTask], work: Work, options: RunOptions, *, verdicts: Verdicts | None = None
+) -> BatchResult:
     """Do the same work on every clip; see `run_each`."""
-    return run_each([(task, work) for task in tasks], options)
+    waiting = [task for task in tasks if not task.current]
+    run_one = RunOne(replace(options, progress=no_progress), work)
+    return _run(tasks, run_one, [_placed(task, options) for task in waiting], options, verdicts)
 
 
-def run_each(pairs: Sequence[tuple[ClipTask, Work]], options: RunOptions) -> BatchResult:
+def run_each(
+    pairs: Sequence[tuple[ClipTask, Work]], options: RunOptions, *, verdicts: Verdicts | None = None
+) -> BatchResult:
     """Read, work on, verify and write every clip that is not current, each with its own work.
 
     A clip fails alone; without `keep_going` the clips after a failed one are not begun. Where every clip fails
-    by a fault of the spec, the exit code is that of a spec error.
+    by a fault of the spec, the exit code is that of a spec error. A clip that is current stands in the result with what
+    `verdicts` know of it; what becomes of the others they are told.
     """
+    run_one = RunOwn(replace(options, progress=no_progress))
+    items = [(_placed(task, options), work) for task, work in pairs if not task.current]
+    return _run([task for task, _ in pairs], run_one, items, options, verdicts)
+
+
+def earlier(tasks: Sequence[ClipTask], options: RunOptions) -> BatchResult:
+    """Return what earlier runs came to, of tasks that are all current."""
+    return _collect(_with_current(tasks, []), options, total=len(tasks), current=len(tasks))
+
+
+def _run(
+    tasks: Sequence[ClipTask],
+    run_one: Callable[[Any], Done],
+    items: Sequence[object],
+    options: RunOptions,
+    verdicts: Verdicts | None,
+) -> BatchResult:
+    """Return what a run over tasks came to; `items` are what `run_one` takes of those that are not current."""
     from motionedit.core import bvh as _bvh  # noqa: F401  loaded once here, not in every forked worker
 
-    waiting = [task for task, _ in pairs if not task.current]
+    waiting = [task for task in tasks if not task.current]
     folders = [task.output.parent for task in waiting if task.output is not None]
-    run_one = RunOne(replace(options, progress=no_progress))
     done: list[Done] = []
     try:
         if not options.dry_run:
             clean_leftovers(folders)
-        items = [(_absolute(task) if options.scheduler else task, work) for task, work in pairs if not task.current]
         results = results_in_order(
             run_one, items, options=options, is_last=lambda one: not options.keep_going and _has_failed(one)
         )
         with closing(results), options.progress(len(waiting)) as advance:
             for result in results:
-                done.append(result if isinstance(result, Done) else Done(errors=(result,)))
+                one = result if isinstance(result, Done) else Done(errors=(result,))
+                if verdicts is not None:
+                    _keep(verdicts, waiting[len(done)], one)
+                done.append(one)
                 advance()
     finally:
         # Workers that were ended in the middle of a file could not clean up themselves.
         if not options.dry_run:
             clean_leftovers(folders)
-    return _collect(waiting, done, len(pairs), options)
+    if verdicts is not None:
+        verdicts.close()
+    pairs = _with_current(tasks, done)
+    if options.strict and not options.dry_run:
+        _make_stale([task for task, one in pairs if one.outcome.status in MISSED and not one.errors])
+    return _collect(pairs, options, total=len(tasks), current=len(tasks) - len(waiting))
+
+
+def _keep(verdicts: Verdicts, task: ClipTask, done: Done) -> None:
+    if done.digest is not None and task.output is not None:
+        verdicts.keep(task.output, done.digest, Verdict(_record(task, done), done.outcome.warnings))
+
+
+def _with_current(tasks: Sequence[ClipTask], done: Sequence[Done]) -> list[tuple[ClipTask, Done]]:
+    """Return each task with what became of it, in order: of those that are current, in the run that made them."""
+    results = iter(done)
+    pairs: list[tuple[ClipTask, Done]] = []
+    for task in tasks:
+        if not task.current:
+            one = next(results, None)
+            if one is not None:  # None: not begun, after --fail-fast
+                pairs.append((task, one))
+        elif task.verdict is not None:
+            outcome = Outcome(None, task.verdict.record, str(task.verdict.record["status"]), task.verdict.warnings)
+            pairs.append((task, Done(outcome, current=True)))
+    return pairs
+
+
+def _make_stale(tasks: Sequence[ClipTask]) -> None:
+    """Make outputs older than what they are made from: `make` takes none for done that `--strict` does not take."""
+    for task in tasks:
+        if task.output is not None and task.source is not None and task.output.is_file():
+            # Where the file is not ours to date, the exit code still tells.
+            with suppress(OSError):
+                before = task.source.stat().st_mtime_ns - _NANOSECONDS_STALE
+                os.utime(task.output, ns=(before, before))
 
 
 def map_tasks(
@@ -153,8 +217,10 @@ def _has_failed(result: Done | MotionEditError) -> bool:
     return not isinstance(result, Done) or bool(result.errors)
 
 
-def _absolute(task: ClipTask) -> ClipTask:
-    """Return the task with paths that hold in a cluster worker's own folder."""
+def _placed(task: ClipTask, options: RunOptions) -> ClipTask:
+    """Return the task with paths that hold in a cluster worker's own folder, where the run is on a cluster."""
+    if not options.scheduler:
+        return task
     return replace(
         task,
         source=None if task.source is None else task.source.absolute(),
@@ -163,19 +229,19 @@ def _absolute(task: ClipTask) -> ClipTask:
     )
 
 
-def _collect(waiting: Sequence[ClipTask], done: Sequence[Done], total: int, options: RunOptions) -> BatchResult:
-    pairs = list(zip(waiting, done, strict=False))  # shorter after --fail-fast
+def _collect(pairs: Sequence[tuple[ClipTask, Done]], options: RunOptions, *, total: int, current: int) -> BatchResult:
+    made = [(task, one) for task, one in pairs if not one.current]
     failures = [_named(error, task) for task, one in pairs for error in one.errors]
     return BatchResult(
         records=[_record(task, one) for task, one in pairs],
-        paths=[str(path) for task, one in pairs if one.written for path in task.outputs],
-        warnings=[_about(task, warning, alone=total == 1) for task, one in pairs for warning in one.outcome.warnings],
+        paths=[str(path) for task, one in made if one.written for path in task.outputs],
+        warnings=[_about(task, warning, alone=total == 1) for task, one in made for warning in one.outcome.warnings],
         failures=failures,
-        exit_code=_exit_code(waiting, done, strict=options.strict),
-        seconds=[one.seconds for _, one in pairs],
-        details=[(_heading(task), one.outcome.details) for task, one in pairs if not one.errors],
-        contents=[one.outcome.content if isinstance(one.outcome.content, bytes) else None for _, one in pairs],
-        current=total - len(waiting),
+        exit_code=_exit_code([one for _, one in pairs], total, strict=options.strict),
+        seconds=[None if one.current else one.seconds for _, one in pairs],
+        details=[(_heading(task), one.outcome.details) for task, one in made if not one.errors],
+        contents=[one.outcome.content if isinstance(one.outcome.content, bytes) else None for _, one in made],
+        current=current,
     )
 
 
@@ -206,12 +272,12 @@ def _heading(task: ClipTask) -> str:
     return f"{task.label} -> {', '.join(map(str, task.outputs)) or 'standard output'}"
 
 
-def _exit_code(waiting: Sequence[ClipTask], done: Sequence[Done], *, strict: bool) -> int:
+def _exit_code(done: Sequence[Done], total: int, *, strict: bool) -> int:
     failed = [one for one in done if one.errors]
     if failed:
-        fault_of_the_spec = len(failed) == len(waiting) and all(
+        fault_of_the_spec = len(failed) == total and all(
             error.exit_code == EXIT_USAGE for one in failed for error in one.errors
         )
         return EXIT_USAGE if fault_of_the_spec else EXIT_CLIP_FAILED
-    missed = any(one.outcome.status in _MISSED for one in done)
+    missed = any(one.outcome.status in MISSED for one in done)
     return EXIT_OUT_OF_TOLERANCE if strict and missed else EXIT_DONE

@@ -16,12 +16,15 @@ from motionedit.core.coefficients.planted_feet import planted_feet
 from motionedit.core.coefficients.projection import of_another, project, project_resampled
 from motionedit.core.pca.fit import components_for
 from motionedit.core.pca.model_file import read_model
+from motionedit.core.pca.rules import checked_rules
 from motionedit.core.skeleton_match import match_joints
 from motionedit.core.timeline.warp import make_warp
 from motionedit.dataclass import dataclass
+from motionedit.errors import ModelError
 from motionedit.jobs.batch.one_clip import Outcome
 from motionedit.jobs.batch.plan import plan
 from motionedit.jobs.batch.run import run_batch
+from motionedit.jobs.batch.verdicts import run_key, verdicts_in
 from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.crop import cropped
 from motionedit.jobs.clip.facts import facts_of
@@ -30,7 +33,7 @@ from motionedit.jobs.clip.metrics import edit_metrics, feet_of
 from motionedit.jobs.clip.roughness import rough_lines
 from motionedit.jobs.edit_pc.goals import clip_goals, numbers_of
 from motionedit.jobs.edit_pc.model_events import events_for_model, refuse_unknown_events
-from motionedit.jobs.edit_pc.record import Verdicts, edit_record, goal_line
+from motionedit.jobs.edit_pc.record import Judged, edit_record, goal_line
 from motionedit.jobs.edit_pc.solver import chosen_solver, plausibility_bound, residual_share
 from motionedit.jobs.edit_pc.standing import edit_standing
 from motionedit.jobs.edit_pc.unexplained import unexplained
@@ -50,6 +53,7 @@ if TYPE_CHECKING:
     from motionedit.core.pca.model import MotionModel
     from motionedit.jobs.batch.plan import ClipTask, RunOptions
     from motionedit.jobs.batch.run import BatchResult
+    from motionedit.jobs.batch.verdicts import Verdicts
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.jobs.edit_pc.goals import ClipGoal
     from motionedit.spec.edit_pc import EditPcSpec
@@ -70,24 +74,44 @@ def run(
     UsageError
         As `plan`.
     """
-    tasks = plan(clips, output, options=options, depends=(*loaded.files, model))
-    return edit(loaded, tasks, model=read_model(model), label=str(model), options=options)
+    read = read_model(model)
+    key = run_key("edit-pc", loaded.data, files=(*loaded.model.event_files, model), more=options.lenient)
+    verdicts = verdicts_in(output, key, update=options.update, dry_run=options.dry_run)
+    tasks = plan(clips, output, options=options, depends=(*loaded.files, model), verdicts=verdicts)
+    return edit(loaded, tasks, model=read, label=str(model), options=options, verdicts=verdicts)
 
 
 def edit(
-    loaded: LoadedSpec[EditPcSpec], tasks: Sequence[ClipTask], *, model: MotionModel, label: str, options: RunOptions
+    loaded: LoadedSpec[EditPcSpec],
+    tasks: Sequence[ClipTask],
+    *,
+    model: MotionModel,
+    label: str,
+    options: RunOptions,
+    verdicts: Verdicts | None = None,
 ) -> BatchResult:
     """Edit the clips of tasks, and write those that have an output; `label` is what messages call the model.
+
+    What becomes of the clips `verdicts` are told.
 
     Raises
     ------
     SpecError
         As `run`.
     """
+    _refuse_damaged_rules(model, label)
     refuse_unknown_events(loaded, model)
     cut = model.truncated(_component_count(loaded, model))
     work = _Edit(loaded, cut, label, tuple(task.relative for task in tasks))
-    return run_batch(tasks, with_page(work, loaded.data, options), options)
+    return run_batch(tasks, with_page(work, loaded.data, options), options, verdicts=verdicts)
+
+
+def _refuse_damaged_rules(model: MotionModel, label: str) -> None:
+    try:
+        checked_rules(model.rules, events=dict(model.timeline.events))
+    except (KeyError, ValueError) as error:
+        message = "its rules are damaged; make it again with 'motionedit fit-pca'"
+        raise ModelError(message, file=label) from error
 
 
 def _component_count(loaded: LoadedSpec[EditPcSpec], model: MotionModel) -> int:
@@ -214,7 +238,7 @@ class _Edit:
         share = residual_share(spec, self.model) if spec.solver.method == "map" else None
         if share is not None and self.model.components.left_out is None and spec.residual_share == "auto":
             odd.append(f"the model has no left-out error, so residual_share is {share:g}; make it again with fit-pca")
-        verdicts = Verdicts(bound, share, odd, rough)
+        verdicts = Judged(bound, share, odd, rough)
         result = edit_record(self.model, projection, edit, goals, poses=after, verdicts=verdicts)
         return Outcome(
             resampled_bytes(facts.clip, edit.motion) if retimed else _edited_bytes(facts.clip, projection, edit),

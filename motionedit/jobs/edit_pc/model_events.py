@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any
 
-from motionedit.errors import ClipError
+from motionedit.errors import ClipError, ModelError
 from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.crop import crop_events
 from motionedit.jobs.clip.events import event_frames, explicit_events
@@ -65,7 +65,7 @@ def events_for_model(
     missing = [name for name in needed if name not in frames]
     if missing:
         own = resolve.Place(KeptRules(model_label), ("events",), task.label)
-        frames = event_frames(_model_rules(model, missing), facts, own, known=frames)
+        frames = event_frames(_model_rules(model, missing, label=model_label), facts, own, known=frames)
     for name in needed:
         if name not in frames:
             message = (
@@ -84,13 +84,19 @@ def _database_events(model: MotionModel, facts: ClipFacts, task: ClipTask) -> di
     return {}
 
 
-def _model_rules(model: MotionModel, names: Sequence[str]) -> dict[str, Any]:
+def _model_rules(model: MotionModel, names: Sequence[str], *, label: str) -> dict[str, Any]:
     """Return the model's rules as the spec of normalize would hold them."""
     from motionedit.spec.events import EventSpec
     from motionedit.spec.model import Context
 
     rules = model.rules["events"]
     context = Context()
-    return {
-        name: EventSpec.model_validate({"detect": rules[name]}, context=context) for name in names if rules.get(name)
-    }
+    try:
+        return {
+            name: EventSpec.model_validate({"detect": rules[name]}, context=context)
+            for name in names
+            if rules.get(name)
+        }
+    except ValueError as error:  # pydantic's is one
+        message = "its rules for events are damaged; make it again with 'motionedit fit-pca'"
+        raise ModelError(message, file=label) from error

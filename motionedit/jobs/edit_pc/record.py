@@ -27,7 +27,7 @@ FAR = 1.75
 
 
 @dataclass(frozen=True)
-class Verdicts:
+class Judged:
     """What is known of an edit beside its goals.
 
     Attributes
@@ -53,7 +53,7 @@ def edit_record(
     goals: Sequence[ClipGoal],
     *,
     poses: WorldPoses,
-    verdicts: Verdicts,
+    verdicts: Judged,
 ) -> EditRecord:
     """Return what is to be said of an edit; `poses` are the edited motion's."""
     bound, share, odd, rough = verdicts.bound, verdicts.share, verdicts.odd, verdicts.rough

@@ -19,6 +19,7 @@ from motionedit.jobs.batch.one_clip import Outcome
 from motionedit.jobs.batch.plan import plan
 from motionedit.jobs.batch.pool import threads_within
 from motionedit.jobs.batch.run import run_batch
+from motionedit.jobs.batch.verdicts import run_key, verdicts_in
 from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.events import event_frames, explicit_events
 from motionedit.jobs.clip.facts import facts_of
@@ -45,6 +46,7 @@ if TYPE_CHECKING:
     from motionedit.core.trace import Trace
     from motionedit.jobs.batch.plan import ClipTask, RunOptions
     from motionedit.jobs.batch.run import BatchResult
+    from motionedit.jobs.batch.verdicts import Verdicts
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.jobs.edit_prioritized.body import SizedClip
     from motionedit.jobs.edit_prioritized.constraints import ClipConstraint
@@ -63,15 +65,25 @@ def run(
         As `plan`.
     """
     refuse_missing_reference(loaded.model.reference)
-    depends = (*loaded.files, *reference_files(loaded.model.reference))
-    return edit(loaded, plan(clips, output, options=options, depends=depends), options=options)
+    references = reference_files(loaded.model.reference)
+    files = [*loaded.model.event_files, *references]
+    key = run_key("edit-prioritized", loaded.data, files=files, more=options.lenient)
+    verdicts = verdicts_in(output, key, update=options.update, dry_run=options.dry_run)
+    tasks = plan(clips, output, options=options, depends=(*loaded.files, *references), verdicts=verdicts)
+    return edit(loaded, tasks, options=options, verdicts=verdicts)
 
 
-def edit(loaded: LoadedSpec[EditPrioritizedSpec], tasks: Sequence[ClipTask], *, options: RunOptions) -> BatchResult:
-    """Edit the clips of tasks, and write those that have an output."""
+def edit(
+    loaded: LoadedSpec[EditPrioritizedSpec],
+    tasks: Sequence[ClipTask],
+    *,
+    options: RunOptions,
+    verdicts: Verdicts | None = None,
+) -> BatchResult:
+    """Edit the clips of tasks, and write those that have an output; what becomes of them `verdicts` are told."""
     others = tuple(task.relative for task in tasks)
     work = EditByPriorities(loaded, others, threads_within(len(tasks), options), options.verify)
-    return run_batch(tasks, with_page(work, loaded.data, options), options)
+    return run_batch(tasks, with_page(work, loaded.data, options), options, verdicts=verdicts)
 
 
 @dataclass(frozen=True)

@@ -7,24 +7,27 @@ from __future__ import annotations
 
 import contextlib
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from motionedit.dataclass import dataclass
-from motionedit.errors import EXIT_CLIP_FAILED, EXIT_DONE, EXIT_USAGE, MotionEditError, UsageError
-from motionedit.jobs.batch.files import atomic_write
-from motionedit.jobs.batch.plan import plan
-from motionedit.jobs.batch.run import BatchResult, failed_record, map_tasks, run_each
+from motionedit.errors import EXIT_CLIP_FAILED, EXIT_USAGE, MotionEditError, UsageError
+from motionedit.jobs.batch.one_clip import write_file
+from motionedit.jobs.batch.plan import find_clips, plan
+from motionedit.jobs.batch.run import BatchResult, earlier, failed_record, map_tasks, run_each
+from motionedit.jobs.batch.verdicts import run_key, verdicts_in
 from motionedit.jobs.normalize.common_timeline import common_timeline, events_out_of_order
 from motionedit.jobs.normalize.measures import ClipMeasure, MeasureClip, sound_measures
 from motionedit.jobs.normalize.normalization_file import NAME, Normalization, NormalizedClip, normalization_bytes
 from motionedit.jobs.normalize.resampling import ResampleClip
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
     from pathlib import Path
 
     from motionedit.core.timeline.warp import Timeline
     from motionedit.jobs.batch.plan import ClipTask, RunOptions
+    from motionedit.jobs.batch.verdicts import Verdicts
     from motionedit.jobs.clip.facts import Line
     from motionedit.spec.load import LoadedSpec
     from motionedit.spec.normalize import NormalizeSpec
@@ -55,20 +58,45 @@ def run(loaded: LoadedSpec[NormalizeSpec], clips: Sequence[Path], output: Path, 
     UsageError
         As `plan`; or standard input is given.
     """
-    tasks = plan(clips, str(output), options=options, depends=loaded.files)
+    writes = [(NAME, output / NAME)]
+    # One clip more or less moves the means.
+    listed = [(task.relative, task.label) for task in find_clips(clips, leave_out=output)]
+    key = run_key("normalize", loaded.data, files=loaded.model.event_files, more=[listed, options.lenient])
+    verdicts = verdicts_in(str(output), key, update=options.update, dry_run=options.dry_run)
+    tasks = plan(clips, str(output), options=options, depends=loaded.files, writes=writes, verdicts=verdicts)
     if any(task.source is None for task in tasks):
         raise UsageError("'-' is not for normalize, which reads each clip twice; give files")
     if all(task.current for task in tasks) and (output / NAME).exists():
-        return replace(_nothing(EXIT_DONE), current=len(tasks))
+        return earlier(tasks, options)
     # One clip that changed moves the means: all are made anew.
-    normalized = normalize(loaded, [replace(task, current=False) for task in tasks], options=options)
+    anew = [replace(task, current=False) for task in tasks]
+    first = partial(_remove_list, output / NAME)
+    normalized = normalize(loaded, anew, options=options, before_writing=first, verdicts=verdicts)
     if normalized.normalization is not None and not options.dry_run:
-        atomic_write(output / NAME, normalization_bytes(normalized.normalization))
+        write_file(output / NAME, normalization_bytes(normalized.normalization))
     return normalized.result
 
 
-def normalize(loaded: LoadedSpec[NormalizeSpec], tasks: Sequence[ClipTask], *, options: RunOptions) -> Normalized:
-    """Normalize the clips of tasks, and write those that have an output.
+def _remove_list(path: Path) -> None:
+    """Remove the list of an earlier run before the first of its clips is replaced.
+
+    Until the new one is written, last, the folder may hold clips of both, and nothing may be built on it.
+    """
+    try:
+        path.unlink(missing_ok=True)
+    except OSError as error:
+        raise UsageError(f"cannot be replaced: {error.strerror or error}", file=str(path)) from error
+
+
+def normalize(
+    loaded: LoadedSpec[NormalizeSpec],
+    tasks: Sequence[ClipTask],
+    *,
+    options: RunOptions,
+    before_writing: Callable[[], None] = lambda: None,
+    verdicts: Verdicts | None = None,
+) -> Normalized:
+    """Normalize the clips of tasks, and write those that have an output; `before_writing` is called before the first.
 
     Raises
     ------
@@ -94,8 +122,11 @@ def normalize(loaded: LoadedSpec[NormalizeSpec], tasks: Sequence[ClipTask], *, o
     used = [by_label[task.label] for task in good]
     works = [ResampleClip(measure, timeline, line, loaded.model.unit) for measure in used]
     given = [replace(task, clip=task.clip or by_label[task.label].read) for task in good]
-    result = run_each(list(zip(given, works, strict=True)), options)
-    normalization = None if result.failures else _normalization(loaded, timeline, line, used)
+    if not options.dry_run:
+        before_writing()
+    result = run_each(list(zip(given, works, strict=True)), options, verdicts=verdicts)
+    written = [record.get("clip_sha256", "") for record in result.records]
+    normalization = None if result.failures else _normalization(loaded, timeline, line, used, written)
     return Normalized(_with_failures(result, tasks, failures, warnings), normalization)
 
 
@@ -109,7 +140,11 @@ def _bytes_of(tasks: Sequence[ClipTask]) -> int:
 
 
 def _normalization(
-    loaded: LoadedSpec[NormalizeSpec], timeline: Timeline, line: Line, measures: Sequence[ClipMeasure]
+    loaded: LoadedSpec[NormalizeSpec],
+    timeline: Timeline,
+    line: Line,
+    measures: Sequence[ClipMeasure],
+    written: Sequence[str],
 ) -> Normalization:
     spec = loaded.model
     rules: dict[str, Any] = {
@@ -126,11 +161,11 @@ def _normalization(
         rules["crop"] = spec.crop
     if spec.body.plain:
         rules["body"] = spec.body.plain
-    clips = tuple(_normalized_clip(measure, line) for measure in measures)
+    clips = tuple(_normalized_clip(measure, line, digest) for measure, digest in zip(measures, written, strict=True))
     return Normalization(timeline, measures[0].up, rules, clips)
 
 
-def _normalized_clip(measure: ClipMeasure, line: Line) -> NormalizedClip:
+def _normalized_clip(measure: ClipMeasure, line: Line, written: str) -> NormalizedClip:
     return NormalizedClip(
         clip=measure.clip,
         source=measure.label,
@@ -141,6 +176,7 @@ def _normalized_clip(measure: ClipMeasure, line: Line) -> NormalizedClip:
         events=measure.events,
         rotation=tuple(map(float, measure.alignments[line].rotation)),
         origin=tuple(map(float, measure.alignments[line].origin)),
+        written=written,
     )
 
 

@@ -5,11 +5,15 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
+from motionedit.core.pca.rules import checked_rules
+from motionedit.core.plain_values import items, json_of, mapping, number, positive, text, whole
 from motionedit.core.timeline.warp import Timeline
 from motionedit.dataclass import dataclass
 from motionedit.errors import ModelError
+from motionedit.regular_files import read_file
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
     from pathlib import Path
 
 NAME = "normalization.json"
@@ -18,7 +22,10 @@ SCHEMA = "motionedit/normalization/v1"
 
 @dataclass(frozen=True)
 class NormalizedClip:
-    """One entry: the normalized file (path below the folder), its source, and the source's events."""
+    """One entry: the normalized file (path below the folder), its source, and the source's events.
+
+    `digest` is the SHA-256 of the source, `written` that of the normalized file: fit-pca takes no other one.
+    """
 
     clip: str
     source: str
@@ -29,6 +36,7 @@ class NormalizedClip:
     events: dict[str, float]
     rotation: tuple[float, ...]
     origin: tuple[float, ...]
+    written: str
 
 
 @dataclass(frozen=True)
@@ -59,6 +67,7 @@ def normalization_bytes(normalization: Normalization) -> bytes:
         "clips": [
             {
                 "clip": each.clip,
+                "clip_sha256": each.written,
                 "source": each.source,
                 "sha256": each.digest,
                 "frames": each.frames,
@@ -83,33 +92,55 @@ def read_normalization(folder: Path) -> Normalization:
     """
     path = folder / NAME
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
+        content = mapping(json_of(read_file(path)))
         if content["schema"] != SCHEMA:
             raise ModelError(f"has schema '{content['schema']}', this version reads '{SCHEMA}'", file=str(path))
-        events = tuple((str(name), int(frame)) for name, frame in content["events"].items())
-        return Normalization(
-            Timeline(int(content["frames"]), float(content["frame_rate"]), events),
-            str(content["up"]),
-            dict(content["rules"]),
-            tuple(_clip(each) for each in content["clips"]),
-        )
+        return _normalization(content)
     except FileNotFoundError as error:
         raise ModelError("not there; 'motionedit normalize' writes it beside the clips", file=str(path)) from error
     except OSError as error:
         raise ModelError(f"cannot be read: {error.strerror or error}", file=str(path)) from error
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
+    except (ValueError, KeyError) as error:
         raise ModelError("damaged; make it again with 'motionedit normalize'", file=str(path)) from error
 
 
-def _clip(each: dict[str, Any]) -> NormalizedClip:
+def _normalization(content: dict[str, Any]) -> Normalization:
+    """Return what the file holds; a ValueError or KeyError where that is not as normalize writes it."""
+    frames = whole(content["frames"], 2)
+    placed = {name: whole(frame, 0, frames - 1) for name, frame in mapping(content["events"]).items()}
+    order = list(placed.values())
+    # make_warp wants them so, and normalize writes no others.
+    if order != sorted(set(order)) or not {0, frames - 1}.isdisjoint(order):
+        raise ValueError("events that do not follow each other")
+    up = text(content["up"])
+    if up.removeprefix("-") not in ("x", "y", "z"):
+        raise ValueError("no axis")
+    return Normalization(
+        Timeline(frames, positive(content["frame_rate"]), tuple(placed.items())),
+        up,
+        checked_rules(content["rules"], events=placed),
+        tuple(_clip(mapping(each), events=placed) for each in items(content["clips"])),
+    )
+
+
+def _clip(each: dict[str, Any], *, events: Collection[str]) -> NormalizedClip:
+    frames = whole(each["frames"], 2)
+    alignment = mapping(each["alignment"])
+    found = {name: number(frame, 0, frames - 1) for name, frame in mapping(each["events"]).items()}
+    if found.keys() != set(events):
+        raise ValueError("other events than the timeline")
+    rotation, origin = tuple(map(number, items(alignment["rotation"]))), tuple(map(number, items(alignment["origin"])))
+    if (len(rotation), len(origin)) != (4, 3):
+        raise ValueError("no rotation, or no origin")
     return NormalizedClip(
-        clip=str(each["clip"]),
-        source=str(each["source"]),
-        digest=str(each["sha256"]),
-        frames=int(each["frames"]),
-        duration=float(each["duration"]),
-        first=int(each["first_frame"]),
-        events={str(name): float(frame) for name, frame in each["events"].items()},
-        rotation=tuple(map(float, each["alignment"]["rotation"])),
-        origin=tuple(map(float, each["alignment"]["origin"])),
+        clip=text(each["clip"]),
+        source=text(each["source"]),
+        digest=text(each["sha256"]),
+        frames=frames,
+        duration=number(each["duration"], 0.0),
+        first=whole(each["first_frame"], 0, frames - 1),
+        events=found,
+        rotation=rotation,
+        origin=origin,
+        written=text(each["clip_sha256"]),
     )

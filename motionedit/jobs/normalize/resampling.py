@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -41,9 +42,10 @@ class ResampleClip:
         motion = self._resampled(clip)
         places = ", ".join(f"{name} {frame:.2f}" for name, frame in measure.events.items())
         line = f"frames {measure.first} to {measure.last} -> {self.timeline.frames}; {places}"
+        content = resampled_bytes(clip, motion)
         return Outcome(
-            resampled_bytes(clip, motion),
-            self._record(),
+            content,
+            {**self._record(), "clip_sha256": hashlib.sha256(content).hexdigest()},
             warnings=(*measure.warnings, *_defects(clip.motion, first=measure.first)),
             motion=motion,
             details=(line.rstrip("; "),),

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 from motionedit.errors import MotionEditError, UsageError, together
 from motionedit.jobs.batch.files import atomic_write
 from motionedit.jobs.batch.one_clip import read_task
-from motionedit.jobs.batch.plan import find_clips, refuse_overwriting
+from motionedit.jobs.batch.outputs import refuse_clashes
+from motionedit.jobs.batch.plan import find_clips
 from motionedit.jobs.preview.report_file import matches, read_report
 
 if TYPE_CHECKING:
@@ -61,8 +62,7 @@ def run(
     if report is not None and kind in _SHEETS:
         raise UsageError("--report is shown on a page; give a name ending in .html", file=str(output))
     tasks = find_clips(clips)
-    sources = [task.source for task in tasks if task.source is not None]
-    refuse_overwriting([output], sources if report is None else [*sources, report])
+    refuse_clashes([("the preview", output)], [*(task.source for task in tasks), report])
     if kind in _SHEETS:
         from motionedit.report.sheet import need_matplotlib
 

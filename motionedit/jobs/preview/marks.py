@@ -9,6 +9,7 @@ import numpy as np
 
 from motionedit.core.body.center_of_mass import center_of_mass, find_masses
 from motionedit.core.kinematics import Effector, effector_positions
+from motionedit.core.plain_values import number
 from motionedit.core.priorities.kinds import KINDS
 from motionedit.dataclass import dataclass
 from motionedit.errors import UsageError
@@ -176,12 +177,14 @@ def _mark(
     )
 
 
-def _curve(values: object, tolerance: float | None, count: int) -> Curve | None:
-    return None if values is None else Curve(_array(values, (count,)), tolerance and float(tolerance))
+def _curve(values: object, tolerance: object, count: int) -> Curve | None:
+    if values is None:
+        return None
+    return Curve(_array(values, (count,)), None if tolerance is None else number(tolerance, 0.0))
 
 
 def _array(values: object, shape: tuple[int, ...]) -> FloatArray:
     array = np.array(values, dtype=np.float64)
-    if array.shape != shape:
+    if array.shape != shape or not np.isfinite(array).all():
         raise ValueError("shape")
     return array

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import json
 from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from motionedit.core.plain_values import BEYOND_SENSE, json_of
 from motionedit.dataclass import dataclass
 from motionedit.errors import UsageError
 from motionedit.jobs.batch.files import identity
+from motionedit.regular_files import read_file
 from motionedit.report.record import SCHEMA
 
 if TYPE_CHECKING:
@@ -39,7 +40,7 @@ def read_report(path: Path) -> EditReport:
     """
     name = str(path)
     try:
-        data = json.loads(path.read_bytes())
+        data = json_of(read_file(path))
     except OSError as error:
         raise UsageError(f"cannot be read: {error.strerror or error}", file=name) from error
     except ValueError as error:  # not JSON, or not text at all
@@ -50,8 +51,19 @@ def read_report(path: Path) -> EditReport:
         raise UsageError(
             f"is a report of {data.get('command')}; a page shows those of {' and '.join(COMMANDS)}", file=name
         )
+    if not _is_sensible(data):
+        raise UsageError("has numbers beyond sense; give a report as an edit wrote it", file=name)
     spec = data.get("spec")
     return EditReport(name, spec if isinstance(spec, dict) else {}, [c for c in data["clips"] if isinstance(c, dict)])
+
+
+def _is_sensible(value: object) -> bool:
+    """Tell whether all numbers in plain values are such as lengths, angles and frames are."""
+    if isinstance(value, dict):
+        return all(map(_is_sensible, value.values()))
+    if isinstance(value, list):
+        return all(map(_is_sensible, value))
+    return not isinstance(value, (int, float)) or abs(value) <= BEYOND_SENSE
 
 
 @dataclass(frozen=True)

@@ -39,7 +39,8 @@ def page(bodies: Sequence[Body], *, title: str, edits: Sequence[Edit] = ()) -> b
     for mark in sorted(parts, key=html.index):
         before, html = html.split(mark, 1)
         pieces += (before, parts[mark])
-    return "".join((*pieces, html)).encode("utf-8")
+    # Names of files need not be text.
+    return "".join((*pieces, html)).encode("utf-8", "replace")
 
 
 def packed(positions: NDArray[np.float64]) -> tuple[str, str, float]:

@@ -1,0 +1,51 @@
+"""What a command may write to: no file that it reads, no file twice, and with --no-overwrite none that is there."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+from motionedit.errors import UsageError
+from motionedit.jobs.batch.files import identity, place
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+    from pathlib import Path
+
+
+def refuse_existing(outputs: Sequence[Path]) -> None:
+    """Raise the UsageError of --no-overwrite where any of the outputs exists."""
+    refuse_paths([path for path in outputs if os.path.lexists(path)], "exists, and --no-overwrite is given")
+
+
+def refuse_clashes(outputs: Iterable[tuple[str, Path | None]], inputs: Iterable[Path | None]) -> None:
+    """Raise a UsageError where an output is an input, by whatever name or link, or the output of something else.
+
+    Parameters
+    ----------
+    outputs
+        What each is, as in "the report and ... would both be written to", and where it goes. Standard output, which is
+        ``-`` or None, is no file.
+    inputs
+        All files that are read; None is standard input.
+    """
+    files = [(what, path) for what, path in outputs if path is not None and str(path) != "-"]
+    taken = {identity(path) for path in inputs if path is not None}
+    refuse_paths(
+        [path for _, path in files if identity(path) in taken],
+        "is an input of this run, and an input is never overwritten; write to another file or folder",
+    )
+    first: dict[str, str] = {}
+    for what, path in files:
+        if path.exists() and not path.is_file():
+            continue  # a device takes any number of outputs; a folder is refused where it is written
+        other = first.setdefault(place(path), what)
+        if other is not what:
+            raise UsageError(f"{other} and {what} would both be written to {path}")
+
+
+def refuse_paths(paths: Sequence[Path], reason: str) -> None:
+    """Raise a UsageError with the first of these paths, if any, and the number of the others."""
+    if paths:
+        others = f" (and {len(paths) - 1} more)" if len(paths) > 1 else ""
+        raise UsageError(reason + others, file=str(paths[0]))

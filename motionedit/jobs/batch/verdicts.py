@@ -1,0 +1,151 @@
+"""What became of the clips of earlier runs into a folder: a line for each, in one hidden file beside them.
+
+`--update` passes over an output only where its verdict is known: the clip then stands in the report, and counts under
+`--strict`, as if it had been made now. A line is added as a clip is done, so that a stopped run loses none.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, BinaryIO
+
+from motionedit.core.plain_values import items, json_of, mapping, text
+from motionedit.dataclass import dataclass
+from motionedit.jobs.batch.files import atomic_write, place
+from motionedit.regular_files import read_file
+from motionedit.report.record import plain
+from motionedit.version import __version__
+
+try:
+    import fcntl
+except ImportError:  # Windows, which keeps two writers of one line apart by itself
+    fcntl = None  # type: ignore[assignment]
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+NAME = ".motionedit-verdicts.jsonl"
+# What an entry of the report has of its run, not of the work: with other names for the same files it is another.
+OF_THE_TASK = ("clip", "output")
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What a run had to say of a clip: its entry in the report, and its warnings."""
+
+    record: dict[str, Any]
+    warnings: tuple[str, ...]
+
+
+def run_key(command: str, data: Mapping[str, Any], *, files: Sequence[Path] = (), more: object = None) -> str:
+    """Return what is the same for two runs that make the same of a clip.
+
+    Parameters
+    ----------
+    data
+        The spec with `--set` applied.
+    files
+        What else is read: event tables, the model.
+    more
+        What else makes a difference: plain values.
+
+    Raises
+    ------
+    OSError
+        A file cannot be read.
+    """
+    digests = [hashlib.sha256(read_file(path)).hexdigest() for path in files]
+    said = json.dumps([__version__, command, data, digests, more], default=str)
+    return hashlib.sha256(said.encode(errors="surrogatepass")).hexdigest()
+
+
+def verdicts_in(output: str, key: str, *, update: bool, dry_run: bool) -> Verdicts | None:
+    """Return the verdicts where a run's outputs go.
+
+    None where there is no such folder: for standard output, for a dry run, and for one file without `--update`, beside
+    which nothing is left that was not asked for.
+    """
+    if output == "-" or dry_run:
+        return None
+    if not output.lower().endswith(".bvh"):
+        return Verdicts(Path(output), key)
+    return Verdicts(Path(output).parent, key) if update else None
+
+
+class Verdicts:
+    """The verdicts on the outputs in a folder and below it; `key` says what the run makes of them (`run_key`)."""
+
+    def __init__(self, folder: Path, key: str) -> None:
+        self._root = place(folder)
+        self._path = folder / NAME
+        self._key = key
+        self._known: dict[str, dict[str, Any]] | None = None
+        self._added = 0
+
+    def recall(self, output: Path) -> Verdict | None:
+        """Return the verdict on an output; None where there is none on this very file, made as it would be made now."""
+        if self._known is None:
+            self._known = dict(self._lines())
+        said = self._known.get(self._name(output))
+        if said is None or said.get("key") != self._key:
+            return None
+        try:
+            if said["sha256"] != hashlib.sha256(read_file(output)).hexdigest():
+                return None
+            record = mapping(said["record"])
+            text(record["status"])
+            return Verdict(record, tuple(map(text, items(said["warnings"]))))
+        except (OSError, KeyError, ValueError):
+            return None
+
+    def keep(self, output: Path, digest: str, verdict: Verdict) -> None:
+        """Add the verdict on an output that was written just now; `digest` is the SHA-256 of what was written."""
+        said = {
+            "output": self._name(output),
+            "sha256": digest,
+            "key": self._key,
+            "record": plain({key: value for key, value in verdict.record.items() if key not in OF_THE_TASK}),
+            "warnings": list(verdict.warnings),
+        }
+        line = json.dumps(said).encode() + b"\n"
+        # Without its verdict a clip is made again: that is all that a full disk does here.
+        with contextlib.suppress(OSError), self._opened() as stream:
+            if stream.tell() and stream.seek(-1, os.SEEK_END) and stream.read(1) != b"\n":
+                stream.write(b"\n")  # a killed run wrote but half a line
+            stream.write(line)
+            self._added += len(line)
+
+    def close(self) -> None:
+        """Leave out lines that later ones stand for."""
+        with contextlib.suppress(OSError):
+            if not self._added or self._path.stat().st_size == self._added:
+                return
+            with self._opened():
+                last = sorted(dict(self._lines()).items())
+                atomic_write(self._path, [json.dumps(said).encode() + b"\n" for _, said in last])
+
+    def _name(self, output: Path) -> str:
+        return place(output).removeprefix(self._root)
+
+    @contextlib.contextmanager
+    def _opened(self) -> Iterator[BinaryIO]:
+        """Give the file to add to, held against other runs; one of them may have put another in its place meanwhile."""
+        while True:
+            with self._path.open("a+b") as stream:
+                if fcntl is not None:
+                    fcntl.flock(stream, fcntl.LOCK_EX)  # let go as it is closed
+                if self._path.stat().st_ino == os.fstat(stream.fileno()).st_ino:
+                    yield stream
+                    return
+
+    def _lines(self) -> Iterator[tuple[str, dict[str, Any]]]:
+        with contextlib.suppress(OSError):
+            for line in read_file(self._path).splitlines():
+                # A line that a killed run began is none.
+                with contextlib.suppress(ValueError, KeyError):
+                    said = mapping(json_of(line))
+                    yield text(said["output"]), said

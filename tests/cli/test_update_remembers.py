@@ -1,0 +1,84 @@
+"""--update passes over what is done, and knows what was said of it."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+MISSED = {"type": "position", "effector": "LeftForeArm", "points": [{"at": 4, "shift": [0, 900, 0]}], "tolerance": 0.1}
+
+
+@pytest.fixture
+def edit(run, clip, tmp_path):
+    """Return a runner of an edit of two clips that misses its goal."""
+    (tmp_path / "s.yaml").write_text(
+        json.dumps({"schema": "motionedit/edit-prioritized/v1", "constraints": [{**MISSED, "name": "far"}]})
+    )
+    for n, name in enumerate("ab"):
+        clip(f"in/{name}.bvh", seed=n)
+
+    def go(*more):
+        return run("edit-prioritized", "in", "-s", "s.yaml", "-o", "out", *more)
+
+    return go
+
+
+def test_a_skipped_clip_keeps_its_place_in_the_report_and_its_exit_code(edit):
+    assert edit("--report", "first.json").exit_code == 0
+    Path("out/b.bvh").unlink()
+    resumed = edit("--update", "--strict", "--report", "second.json")
+    assert (resumed.exit_code, resumed.stdout) == (3, "out/b.bvh\n")
+    assert "in/a.bvh: unreachable: far:" in resumed.stderr
+    assert "2 clips: 2 unreachable" in resumed.stderr
+    assert json.loads(Path("second.json").read_text()) == json.loads(Path("first.json").read_text())
+
+
+def test_with_strict_an_output_that_missed_is_older_than_its_clip_so_that_make_makes_it_again(edit):
+    assert edit("--strict").exit_code == 3
+    assert Path("out/a.bvh").stat().st_mtime < Path("in/a.bvh").stat().st_mtime
+    again = edit("--update", "--strict")
+    assert (again.exit_code, again.stdout) == (3, "out/a.bvh\nout/b.bvh\n")
+
+
+def test_another_set_is_another_spec(edit):
+    edit()
+    assert edit("--update").stdout == ""
+    changed = edit("--update", "--set", "constraints.far.weight=2")
+    assert changed.stdout == "out/a.bvh\nout/b.bvh\n"
+    assert edit("--update", "--set", "constraints.far.weight=2").stdout == ""
+
+
+def test_an_output_that_somebody_changed_is_made_again(edit):
+    edit()
+    Path("out/a.bvh").write_bytes(Path("out/b.bvh").read_bytes())
+    assert edit("--update").stdout == "out/a.bvh\n"
+
+
+def test_what_a_killed_run_began_to_say_is_no_verdict(edit):
+    edit()
+    path = Path("out/.motionedit-verdicts.jsonl")
+    first, second = path.read_bytes().splitlines(keepends=True)
+    path.write_bytes(first + second[:200])
+    assert edit("--update").stdout == "out/b.bvh\n"
+    assert edit("--update").stdout == ""
+
+
+def test_verdicts_are_the_same_bytes_for_any_number_of_workers_and_any_number_of_runs(edit):
+    path = Path("out/.motionedit-verdicts.jsonl")
+    edit()
+    before = path.read_bytes()
+    edit("-j", "2")
+    assert path.read_bytes() == before
+
+
+def test_normalize_makes_all_anew_where_the_list_of_clips_is_another(run):
+    golf = Path(__file__).resolve().parents[2] / "data" / "golf"
+    swings = [golf / f"swing0{n}.bvh" for n in (1, 2, 3)]
+    spec = golf.parents[1] / "configs" / "golf-normalize.yaml"
+    assert run("normalize", *swings, "-s", spec, "-o", "n", "--report", "a.json").exit_code == 0
+    again = run("normalize", *swings, "-s", spec, "-o", "n", "--update", "--report", "b.json")
+    assert (again.stdout, again.stderr) == ("", "3 up to date\n")
+    assert Path("a.json").read_text() == Path("b.json").read_text()
+    fewer = run("normalize", *swings[:2], "-s", spec, "-o", "n", "--update")
+    assert fewer.stdout == "n/swing01.bvh\nn/swing02.bvh\n"
+    assert len(json.loads(Path("n/normalization.json").read_text())["clips"]) == 2
