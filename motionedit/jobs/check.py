@@ -17,6 +17,7 @@ from motionedit.jobs.batch.plan import find_clips
 from motionedit.jobs.clip.facts import facts_of
 from motionedit.jobs.clip.metrics import clip_metrics, feet_of
 from motionedit.jobs.info.job import likely_unit
+from motionedit.regular_files import read_file
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -64,7 +65,7 @@ def limits_of(pairs: Sequence[str], file: Path | None = None) -> dict[str, float
     found: dict[str, float] = {}
     if file is not None:
         try:
-            lines = file.read_text(encoding="utf-8").splitlines()
+            lines = read_file(file).decode("utf-8").splitlines()
         except (OSError, UnicodeDecodeError) as error:
             raise UsageError(f"cannot read the limits: {error}", file=str(file)) from None
         for number, line in enumerate(lines, start=1):
