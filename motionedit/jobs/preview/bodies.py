@@ -68,10 +68,11 @@ def body_of(facts: ClipFacts, *, label: str) -> Body:
     # Beside pelvis and chest, short links that are no limb are helpers of some rig: twist bones, breasts.
     lengths = np.linalg.norm(skeleton.offsets, axis=-1) / size
     carried = below(skeleton, facts.travel)
+    ways = set() if anatomy.pelvis is None else set(skeleton.chain(anatomy.pelvis).tolist())
     for j, part in enumerate(parts):
         if part in covered or (hulls and part == "limb" and lengths[j] < _HELPER_LENGTH):
             parts[j] = "covered"
-        if not carried[j] or j == facts.travel:
+        if not carried[j] or j == facts.travel or j in ways:
             # What only says where the body is, and what stands beside it, is no limb.
             parts[j] = "none"
     balls = _head(facts)

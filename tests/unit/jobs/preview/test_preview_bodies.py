@@ -59,6 +59,20 @@ def test_sides_follow_the_anatomy(body):
     assert limb_to(body, "Spine1").side == "middle"
 
 
+def test_the_way_from_a_root_on_the_ground_up_to_the_pelvis_is_no_limb():
+    hips = bvh_text().partition("HIERARCHY\n")[2].partition("MOTION")[0].replace("ROOT Hips", "JOINT Hips", 1)
+    channels = "CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation"
+    assert hips.count(channels) == 1
+    offset, turns = hips.split("\n")[2].strip(), "CHANNELS 3 Zrotation Xrotation Yrotation"
+    hips = hips.replace(offset, "OFFSET 0 90 0", 1).replace(channels, turns)
+    rows = bvh_text().splitlines()[-12:]
+    moved = ["0 0 0 0 0 0 " + " ".join(row.split()[3:]) for row in rows]
+    head = f"HIERARCHY\nROOT Ground\n{{\nOFFSET 0 0 0\n{channels}\n{hips}}}\nMOTION\nFrames: 12\nFrame Time: 0.04\n"
+    text = head + "\n".join(moved) + "\n"
+    grounded = body_of(facts_of(parse_clip(text.encode(), label="x.bvh")), label="x")
+    assert "Ground" not in {grounded.names[limb.start] for limb in grounded.limbs}
+
+
 def test_a_thigh_is_thick_and_a_club_thin(body):
     thigh, club = limb_to(body, "LeftLeg"), limb_to(body, "Club (end site)")
     assert thigh.radii[0] > thigh.radii[1] > 4.0
