@@ -154,7 +154,7 @@ def form(value: Schema) -> str:
         return " or ".join(f"`{item}`" for item in bare["enum"])
     for choice in ("anyOf", "oneOf"):
         if choice in bare:
-            return " or ".join(dict.fromkeys(form(item) for item in bare[choice]))
+            return " or ".join(dict.fromkeys(form(item) for item in bare[choice] if item != kinds.OFF_AS_FALSE))
     return _plain_form(bare)
 
 

@@ -14,6 +14,7 @@ from motionedit.cli.options import (
     preview_option,
     run_options,
     set_option,
+    shard_option,
     spec_option,
 )
 
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
 @output_option("OUT", "A name ending in .bvh for one clip, '-' for standard output, else a folder.")
 @set_option
 @preview_option
+@shard_option
 @run_options(keep_going=True)
 @not_supported_yet("--skeleton")
 def command(

@@ -13,6 +13,7 @@ from motionedit.cli.options import (
     preview_option,
     run_options,
     set_option,
+    shard_option,
     spec_option,
 )
 
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
     help="Another version of the clip, or a folder of them, whose plants footplants keep; in place of the spec's.",
 )
 @preview_option
+@shard_option
 @run_options(keep_going=True)
 @not_supported_yet("--skeleton")
 def command(

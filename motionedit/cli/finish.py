@@ -56,6 +56,8 @@ def _say(result: BatchResult, options: RunOptions) -> None:
         if made and not options.dry_run:
             records, seconds = zip(*made, strict=True)
             click.echo(printable(results_table(records, seconds, verbosity=options.verbosity)), err=True)
+        if options.shard is not None and not result.records:
+            click.echo(f"no clip belongs to shard {options.shard}: nothing to do", err=True)
         if result.current:
             click.echo(f"{result.current} up to date", err=True)
     _show_missed(result, options)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from motionedit.cli.options import clips_argument, output_option, run_options, set_option, spec_option
+from motionedit.cli.options import clips_argument, no_shards, output_option, run_options, set_option, spec_option
 
 if TYPE_CHECKING:
     from motionedit.jobs.batch.plan import RunOptions
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 @output_option("DIR", "The folder for the normalized clips and normalization.json.")
 @set_option
 @run_options(keep_going=False)
+@no_shards("normalize takes all clips together, since each one moves the means; give -j N on one machine")
 def command(
     clips: tuple[Path, ...], spec_path: Path, output: str, overrides: tuple[str, ...], options: RunOptions
 ) -> int:

@@ -5,13 +5,16 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from motionedit.cli.progress import progress_on_terminal
 from motionedit.cli.verbosity import verbosity_of, verbosity_options
 from motionedit.errors import UsageError
+
+if TYPE_CHECKING:
+    from motionedit.jobs.batch.shards import Shard
 
 Function = Callable[..., Any]
 Decorator = Callable[[Function], Function]
@@ -41,6 +44,16 @@ def not_empty(ctx: click.Context, parameter: click.Parameter, value: Any) -> Any
     if "" in (value if isinstance(value, tuple) else (value,)):
         raise click.BadParameter("an empty name", ctx=ctx, param=parameter)
     return tuple(map(Path, value)) if isinstance(value, tuple) else value
+
+
+def one_shard(ctx: click.Context, parameter: click.Parameter, value: str | None) -> Shard | None:
+    """Return the shard that is meant."""
+    del ctx, parameter
+    if value is None:
+        return None
+    from motionedit.jobs.batch.shards import shard_of
+
+    return shard_of(value)
 
 
 clips_argument = click.argument("clips", nargs=-1, required=True, metavar="CLIPS...", callback=not_empty)
@@ -85,6 +98,12 @@ jobs_option = click.option(
     type=int,
     callback=not_negative,
     help="Clips in parallel; 0 means all cores. The files are the same for any N.",
+)
+shard_option = click.option(
+    "--shard",
+    metavar="K/N",
+    callback=one_shard,
+    help="Only the clips of shard K of N, by their names: for several machines.",
 )
 overwrite_option = click.option(
     "--no-overwrite",
@@ -182,6 +201,17 @@ def run_options(*, keep_going: bool) -> Decorator:
         return command
 
     return decorate
+
+
+def no_shards(reason: str) -> Decorator:
+    """Return a decorator that refuses --shard, and says why."""
+
+    def refuse(ctx: click.Context, parameter: click.Parameter, value: str | None) -> None:
+        del ctx, parameter
+        if value is not None:
+            raise click.UsageError(f"--shard: {reason}")
+
+    return click.option("--shard", hidden=True, expose_value=False, callback=refuse)
 
 
 def not_supported_yet(*names: str) -> Decorator:

@@ -144,13 +144,13 @@ class EditPcSpec(Document):
         description="method: map; the share of a change that may leave the components, 0 to 1; auto: from the share of "
         "an unseen clip that the model does not explain.",
     )
-    feet: Annotated[Literal["keep", "move", "off"] | None, kinds.word("keep", "move", "off")] = Field(
+    feet: Annotated[Literal["keep", "move", "off"] | None, kinds.or_off(kinds.word("keep", "move", "off"))] = Field(
         default=None,
         description="Planted feet: keep stands them where the input's stand, move where the edit takes each plant as a "
         "whole, off leaves them to the solver; default keep (off with the other methods, residual: drop and timing: "
         "normalized).",
     )
-    plausibility: Annotated[float | str | None, kinds.either(("off",), kinds.number(above=0.0))] = Field(
+    plausibility: Annotated[float | str | None, kinds.or_off(kinds.either(("off",), kinds.number(above=0.0)))] = Field(
         default=None,
         description="Bound, or off; default 3. map: on the change from the input, in standard deviations of the "
         "database, times what makes of one of its clips another; gauss-newton: on the coefficients' Mahalanobis norm, "
@@ -202,7 +202,7 @@ class EditPcSpec(Document):
         if isinstance(solver, dict) and solver.get("method") == "damped":
             if "unit" not in data:
                 yield Fault("needs unit: in the spec, such as unit: cm; damped works in lengths", ("solver", "method"))
-            if "plausibility" in data and data["plausibility"] != "off":
+            if "plausibility" in data and data["plausibility"] not in ("off", False):
                 yield Fault(
                     "belongs to the other methods; the paper's mode is bounded by its max_iterations",
                     ("plausibility",),

@@ -170,7 +170,7 @@ class EditPrioritizedSpec(Document):
     masses: Annotated[dict[str, float], MASSES] = Field(
         default={}, description="Kilograms by joint; default: an anthropometric table laid on the skeleton."
     )
-    hinges: Annotated[str | tuple[str, ...], kinds.either(("auto", "off"), kinds.JOINTS)] = Field(
+    hinges: Annotated[str | tuple[str, ...], kinds.or_off(kinds.either(("auto", "off"), kinds.JOINTS))] = Field(
         default="auto",
         description="Joints that bend about one axis only: auto (knees and elbows), off, or a list of joints.",
     )
@@ -179,7 +179,7 @@ class EditPrioritizedSpec(Document):
         description="How little joints give: human (a table laid on the skeleton), none (all alike, as in the paper), "
         "or numbers by joint: larger gives less, 1 is as the others.",
     )
-    limits: Annotated[str | dict[str, JointRange], LIMITS] = Field(
+    limits: Annotated[str | dict[str, JointRange], kinds.or_off(LIMITS)] = Field(
         default="human",
         description="How far joints turn from where the clip has them: human (ranges laid on the skeleton, never "
         "tighter than what the clip does), off (as in the paper), or swing and twist by joint, degrees.",

@@ -25,6 +25,8 @@ _TIME: Schema = {"anyOf": [_FRAME, _text(grammar.TIME)]}
 _DURATION: Schema = {"anyOf": [_FRAME, _text(grammar.DURATION)]}
 _EVENT_NAME: Schema = {**_text(grammar.EVENT), "not": {"enum": list(times.RESERVED_NAMES)}}
 
+OFF_AS_FALSE: Schema = {"const": False, "description": "off, as YAML 1.1 reads it"}
+
 
 def _closed(properties: Schema, *required: str) -> Schema:
     found: Schema = {"type": "object", "properties": properties, "additionalProperties": False}
@@ -138,6 +140,15 @@ def either(choices: Sequence[str], other: Kind) -> Kind:
     return Kind(parse, words, {"anyOf": [{"enum": list(choices)}, other.json]})
 
 
+def or_off(kind: Kind) -> Kind:
+    """Return a kind that has the word off, read from false too: so YAML 1.1 has it, and with it PyYAML."""
+
+    def parse(value: object, context: Context) -> object:
+        return kind.parse("off" if value is False else value, context)
+
+    return Kind(parse, kind.wanted, {"anyOf": [*kind.json.get("anyOf", [kind.json]), OFF_AS_FALSE]}, null=kind.null)
+
+
 def either_number(choice: str) -> Kind:
     """Return the kind of a word or a number."""
 
@@ -184,16 +195,18 @@ BODY_POINTS = Kind(
 )
 HEIGHT = number()
 ORIENTATION = Kind(_plainly(values.parse_orientation), f"an orientation: {values.ORIENTATION_WORDS}", _ORIENTATION)
-TOLERANCE = Kind(
-    _plainly(values.parse_tolerance),
-    "a number, {position: 0.5, angle: 0.1} or off",
-    {
-        "anyOf": [
-            _POSITIVE,
-            {"const": "off"},
-            {**_closed({"position": _POSITIVE, "angle": _POSITIVE}), "minProperties": 1},
-        ]
-    },
+TOLERANCE = or_off(
+    Kind(
+        _plainly(values.parse_tolerance),
+        "a number, {position: 0.5, angle: 0.1} or off",
+        {
+            "anyOf": [
+                _POSITIVE,
+                {"const": "off"},
+                {**_closed({"position": _POSITIVE, "angle": _POSITIVE}), "minProperties": 1},
+            ]
+        },
+    )
 )
 UNIT = Kind(
     _plainly(values.parse_unit),

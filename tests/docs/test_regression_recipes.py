@@ -1,41 +1,16 @@
 """The recipes of regression-testing.md do what they say: they pass where motions are the same, and fail where not."""
 
-import os
-import re
 import shutil
-import subprocess
-import sys
-from pathlib import Path
 from xml.etree import ElementTree as ET
 
 import pytest
-import sessions
 import yaml
+from recipes import block
 
 
 @pytest.fixture
 def text(root):
     return (root / "docs" / "regression-testing.md").read_text(encoding="utf-8")
-
-
-@pytest.fixture
-def shell(root, tmp_path):
-    """Return a runner of lines in a folder that has data/ and configs/, as a build server runs them."""
-    sessions.working_copy(root, tmp_path)
-    path = os.pathsep.join((str(Path(sys.executable).parent), os.environ["PATH"]))
-
-    def run(line):
-        done = subprocess.run(
-            ["/bin/sh", "-e", "-c", line],
-            cwd=tmp_path,
-            env={**os.environ, "PATH": path},
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-        return done.returncode, done.stdout + done.stderr
-
-    return run
 
 
 @pytest.fixture
@@ -46,12 +21,6 @@ def other_spec(root, tmp_path):
     assert changed != spec
     (tmp_path / "other.yaml").write_text(changed, encoding="utf-8")
     return "other.yaml"
-
-
-def block(text, language, name):
-    found = re.search(rf"^```{language}\n(# file: {re.escape(name)}\n.*?)^```$", text, re.MULTILINE | re.DOTALL)
-    assert found is not None, name
-    return found.group(1)
 
 
 @pytest.mark.compiled

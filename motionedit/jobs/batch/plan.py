@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from contextlib import AbstractContextManager
 
     from motionedit.core.bvh import Clip
+    from motionedit.jobs.batch.shards import Shard
     from motionedit.jobs.batch.verdicts import Verdict, Verdicts
 
 STDIN_LABEL = "<stdin>"
@@ -45,6 +46,8 @@ class RunOptions:
         Clips in parallel; 0 means all cores.
     scheduler : str or None
         Address of a Dask scheduler that takes the place of `jobs`.
+    shard : Shard or None
+        Work on the clips of this shard alone.
     update : bool
         Leave outputs alone that are newer than all they depend on.
     overwrite : bool
@@ -69,6 +72,7 @@ class RunOptions:
 
     jobs: int = 1
     scheduler: str | None = None
+    shard: Shard | None = None
     update: bool = False
     overwrite: bool = True
     keep_going: bool = True
@@ -98,6 +102,8 @@ class ClipTask:
         Path below the given folder with forward slashes, or the file's name: what event files call the clip.
     current : bool
         With `update`: the output is newer than all it depends on, and stays as it is; and so is its page.
+    elsewhere : bool
+        With `shard`: it belongs to another shard, and is here for what is asked of all names together.
     page : Path or None
         With `preview`: the page next to the output.
     verdict : Verdict or None
@@ -111,6 +117,7 @@ class ClipTask:
     output: Path | None
     relative: str
     current: bool = False
+    elsewhere: bool = False
     page: Path | None = None
     verdict: Verdict | None = None
     clip: Clip | None = None
@@ -147,6 +154,21 @@ def folder_clips(folder: Path, *, leave_out: Path | None = None) -> list[ClipTas
     return [ClipTask(clip, str(clip), None, clip.relative_to(folder).as_posix()) for clip in found]
 
 
+def shared_out(tasks: list[ClipTask], shard: Shard | None) -> list[ClipTask]:
+    """Return tasks with those that belong to other shards marked so; without a shard, as they are.
+
+    Raises
+    ------
+    UsageError
+        One is of standard input, which has no name to go by.
+    """
+    if shard is None:
+        return tasks
+    if any(task.source is None for task in tasks):
+        raise UsageError("--shard goes by the names of clips: it does not go with '-'")
+    return [task if shard.has(task.relative) else replace(task, elsewhere=True) for task in tasks]
+
+
 def plan(
     clips: Sequence[Path],
     output: str,
@@ -175,13 +197,15 @@ def plan(
     ------
     UsageError
         As `find_clips`; several clips for one output; an output that is an input; an output that exists where
-        `overwrite` is off; `update` with standard input or output; `preview` with standard output.
+        `overwrite` is off; `update` or `shard` with standard input or output; `preview` with standard output.
     """
     found = find_clips(clips, leave_out=None if output == "-" else Path(output))
     if options.update and (output == "-" or any(task.source is None for task in found)):
         raise UsageError("--update compares the times of files: it does not go with '-'")
     if options.preview and output == "-":
         raise UsageError("--preview writes a page next to each clip: it does not go with -o -")
+    if options.shard is not None and output == "-":
+        raise UsageError("--shard is for many clips: it does not go with -o -")
     sources = [task.source for task in found if task.source is not None]
     broken = [source for source in sources if not {"\n", "\r"}.isdisjoint(str(source))]
     refuse_paths(broken, "a line break in its name: files are listed one a line; rename it")
@@ -191,10 +215,12 @@ def plan(
     outputs = [(task.label, path) for task in tasks for path in task.outputs]
     inputs = [task.source for task in tasks]
     refuse_clashes([("the report", options.report), *writes, *outputs], [*inputs, *depends])
+    # Only now: whether two clips go to one file, every shard says.
+    tasks = shared_out(tasks, options.shard)
     if options.update:
         tasks = [_recalled(task, verdicts) if _is_current(task, depends) else task for task in tasks]
     if not options.overwrite:
-        refuse_existing([path for task in tasks if not task.current for path in task.outputs])
+        refuse_existing([path for task in tasks if not (task.current or task.elsewhere) for path in task.outputs])
     return tasks
 
 
@@ -259,7 +285,7 @@ def _recalled(task: ClipTask, verdicts: Verdicts | None) -> ClipTask:
 
 def _is_current(task: ClipTask, depends: Sequence[Path]) -> bool:
     """Tell, by make's rule, whether no file that the output is made from is newer than it."""
-    if task.output is None or task.source is None or not all(path.exists() for path in task.outputs):
+    if task.elsewhere or task.output is None or task.source is None or not all(path.exists() for path in task.outputs):
         return False
     made = min(path.stat().st_mtime_ns for path in task.outputs)
     return all(made >= path.stat().st_mtime_ns for path in (task.source, *depends) if path.exists())

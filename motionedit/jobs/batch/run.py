@@ -81,7 +81,8 @@ class BatchResult:
 def run_batch(
     tasks: Sequence[ClipTask], work: Work, options: RunOptions, *, verdicts: Verdicts | None = None
 ) -> BatchResult:
-    """Do the same work on every clip; see `run_each`."""
+    """Do the same work on every clip but those that are elsewhere; see `run_each`."""
+    tasks = [task for task in tasks if not task.elsewhere]
     waiting = [task for task in tasks if not task.current]
     run_one = RunOne(replace(options, progress=no_progress), work)
     return _run(tasks, run_one, [_placed(task, options) for task in waiting], options, verdicts)

@@ -82,7 +82,8 @@ def edit(
 ) -> BatchResult:
     """Edit the clips of tasks, and write those that have an output; what becomes of them `verdicts` are told."""
     others = tuple(task.relative for task in tasks)
-    work = EditByPriorities(loaded, others, threads_within(len(tasks), options), options.verify)
+    threads = threads_within(sum(not task.elsewhere for task in tasks), options)
+    work = EditByPriorities(loaded, others, threads, options.verify)
     return run_batch(tasks, with_page(work, loaded.data, options), options, verdicts=verdicts)
 
 
