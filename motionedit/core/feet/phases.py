@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
     from motionedit.core.body.anatomy import Anatomy
     from motionedit.core.body.contacts import Plant
-    from motionedit.core.feet.stance import Foot
+    from motionedit.core.feet.stance import FootPath
     from motionedit.core.kinematics import WorldPoses
 
 _ROUNDS = 6
@@ -37,8 +37,9 @@ def kept(plants: Sequence[Plant], poses: WorldPoses, anatomy: Anatomy, frame_tim
     shortest = max(2, round(_SHORTEST / frame_time))
     for foot in feet_of(anatomy):
         here = [plant for plant in plants if plant.foot == foot.side]
+        path, hip, reach = foot_path(poses, foot), poses.positions[:, foot.leg.thigh], reach_of(poses, foot)
         for _ in range(_ROUNDS):
-            shorter = _held(here, poses, foot, shortest)
+            shorter = _held(here, path, shortest, hip=hip, reach=reach)
             if shorter == here:
                 break
             here = shorter
@@ -46,9 +47,9 @@ def kept(plants: Sequence[Plant], poses: WorldPoses, anatomy: Anatomy, frame_tim
     return found
 
 
-def _held(plants: Sequence[Plant], poses: WorldPoses, foot: Foot, shortest: int) -> list[Plant]:
-    stance = stance_of(foot_path(poses, foot), plants)
-    heel = released(stance, poses.positions[:, foot.leg.thigh], reach_of(poses, foot)).heel
+def _held(plants: Sequence[Plant], path: FootPath, shortest: int, *, hip: FloatArray, reach: FloatArray) -> list[Plant]:
+    stance = stance_of(path, plants)
+    heel = released(stance, hip, reach).heel
     found = []
     for plant in plants:
         stop = plant.stop

@@ -110,32 +110,53 @@ def stance_of(path: FootPath, plants: Sequence[Plant]) -> Stance:
         number[0 if plant.part == "heel" else 1, plant.start : plant.stop + 1] = k
     turn = path.turn.copy()
     links: list[tuple[int, int, FloatArray]] = []
-    for heel, toe in sorted({(int(a), int(b)) for a, b in number.T.tolist() if a >= 0 and b >= 0}):
-        both = (number[0] == heel) & (number[1] == toe)
+    for heel, toe, both in _overlaps(number):
         turn[both] = mean_turn(path.turn[both])
-        links.append((heel, toe, rot.rotate(turn[both][0], path.toe[both].mean(axis=0))))
+        links.append((heel, toe, rot.rotate(turn[both[0]], path.toe[both].sum(axis=0) / len(both))))
     links += _meetings(path, plants)
     whole, offsets = _chained(len(plants), links)
-    places = np.zeros((len(plants), 3))
-    for stand in set(whole):
-        members = [k for k in range(len(plants)) if whole[k] == stand]
-        spans = [slice(plants[k].start, plants[k].stop + 1) for k in members]
-        ways = [tracks[plants[k].part][span] - offsets[k] for k, span in zip(members, spans, strict=True)]
-        base = np.concatenate(ways).mean(axis=0)
-        places[members] = base + offsets[members]
+    stands: dict[int, list[int]] = {}
+    for k, stand in enumerate(whole):
+        stands.setdefault(stand, []).append(k)
+    places = np.zeros((len(plants) + 1, 3))
+    for members in stands.values():
+        ways = [tracks[plants[k].part][plants[k].start : plants[k].stop + 1] - offsets[k] for k in members]
+        together = np.concatenate(ways)
+        places[members] = together.sum(axis=0) / len(together) + offsets[members]
     numbers = np.where(number[0] >= 0, number[0], number[1])
-    stands = np.append(np.array(whole, dtype=np.intp), -1)
-    places = np.concatenate((places, np.zeros((1, 3))))
-    return Stance(number[0] >= 0, number[1] >= 0, places[number[0]], places[number[1]], turn, stands[numbers])
+    named = np.array([*whole, -1], dtype=np.intp)
+    return Stance(number[0] >= 0, number[1] >= 0, places[number[0]], places[number[1]], turn, named[numbers])
+
+
+def _overlaps(number: IntArray) -> list[tuple[int, int, IntArray]]:
+    """Return the heels and toes that are down together, by their numbers (2, F), each pair with its frames."""
+    at = np.flatnonzero((number >= 0).all(axis=0))
+    if not len(at):
+        return []
+    heels, toes = number[:, at]
+    order = np.lexsort((toes, heels))
+    at, heels, toes = at[order], heels[order], toes[order]
+    edges = np.flatnonzero((np.diff(heels) != 0) | (np.diff(toes) != 0)) + 1
+    starts = [0, *edges.tolist()]
+    return [
+        (int(heels[start]), int(toes[start]), at[start:stop])
+        for start, stop in zip(starts, [*starts[1:], len(at)], strict=True)
+    ]
 
 
 def _meetings(path: FootPath, plants: Sequence[Plant]) -> list[tuple[int, int, FloatArray]]:
     """Return the links of heels and toes of which one comes down as the other goes up: the way at that frame."""
     links = []
+    from_frame: dict[int, list[int]] = {}
+    to_frame: dict[int, list[int]] = {}
+    for t, toe in enumerate(plants):
+        if toe.part == "toe":
+            from_frame.setdefault(toe.start, []).append(t)
+            to_frame.setdefault(toe.stop, []).append(t)
     for h, heel in enumerate(plants):
-        for t, toe in enumerate(plants):
-            if (heel.part, toe.part) == ("heel", "toe") and (heel.stop + 1 == toe.start or toe.stop + 1 == heel.start):
-                at = max(heel.start, toe.start)
+        if heel.part == "heel":
+            for t in sorted({*from_frame.get(heel.stop + 1, ()), *to_frame.get(heel.start - 1, ())}):
+                at = max(heel.start, plants[t].start)
                 links.append((h, t, rot.rotate(path.turn[at], path.toe[at])))
     return links
 
@@ -153,14 +174,16 @@ def _chained(count: int, links: Sequence[tuple[int, int, FloatArray]]) -> tuple[
     Heels do not overlap heels, nor toes toes: so links never close a circle, and one way leads to each plant.
     """
     whole, offsets = list(range(count)), np.zeros((count, 3))
+    members = {k: [k] for k in range(count)}
     for heel, toe, way in links:
         if whole[heel] == whole[toe]:
             continue
-        members = [k for k in range(count) if whole[k] == whole[toe]]
+        others = members.pop(whole[toe])
         # The toe's side is moved so that toe - heel is the way.
-        offsets[members] += offsets[heel] + way - offsets[toe]
-        for k in members:
+        offsets[others] += offsets[heel] + way - offsets[toe]
+        for k in others:
             whole[k] = whole[heel]
+        members[whole[heel]] += others
     return whole, offsets
 
 
