@@ -12,9 +12,10 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
+from motionedit.core.feet.correction import eased
 from motionedit.core.kinematics import WorldPoses, forward
 from motionedit.core.motion import Motion
-from motionedit.core.standing.plants import eased, lowered, planted_frames
+from motionedit.core.standing.plants import lowered, planted_frames
 from motionedit.core.standing.two_bones import bent_to
 from motionedit.core.timeline.alignment import TravelPath, travel_path, with_travel_path
 from motionedit.core.timeline.interpolation import low_pass
@@ -36,6 +37,8 @@ _LOWEST = 0.15
 # How much of the cosine of its bend a leg takes to come to rest before it is straight: in the air it may miss, where it
 # stands the pelvis is lowered instead. Seconds between the two.
 _SOFT_AIR, _SOFT_PLANT, _FIRM_WITHIN = 0.06, 0.006, 0.1
+# Seconds: how slowly corrections bend between plants.
+_BENDS = 0.05
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,7 +153,7 @@ def _target(
     known = planted.copy()
     known[list(foot.fixed)] = True
     wanted = np.where(planted[:, None], np.concatenate((way, turn), axis=1), 0.0)
-    c = eased(wanted, known, frame_time)
+    c = eased(wanted, known, frame_time, bends=_BENDS)
     firm = low_pass(planted[:, None].astype(np.float64), sigma=_FIRM_WITHIN / frame_time)[:, 0]
     return _Target(
         positions + c[:, :3],

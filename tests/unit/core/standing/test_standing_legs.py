@@ -12,7 +12,6 @@ from motionedit.core.body.contacts import find_plants, foot_plants
 from motionedit.core.bvh import read_clip
 from motionedit.core.motion import Motion
 from motionedit.core.standing.legs import keep_feet, standing_feet
-from motionedit.core.standing.plants import eased
 from motionedit.core.standing.two_bones import bent_to
 
 WALK = Path(__file__).resolve().parents[4] / "data" / "walk.bvh"
@@ -79,16 +78,6 @@ def test_a_foot_with_a_goal_is_free_at_that_frame(walk):
     feet = standing_feet(motion, anatomy.legs, plants, fixed={(leg.ankle, plant.start)})
     assert (plant.start, plant.stop) not in feet[0].intervals
     assert feet[0].fixed == (plant.start,)
-
-
-def test_eased_corrections_are_what_is_wanted_and_fade_far_away():
-    known = np.zeros(300, dtype=bool)
-    known[100:110] = True
-    c = eased(np.where(known[:, None], 2.0, 0.0), known, 1.0 / 60.0)
-    np.testing.assert_array_equal(c[known], 2.0)
-    assert np.abs(np.diff(c[:, 0], 2)).max() < 0.2
-    np.testing.assert_allclose(c[[0, 299]], 0.0, atol=1e-9)
-    assert not eased(np.zeros((5, 1)), np.zeros(5, dtype=bool), 0.01).any()
 
 
 def test_two_bones_reach_their_target_or_stretch_towards_it():
