@@ -139,7 +139,7 @@ def swing_and_twist(q: FloatArray, along: FloatArray) -> tuple[FloatArray, Float
 
 
 def _means(q: FloatArray) -> FloatArray:
-    """Return the means of rotations (F, n, 4), shape (n, 4): the first eigenvectors of sum q q^T, signed as the first."""
+    """Return the means of rotations (F, n, 4), shape (n, 4): first eigenvectors of sum q q^T, signed as the first."""
     _, vectors = np.linalg.eigh(np.einsum("fni,fnj->nij", q, q))
     means: FloatArray = vectors[..., -1]
     return np.where(np.sum(means * q[0], axis=-1, keepdims=True) < 0.0, -means, means)

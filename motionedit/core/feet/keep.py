@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import FloatArray
     from motionedit.core.body.anatomy import Anatomy
-    from motionedit.core.body.bends import Bend
     from motionedit.core.body.contacts import Plant
     from motionedit.core.feet.stance import Foot, Stance
 
@@ -98,12 +97,10 @@ def onto_stances(
     travel: int,
     first: int,
     floor: float | None = None,
-    bends: Sequence[Bend] | None = None,
 ) -> Kept:
     """Return a motion whose feet stand as given, as `keep_feet`; `poses` are its world transforms.
 
-    Where there is a `floor`, a height along up, no foot in the air goes below it. `bends`, where they are known, are
-    those of the motion, as `find_bends`.
+    Where there is a `floor`, a height along up, no foot in the air goes below it.
     """
     stances = [
         (foot, released(stance, poses.positions[:, foot.leg.thigh], reach_of(poses, foot))) for foot, stance in stances
@@ -112,9 +109,7 @@ def onto_stances(
     if not any(stance.down.any() for _, stance in stances):
         return Kept(motion, (), lowered)
     ground = Ground(up, floor, _GIVE * anatomy.leg_length, anatomy.leg_length)
-    if bends is None:
-        bends = find_bends(motion.skeleton, poses, anatomy, first=first)
-    knees = {bend.joint: bend for bend in bends}
+    bends = {bend.joint: bend for bend in find_bends(motion.skeleton, poses, anatomy, first=first)}
     if motion.skeleton.position_axes[travel]:
         # Heels that stand say how low the pelvis is; a foot on its toe rolls on instead.
         for foot, stance in stances:
@@ -136,14 +131,14 @@ def onto_stances(
         )
         for foot, stance in stances
     )
-    solved = [g for g in goals if turns_freely(motion.skeleton, g.foot.leg) and g.foot.leg.knee in knees]
+    solved = [g for g in goals if turns_freely(motion.skeleton, g.foot.leg) and g.foot.leg.knee in bends]
     wanted = []
     final = {goal.foot.side: goal for goal in goals}
     for goal in solved:
         places = _within_reach(
             goal, poses.positions[:, goal.foot.leg.thigh] + shift, reach_of(poses, goal.foot, _STRAIGHT)
         )
-        wanted.append((goal.foot.leg, knees[goal.foot.leg.knee], places, goal.turns))
+        wanted.append((goal.foot.leg, bends[goal.foot.leg.knee], places, goal.turns))
         final[goal.foot.side] = replace(goal, places=places)
     stood = legs_onto(motion, poses, wanted, shift=shift)
     done = shifted(stood, shift, poses, travel) if lowered.any() else stood

@@ -79,7 +79,6 @@ def on_feet(
         travel=facts.travel,
         first=facts.first,
         floor=max(floors, default=None),
-        bends=sized.body.bends,
     )
     stood = replace(facts, clip=replace(facts.clip, motion=kept.motion), world=Poses(kept.motion))
     found = replace(
