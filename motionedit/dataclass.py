@@ -33,9 +33,10 @@ else:
 
 
 def _set_once(self: Any, name: str, value: object) -> None:  # noqa: ANN401  any of the classes
-    if name in vars(self) or name not in self.__dataclass_fields__:
+    known = self.__dict__
+    if name in known or name not in self.__dataclass_fields__:
         _refuse(self, name)
-    vars(self)[name] = value
+    known[name] = value
 
 
 def _refuse(_self: object, name: str) -> NoReturn:

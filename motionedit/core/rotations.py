@@ -66,7 +66,7 @@ def cross(a: FloatArray, b: FloatArray) -> FloatArray:
 
 
 def _parts(v: FloatArray) -> list[FloatArray]:
-    """Return the parts of vectors or quaternions, shape (...) each; `numpy.moveaxis` takes as long as a short product."""
+    """Return the parts of vectors or quaternions, shape (...) each; `numpy.moveaxis` takes longer than a product."""
     return [v[..., i] for i in range(v.shape[-1])]
 
 

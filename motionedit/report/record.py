@@ -62,16 +62,19 @@ def _scalar(value: Any) -> str:  # noqa: ANN401  a number, a text, or a list of 
 
 def plain(value: Any) -> Any:  # noqa: ANN401  any value that a report may hold
     """Return a value as JSON holds it: numbers rounded, arrays as lists, what is not finite as null."""
-    if type(value) is float:  # the most by far: a path has three a frame
-        return float(f"{value:.{_DIGITS}g}") + 0.0 if math.isfinite(value) else None
+    if isinstance(value, (list, tuple)):
+        # Most are numbers of frames, for which the other questions take longer than the answer.
+        return [_rounded(item) if type(item) is float else plain(item) for item in value]
     if isinstance(value, Mapping):
         return {str(key): plain(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [plain(item) for item in value]
     if hasattr(value, "tolist"):  # numpy's numbers and arrays
         return plain(value.tolist())
     if isinstance(value, float):
-        return plain(float(value))
+        return _rounded(value)
     if value is None or isinstance(value, (bool, int, str)):
         return value
     return str(value)
+
+
+def _rounded(value: float) -> float | None:
+    return float(f"{value:.{_DIGITS}g}") + 0.0 if math.isfinite(value) else None

@@ -11,7 +11,7 @@ from motionedit.core.arrays import frozen
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from motionedit.core.arrays import BoolArray, FloatArray
+    from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.body.anatomy import Anatomy, Leg
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.skeleton import Skeleton
@@ -108,10 +108,20 @@ def turns_about(axis: FloatArray, start: FloatArray, stop: FloatArray) -> FloatA
 
 def mean_direction(poses: WorldPoses, start: int, stop: int, *, seen_from: int, first: int) -> FloatArray:
     """Return the unit direction from one joint to another in the frame of a third, shape (3,), the mean of frames."""
-    way = poses.positions[first:, stop] - poses.positions[first:, start]
-    own = rot.rotate(rot.conjugate(poses.rotations[first:, seen_from]), way).sum(axis=0)
-    direction: FloatArray = own / max(float(np.linalg.norm(own)), np.finfo(float).tiny)
+    direction: FloatArray = mean_directions(
+        poses, np.array([start]), np.array([stop]), seen_from=np.array([seen_from]), first=first
+    )[0]
     return direction
+
+
+def mean_directions(
+    poses: WorldPoses, starts: IntArray, stops: IntArray, *, seen_from: IntArray, first: int
+) -> FloatArray:
+    """Return `mean_direction` of n pairs of joints, shape (n, 3)."""
+    ways = poses.positions[first:, stops] - poses.positions[first:, starts]
+    own = rot.rotate(rot.conjugate(poses.rotations[first:, seen_from]), ways).sum(axis=0)
+    directions: FloatArray = own / np.maximum(np.linalg.norm(own, axis=1, keepdims=True), np.finfo(float).tiny)
+    return directions
 
 
 def _sides(positions: FloatArray, top: int, joint: int, end: int) -> FloatArray:

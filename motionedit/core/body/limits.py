@@ -13,13 +13,13 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
-from motionedit.core.body.bends import mean_direction
+from motionedit.core.body.bends import mean_direction, mean_directions
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
-    from motionedit.core.arrays import FloatArray
+    from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.body.anatomy import Anatomy
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.motion import Motion
@@ -45,6 +45,8 @@ HIP = Range(135.0, 80.0)
 WRIST = Range(90.0, 120.0)
 ANKLE = Range(60.0, 45.0)
 
+_BLOCK_POSES = 1 << 13
+
 
 @dataclass(frozen=True, eq=False)
 class Limit:
@@ -69,14 +71,20 @@ class Limit:
 
 def human_limits(motion: Motion, poses: WorldPoses, anatomy: Anatomy, *, travel: int, first: int) -> list[Limit]:
     """Return the limits of neck, spine, clavicles, shoulders, hips, wrists and ankles that were found."""
-    found = {}
+    wanted: list[tuple[_Joint, Range]] = []
     for region, joints in _regions(motion.skeleton, anatomy, travel):
         # Of a region that n joints share each may do more than its nth part: not all of them are always asked.
         share = 1.0 / np.sqrt(len(joints))
-        for joint, start, stop in joints:
-            along = mean_direction(poses, start, stop, seen_from=joint, first=first)
-            half = Range(share * region.swing, share * region.twist)
-            found[joint] = limit_of(motion, joint, along, half, first=first)
+        half = Range(share * region.swing, share * region.twist)
+        wanted += [(joint, half) for joint in joints]
+    found: dict[int, Limit] = {}
+    # A few joints at a time: those of a long motion all at once would take several times its memory.
+    together = max(_BLOCK_POSES // len(motion), 1)
+    for start in range(0, len(wanted), together):
+        some = wanted[start : start + together]
+        joints, tops, ends = np.array([joint for joint, _ in some]).T
+        along = mean_directions(poses, tops, ends, seen_from=joints, first=first)
+        found.update({each.joint: each for each in _limits(motion, joints, along, [half for _, half in some], first)})
     return [found[joint] for joint in sorted(found)]
 
 
@@ -95,12 +103,25 @@ def given_limits(motion: Motion, poses: WorldPoses, given: Mapping[int, Range], 
 
 def limit_of(motion: Motion, joint: int, along: FloatArray, half: Range, *, first: int) -> Limit:
     """Return a joint's limit about its mean in a clip, not tighter than what the clip does after frame `first`."""
-    q = motion.rotations[first:, joint]
-    center = _mean(q)
-    swing, twist = swing_and_twist(rot.multiply(rot.conjugate(center), q), along)
-    widest = max(float(np.radians(half.swing)), float(swing.max()))
-    farthest = max(float(np.radians(half.twist)), float(np.abs(twist).max()))
-    return Limit(joint, frozen(center), frozen(along), widest, farthest)
+    return _limits(motion, np.array([joint]), along[None], [half], first)[0]
+
+
+def _limits(motion: Motion, joints: IntArray, along: FloatArray, halves: Sequence[Range], first: int) -> list[Limit]:
+    """Return the limits of n joints whose bones are `along`, shape (n, 3)."""
+    q = motion.rotations[first:, joints]
+    centers = _means(q)
+    swing, twist = swing_and_twist(rot.multiply(rot.conjugate(centers), q), along)
+    widest, farthest = swing.max(axis=0), np.abs(twist).max(axis=0)
+    return [
+        Limit(
+            joint,
+            frozen(centers[i]),
+            frozen(along[i]),
+            max(float(np.radians(half.swing)), float(widest[i])),
+            max(float(np.radians(half.twist)), float(farthest[i])),
+        )
+        for i, (joint, half) in enumerate(zip(joints.tolist(), halves, strict=True))
+    ]
 
 
 def swing_and_twist(q: FloatArray, along: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -117,11 +138,11 @@ def swing_and_twist(q: FloatArray, along: FloatArray) -> tuple[FloatArray, Float
     return swing, twist
 
 
-def _mean(q: FloatArray) -> FloatArray:
-    """Return the mean of rotations, shape (4,): the first eigenvector of sum q q^T, its sign that of the first."""
-    _, vectors = np.linalg.eigh(q.T @ q)
-    mean: FloatArray = vectors[:, -1]
-    return -mean if mean @ q[0] < 0.0 else mean
+def _means(q: FloatArray) -> FloatArray:
+    """Return the means of rotations (F, n, 4), shape (n, 4): first eigenvectors of sum q q^T, signed as the first."""
+    _, vectors = np.linalg.eigh(np.einsum("fni,fnj->nij", q, q))
+    means: FloatArray = vectors[..., -1]
+    return np.where(np.sum(means * q[0], axis=-1, keepdims=True) < 0.0, -means, means)
 
 
 _Joint = tuple[int, int, int]  # a joint, and from where to where its bone is

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 # elbows, which fold, are seen where they bend back.
 MOST, TRUNK, BALL, BACK = 45.0, 60.0, 150.0, 5.0
 
+_BLOCK_POSES = 1 << 13
+
 
 @dataclass(frozen=True)
 class Region:
@@ -74,18 +76,26 @@ def beyond_range(
     The range is the largest angle from the mean rotation of the input, the frames before `first` left out. A region
     with no joint among the `touched`, shape (J,), is left out.
     """
+    asked = [(region, *_ways(before.skeleton, region)) for region in regions]
+    asked = [(region, up, down) for region, up, down in asked if touched[[*up, *down]].any()]
     found = []
-    for region in regions:
-        up, down = _ways(before.skeleton, region)
-        if not touched[[*up, *down]].any():
-            continue
-        own, taken = (_relative(motion.rotations[first:], up, down) for motion in (before, after))
-        mean = rot.mean_of_products(own.T @ own)
-        angles = np.degrees(rot.angle_between(mean, taken))
-        worst = int(np.argmax(angles))
-        degrees = float(angles[worst] - np.degrees(rot.angle_between(mean, own)).max())
-        if degrees > region.most:
-            found.append(Beyond(region.lower, region.upper, first + worst, degrees, region.most))
+    # A few regions at a time: those of a long motion all at once would take several times its memory.
+    together = max(_BLOCK_POSES // len(before), 1)
+    for start in range(0, len(asked), together):
+        some = asked[start : start + together]
+        own, taken = (
+            np.stack([_relative(motion.rotations[first:], up, down) for _, up, down in some], axis=1)
+            for motion in (before, after)
+        )
+        means = rot.mean_of_products(np.einsum("fni,fnj->nij", own, own))
+        angles = np.degrees(rot.angle_between(means, taken))
+        worst = angles.argmax(axis=0)
+        degrees = angles.max(axis=0) - np.degrees(rot.angle_between(means, own)).max(axis=0)
+        found += [
+            Beyond(region.lower, region.upper, first + int(worst[i]), float(degrees[i]), region.most)
+            for i, (region, _, _) in enumerate(some)
+            if degrees[i] > region.most
+        ]
     return found
 
 

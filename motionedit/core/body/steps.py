@@ -11,7 +11,7 @@ from motionedit.core.arrays import frozen
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable
 
     from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.motion import Motion
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 STEP_RATE = 60.0
 # What is this small is rounding, degrees: nothing stepped.
 _NOTHING = 1e-6
+_BLOCK_POSES = 1 << 13
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +47,8 @@ class Steps:
 
 def own_steps(motion: Motion, *, first: int) -> Steps:
     """Return the largest steps of a motion's local rotations; a rest pose before `first` is left out."""
-    return _steps((motion.rotations[first:, j] for j in range(len(motion.skeleton))), motion.frame_time, first)
+    joints = np.arange(len(motion.skeleton))
+    return _steps(joints, lambda some: motion.rotations[first:, some], motion, first)
 
 
 def change_steps(before: Motion, after: Motion, *, first: int) -> Steps:
@@ -56,19 +58,24 @@ def change_steps(before: Motion, after: Motion, *, first: int) -> Steps:
     steps, to the bit.
     """
     one, other = before.rotations[first:], after.rotations[first:]
-    changes = (
-        None if np.array_equal(one[:, j], other[:, j]) else rot.multiply(rot.conjugate(one[:, j]), other[:, j])
-        for j in range(len(before.skeleton))
-    )
-    return _steps(changes, before.frame_time, first)
+    changed = [j for j in range(len(before.skeleton)) if not np.array_equal(one[:, j], other[:, j])]
+
+    def changes(some: IntArray) -> FloatArray:
+        return rot.multiply(rot.conjugate(one[:, some]), other[:, some])
+
+    return _steps(np.array(changed, dtype=np.intp), changes, before, first)
 
 
-def _steps(turns: Iterable[FloatArray | None], frame_time: float, first: int) -> Steps:
-    """Return the steps of joint after joint, shape (F, 4) each, None for one that does not turn."""
-    degrees, frames = [], []
-    for q in turns:
-        steps = np.zeros(0) if q is None else rot.angle_between(q[:-1], q[1:])
-        worst = int(np.argmax(steps)) if len(steps) else 0
-        degrees.append(float(np.degrees(steps[worst])) / (frame_time * STEP_RATE) if len(steps) else 0.0)
-        frames.append(first + worst + 1)
-    return Steps(frozen(np.array(degrees)), frozen(np.array(frames, dtype=np.intp)))
+def _steps(joints: IntArray, turns: Callable[[IntArray], FloatArray], motion: Motion, first: int) -> Steps:
+    """Return the steps of joints whose rotations are `turns` (F, n, 4) of so many of them; the others do not turn."""
+    count, length = len(motion.skeleton), len(motion) - first
+    degrees, worst = np.zeros(count), np.zeros(count, dtype=np.intp)
+    # A few joints at a time: those of a long motion all at once would take several times its memory.
+    together = max(_BLOCK_POSES // max(length, 1), 1)
+    for start in range(0, len(joints) if length > 1 else 0, together):
+        some = joints[start : start + together]
+        q = turns(some)
+        steps = rot.angle_between(q[:-1], q[1:])
+        worst[some] = steps.argmax(axis=0)
+        degrees[some] = np.degrees(steps.max(axis=0)) / (motion.frame_time * STEP_RATE)
+    return Steps(frozen(degrees), frozen(first + worst + 1))

@@ -109,19 +109,27 @@ def stance_of(path: FootPath, plants: Sequence[Plant]) -> Stance:
     for k, plant in enumerate(plants):
         number[0 if plant.part == "heel" else 1, plant.start : plant.stop + 1] = k
     turn = path.turn.copy()
-    links: list[tuple[int, int, FloatArray]] = []
+    links: list[tuple[int, int]] = []
+    turns, arms = [], []
     for heel, toe, both in _overlaps(number):
         turn[both] = mean_turn(path.turn[both])
-        links.append((heel, toe, rot.rotate(turn[both[0]], path.toe[both].sum(axis=0) / len(both))))
-    links += _meetings(path, plants)
-    whole, offsets = _chained(len(plants), links)
+        links.append((heel, toe))
+        turns.append(turn[both[0]])
+        arms.append(path.toe[both].sum(axis=0) / len(both))
+    for heel, toe, at in _meetings(plants):
+        links.append((heel, toe))
+        turns.append(path.turn[at])
+        arms.append(path.toe[at])
+    ways = rot.rotate(np.array(turns).reshape(-1, 4), np.array(arms).reshape(-1, 3))
+    whole, offsets = _chained(len(plants), links, ways)
     stands: dict[int, list[int]] = {}
     for k, stand in enumerate(whole):
         stands.setdefault(stand, []).append(k)
     places = np.zeros((len(plants) + 1, 3))
     for members in stands.values():
-        ways = [tracks[plants[k].part][plants[k].start : plants[k].stop + 1] - offsets[k] for k in members]
-        together = np.concatenate(ways)
+        together = np.concatenate(
+            [tracks[plants[k].part][plants[k].start : plants[k].stop + 1] - offsets[k] for k in members]
+        )
         places[members] = together.sum(axis=0) / len(together) + offsets[members]
     numbers = np.where(number[0] >= 0, number[0], number[1])
     named = np.array([*whole, -1], dtype=np.intp)
@@ -144,8 +152,8 @@ def _overlaps(number: IntArray) -> list[tuple[int, int, IntArray]]:
     ]
 
 
-def _meetings(path: FootPath, plants: Sequence[Plant]) -> list[tuple[int, int, FloatArray]]:
-    """Return the links of heels and toes of which one comes down as the other goes up: the way at that frame."""
+def _meetings(plants: Sequence[Plant]) -> list[tuple[int, int, int]]:
+    """Return heels and toes of which one comes down as the other goes up, by their numbers, and at which frame."""
     links = []
     from_frame: dict[int, list[int]] = {}
     to_frame: dict[int, list[int]] = {}
@@ -155,9 +163,8 @@ def _meetings(path: FootPath, plants: Sequence[Plant]) -> list[tuple[int, int, F
             to_frame.setdefault(toe.stop, []).append(t)
     for h, heel in enumerate(plants):
         if heel.part == "heel":
-            for t in sorted({*from_frame.get(heel.stop + 1, ()), *to_frame.get(heel.start - 1, ())}):
-                at = max(heel.start, plants[t].start)
-                links.append((h, t, rot.rotate(path.turn[at], path.toe[at])))
+            meeting = sorted({*from_frame.get(heel.stop + 1, ()), *to_frame.get(heel.start - 1, ())})
+            links += [(h, t, max(heel.start, plants[t].start)) for t in meeting]
     return links
 
 
@@ -168,14 +175,14 @@ def mean_turn(turns: FloatArray) -> FloatArray:
     return mean
 
 
-def _chained(count: int, links: Sequence[tuple[int, int, FloatArray]]) -> tuple[list[int], FloatArray]:
-    """Return to which stand each plant belongs, and its offset (count, 3) within it.
+def _chained(count: int, links: Sequence[tuple[int, int]], ways: FloatArray) -> tuple[list[int], FloatArray]:
+    """Return to which stand each plant belongs, and its offset (count, 3) within it, from n links and ways (n, 3).
 
     Heels do not overlap heels, nor toes toes: so links never close a circle, and one way leads to each plant.
     """
     whole, offsets = list(range(count)), np.zeros((count, 3))
     members = {k: [k] for k in range(count)}
-    for heel, toe, way in links:
+    for (heel, toe), way in zip(links, ways, strict=True):
         if whole[heel] == whole[toe]:
             continue
         others = members.pop(whole[toe])

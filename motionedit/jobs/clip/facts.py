@@ -14,6 +14,7 @@ from motionedit.core.body.anatomy import NOTHING_GIVEN, Anatomy, GivenBody, find
 from motionedit.core.body.bones import find_bones, travel_joint
 from motionedit.core.body.contacts import find_plants, plants_of, sole_tracks
 from motionedit.core.body.rest_pose import rest_pose_frames
+from motionedit.core.body.steps import own_steps
 from motionedit.core.body.up import find_up
 from motionedit.core.feet.phases import find_phases
 from motionedit.dataclass import dataclass
@@ -22,6 +23,7 @@ from motionedit.errors import ClipError
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
     from motionedit.core.body.contacts import Plant
+    from motionedit.core.body.steps import Steps
     from motionedit.core.bvh import Clip
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.motion import Motion
@@ -97,6 +99,11 @@ class ClipFacts:
         """The plants cut to what a foot can be held for in one place, as `find_phases`."""
         frame_time = self.clip.motion.frame_time
         return tuple(find_phases(self.poses, self.anatomy, self.plants, up=self.up, frame_time=frame_time))
+
+    @cached_property
+    def steps(self) -> Steps:
+        """The largest steps of its joints, as `own_steps`."""
+        return own_steps(self.clip.motion, first=self.first)
 
     @property
     def last(self) -> int:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from motionedit.core.body.quality import foot_drift, foot_slide_max
-from motionedit.core.body.steps import own_steps
 from motionedit.core.feet.measures import foot_measures
 from motionedit.core.trace import Trace, trace_of
 
@@ -38,9 +37,8 @@ def edit_metrics(facts: ClipFacts, before: Trace, after: Trace | None, *, steps:
     steps : Steps or None
         Of the change that the edit made, None where the edited motion has another timing.
     """
-    motion = facts.clip.motion
     plants = facts.phases
-    metrics: dict[str, Any] = {"before": clip_metrics(facts, before, plants, own_steps(motion, first=facts.first))}
+    metrics: dict[str, Any] = {"before": clip_metrics(facts, before, plants, facts.steps)}
     if after is None:
         return {**metrics, "after": dict.fromkeys(metrics["before"]), "foot_drift_max": None}
     drift = foot_drift(before.tracks, after.tracks, plants)

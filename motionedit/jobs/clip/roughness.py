@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.body.ranges import bent_back, beyond_range, regions_of
-from motionedit.core.body.steps import own_steps
 from motionedit.core.units import STANDARD_LEG
 
 if TYPE_CHECKING:
@@ -60,14 +59,13 @@ def rough_lines(
 
 def _stepping(facts: ClipFacts, steps: Steps) -> str | None:
     """Return the joint whose change steps the most, beyond what is seen and what the joint itself does in the input."""
-    motion = facts.clip.motion
-    limits = np.maximum(_STEP, own_steps(motion, first=facts.first).degrees)
+    limits = np.maximum(_STEP, facts.steps.degrees)
     seen = np.flatnonzero(steps.degrees > limits)
     if not len(seen):
         return None
     worst = int(seen[np.argmax(steps.degrees[seen])])
     return (
-        f"{motion.skeleton.names[worst]}: its change steps by {steps.degrees[worst]:.3g} degrees at frame "
+        f"{facts.clip.motion.skeleton.names[worst]}: its change steps by {steps.degrees[worst]:.3g} degrees at frame "
         f"{steps.frames[worst]} ({limits[worst]:.3g} would be seen){_others(len(seen))}"
     )
 

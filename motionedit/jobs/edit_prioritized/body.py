@@ -20,6 +20,7 @@ from motionedit.core.units import STANDARD_LEG
 from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError
 from motionedit.jobs.clip import resolve
+from motionedit.jobs.clip.faults import Faults
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
     from motionedit.core.body.bends import Bend
     from motionedit.jobs.clip.facts import ClipFacts
-    from motionedit.jobs.clip.faults import Faults
     from motionedit.spec.edit_prioritized import EditPrioritizedSpec
     from motionedit.spec.load import LoadedSpec
 
@@ -75,14 +75,27 @@ def sized_clip(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults
         leg = anatomy.leg_length * spec.unit.metres
         warnings.append(f"a leg is {leg:.3g} m long where the unit is {spec.unit.name}: is that the clip's unit?")
     masses = _masses(loaded, facts, faults)
-    bends = find_bends(clip.motion.skeleton, facts.poses, anatomy, first=facts.first)
-    hinges = _hinges(loaded, facts, bends, faults, warnings)
     motion = scaled(clip.motion, scale)
     sized = replace(masses, skeleton=motion.skeleton, points=frozen(masses.points * scale))
     mobility, root_mobility = _mobility(loaded, facts, faults)
-    limits = _limits(loaded, facts, hinges, faults, warnings)
-    body = Body(sized, tuple(hinges), facts.travel, facts.first, bends, mobility, root_mobility, tuple(limits))
+    bends, hinges, limits = _ranges(loaded, facts, faults, warnings)
+    body = Body(sized, hinges, facts.travel, facts.first, bends, mobility, root_mobility, limits)
     return SizedClip(facts, motion, body, masses, scale, tuple(warnings))
+
+
+def body_again(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, body: Body) -> Body:
+    """Return a clip's body as another motion of the same clip has it: only how its joints bend and turn differs."""
+    bends, hinges, limits = _ranges(loaded, facts, Faults(), [])
+    return replace(body, bends=bends, hinges=hinges, limits=limits)
+
+
+def _ranges(
+    loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults: Faults, warnings: list[str]
+) -> tuple[tuple[Bend, ...], tuple[Hinge, ...], tuple[Limit, ...]]:
+    """Return how the joints of a clip bend and turn in it, and how far they may."""
+    bends = find_bends(facts.clip.motion.skeleton, facts.poses, facts.anatomy, first=facts.first)
+    hinges = _hinges(loaded, facts, bends, faults, warnings)
+    return bends, tuple(hinges), tuple(_limits(loaded, facts, hinges, faults, warnings))
 
 
 def _masses(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults: Faults) -> Masses:

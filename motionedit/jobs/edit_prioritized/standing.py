@@ -16,8 +16,7 @@ from motionedit.core.motion import scaled
 from motionedit.core.priorities.kinds.constraint import Scene, Targets
 from motionedit.core.priorities.sight import sight_of
 from motionedit.jobs.clip.facts import Poses
-from motionedit.jobs.clip.faults import Faults
-from motionedit.jobs.edit_prioritized.body import sized_clip
+from motionedit.jobs.edit_prioritized.body import body_again
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -82,9 +81,12 @@ def on_feet(
         floor=max(floors, default=None),
     )
     stood = replace(facts, clip=replace(facts.clip, motion=kept.motion), world=Poses(kept.motion))
-    again = sized_clip(loaded, stood, Faults())
     found = replace(
-        sized, motion=scaled(kept.motion, scale), body=again.body, before=sized.motion, lowered=scale * kept.lowered
+        sized,
+        motion=scaled(kept.motion, scale),
+        body=body_again(loaded, stood, sized.body),
+        before=sized.motion,
+        lowered=scale * kept.lowered,
     )
     goals = {goal.foot.leg.ankle: goal for goal in kept.goals}
     return found, [part for each in constraints for part in _with_goals(each, goals, constraints, sized)]
