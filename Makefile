@@ -18,7 +18,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 export OMP_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install demo test test-numpy sanitize test-all changelog release-check lint types docs docs-check golden bench bench-peers bench-scale figures pictures trials paper data clean
+.PHONY: help install demo test test-numpy test-lowest sanitize test-all changelog release-check lint types docs docs-check golden bench bench-peers bench-scale figures pictures trials paper data clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -50,6 +50,18 @@ test: $(STAMP)  ## run the tests that take less than two minutes, and the linter
 
 test-numpy: $(STAMP)  ## run the same tests without the compiled solver, as where there is no C compiler
 	MOTIONEDIT_SOLVER=numpy $(BIN)/python -m pytest -n $(JOBS) -m 'not slow and not compiled'
+
+# The oldest releases have wheels for the oldest Python. Beside newer ones of what they use themselves they warn.
+LOWEST := .venv-lowest
+LOWEST_PYTHON ?= python3.11
+$(LOWEST)/.installed: pyproject.toml .ci/lowest.py $(CSRC)
+	$(LOWEST_PYTHON) -m venv $(LOWEST)
+	$(LOWEST)/bin/python .ci/lowest.py > $(LOWEST)/constraints.txt
+	$(LOWEST)/bin/python -m pip install --quiet --editable '.[plot,dev]' --constraint $(LOWEST)/constraints.txt
+	@touch $@
+
+test-lowest: $(LOWEST)/.installed  ## run the tests of parts and commands with the oldest releases that pyproject.toml names
+	$(LOWEST)/bin/python -m pytest -n $(JOBS) -m 'not slow' -W ignore::DeprecationWarning tests/cli tests/library tests/spec tests/unit
 
 sanitize: $(STAMP)  ## run the compiled part's tests under the address and undefined-behaviour sanitizers (gcc)
 	bash tests/sanitize.sh $(abspath $(BIN)/python)
