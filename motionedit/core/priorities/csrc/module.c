@@ -20,10 +20,7 @@ typedef struct {
     size_t offset;
 } Field;
 
-#define FIELD(structure, name, format)                                                                                 \
-    {                                                                                                                  \
-#name, format, offsetof(structure, name)                                                                       \
-    }
+#define FIELD(structure, name, format) {#name, format, offsetof(structure, name)}
 #define INTEGER(structure, name) FIELD(structure, name, "i8")
 #define NUMBER(structure, name) FIELD(structure, name, "f8")
 
