@@ -8,11 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.priorities.continuity import NO_DISPLACEMENT
-from motionedit.core.priorities.frames import run_of, solve_frames
-from motionedit.core.priorities.giving_way import MISSED
+from motionedit.core.priorities.frames import run_of
 from motionedit.core.priorities.kinds.constraint import Targets, moved
 from motionedit.core.priorities.passes import Passed, solve_in_passes
-from motionedit.core.priorities.smoothing import steps_at
 from motionedit.core.priorities.targets import errors_of, reached
 from motionedit.dataclass import dataclass
 
@@ -55,21 +53,13 @@ def eased_from_others(asked: Asked, smoothing: Passes) -> Run:
         if not _is_moved(others, motion, ramp.left > 0.0):
             continue
         if ramp.others not in alone:
-            alone[ramp.others] = _alone(run_of(others), smoothing)
+            alone[ramp.others] = solve_in_passes(run_of(others), smoothing)
         passed = alone[ramp.others]
         calm = calm or passed.calmed
         before, after = reached(asked, ramp.i, motion), reached(asked, ramp.i, passed.state.motion)
         eased = _led(eased, ramp, before, after)
         ramps.append((ramp, passed.state.motion))
     return replace(_led_to_the_edit(eased, ramps, smoothing, calm=calm), calm=calm)
-
-
-def _alone(run: Run, smoothing: Passes) -> Passed:
-    """Return where others begin with: without passes where they need none, for the ramp is led to the edit yet."""
-    state = solve_frames(run, run.motion, reference=run.motion, pull_root=False)
-    if state.left.max(initial=0.0) < MISSED and not steps_at(run, state.motion).any():
-        return Passed(state, state.iterations)
-    return solve_in_passes(run, smoothing)
 
 
 def _ramps(asked: Asked) -> Iterator[_Ramp]:
