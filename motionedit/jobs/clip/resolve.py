@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
     from motionedit.core.skeleton import Skeleton
     from motionedit.errors import MotionEditError
+    from motionedit.jobs.clip.faults import Faults
     from motionedit.spec.body import BodySpec
     from motionedit.spec.times import Interval, Time
     from motionedit.spec.values import EffectorSpec, OrientationSpec
@@ -95,6 +96,17 @@ def joint(name: str, skeleton: Skeleton, place: Where) -> int:
 def joints(names: Sequence[str], skeleton: Skeleton, place: Where) -> tuple[int, ...]:
     """Return the indices of the joints of those names; `place` is the list's."""
     return tuple(joint(name, skeleton, place.at(i)) for i, name in enumerate(names))
+
+
+def joint_if_there(name: str, skeleton: Skeleton, place: Where, faults: Faults) -> int | None:
+    """Return the index of the joint of that name; None where there is none, which is one of the faults then."""
+    return faults.get(lambda: joint(name, skeleton, place), otherwise=None)
+
+
+def joints_if_there(names: Sequence[str], skeleton: Skeleton, place: Where, faults: Faults) -> tuple[int, ...]:
+    """Return the indices of the joints of those names; none where one is not there, which is one of the faults then."""
+    none: tuple[int, ...] = ()
+    return faults.get(lambda: joints(names, skeleton, place), otherwise=none)
 
 
 def body(spec: BodySpec, skeleton: Skeleton, place: Where) -> GivenBody:

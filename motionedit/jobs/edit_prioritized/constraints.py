@@ -191,12 +191,10 @@ class _Resolver:
         return (*(Effector(int(joint), np.zeros(3)) for joint in np.flatnonzero(moving)), *sites)
 
     def _joint(self, name: str, place: Place) -> int | None:
-        return self.faults.get(lambda: resolve.joint(name, self.facts.clip.motion.skeleton, place), otherwise=None)
+        return resolve.joint_if_there(name, self.facts.clip.motion.skeleton, place, self.faults)
 
     def _joints(self, names: Sequence[str], place: Place) -> tuple[int, ...]:
-        none: tuple[int, ...] = ()
-        skeleton = self.facts.clip.motion.skeleton
-        return self.faults.get(lambda: resolve.joints(names, skeleton, place), otherwise=none)
+        return resolve.joints_if_there(names, self.facts.clip.motion.skeleton, place, self.faults)
 
     def _rule(self, recruit: Recruit, constraint: Place) -> RecruitRule:
         place = resolve.recruit_place(constraint)

@@ -98,9 +98,7 @@ class FeetInClip:
         return found
 
     def _joint(self, name: str, place: Place) -> int | None:
-        return self.faults.get(lambda: resolve.joint(name, self.facts.clip.motion.skeleton, place), otherwise=None)
+        return resolve.joint_if_there(name, self.facts.clip.motion.skeleton, place, self.faults)
 
     def _joints(self, names: Sequence[str], place: Place) -> tuple[int, ...]:
-        none: tuple[int, ...] = ()
-        skeleton = self.facts.clip.motion.skeleton
-        return self.faults.get(lambda: resolve.joints(names, skeleton, place), otherwise=none)
+        return resolve.joints_if_there(names, self.facts.clip.motion.skeleton, place, self.faults)
