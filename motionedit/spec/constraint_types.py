@@ -172,7 +172,21 @@ def _joints_of(effector: object) -> set[str]:
         return set()
 
 
-class FloorConstraint(Recruiting, ConstraintItem):
+class _Timeless(Recruiting, ConstraintItem):
+    """One that acts without times of its own, and is called by its type where it has no name."""
+
+    @property
+    def default_name(self) -> str:
+        """The name of one that gives none."""
+        return self.type
+
+    @classmethod
+    def key_names(cls) -> tuple[str, ...]:
+        """Return its keys: it has no times."""
+        return tuple(key for key in super().key_names() if key not in ("ease_in", "ease_out", "points"))
+
+
+class FloorConstraint(_Timeless):
     """Nothing of some points of the body goes below a height, over the whole clip."""
 
     only_warns = True
@@ -185,18 +199,8 @@ class FloorConstraint(Recruiting, ConstraintItem):
     )
     height: Annotated[float, kinds.HEIGHT] = Field(default=0.0, description="The floor's height along up, clip units.")
 
-    @property
-    def default_name(self) -> str:
-        """The name of one that gives none."""
-        return self.type
 
-    @classmethod
-    def key_names(cls) -> tuple[str, ...]:
-        """Return its keys: a floor has no times."""
-        return tuple(key for key in super().key_names() if key not in ("ease_in", "ease_out", "points"))
-
-
-class FootplantsConstraint(Recruiting, ConstraintItem):
+class FootplantsConstraint(_Timeless):
     """Planted feet stand: each plant in one place, heel and toe, rolling over the toe as in the input."""
 
     has_angle = True
@@ -221,16 +225,6 @@ class FootplantsConstraint(Recruiting, ConstraintItem):
         description="input: plants stay where they are; path: each moves, as a whole, where positions asked of the "
         "root take it.",
     )
-
-    @property
-    def default_name(self) -> str:
-        """The name of one that gives none."""
-        return self.type
-
-    @classmethod
-    def key_names(cls) -> tuple[str, ...]:
-        """Return its keys: plants have their own times."""
-        return tuple(key for key in super().key_names() if key not in ("ease_in", "ease_out", "points"))
 
 
 def _with_known_type(value: object) -> object:
