@@ -72,6 +72,11 @@ def relabelled(v: FloatArray, target: FloatArray) -> tuple[FloatArray, FloatArra
     return v, k
 
 
+def whole_turns(v: FloatArray, k: float) -> FloatArray:
+    """Return the same rotations by rotation vectors that are so many whole turns longer, shape (..., 3)."""
+    return _turned(v, _length(v), k)
+
+
 def _turned(v: FloatArray, length: FloatArray, k: float) -> FloatArray:
     safe = np.where(length < _NO_DIRECTION, 1.0, length)
     turned: FloatArray = v * (1.0 + TURN * k / safe)[..., None]
