@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motionedit.core.priorities.frames import Known, run_of, solve_frames
+from motionedit.core.priorities.frames import Known, run_of, solve_from_input
 from motionedit.core.priorities.kinds.constraint import between
 from motionedit.core.priorities.shares import shares_of
 from motionedit.core.priorities.smoothing import in_passes, steps_at
@@ -53,7 +53,7 @@ class Reached:
 
 def within_reach(run: Run, state: Solved, smoothing: Passes) -> Reached:
     """Return an edit with goals that can be reached, and its smooth solution, from the solution of what was asked."""
-    asked, motion = run.asked, run.motion
+    asked = run.asked
     for level in asked.levels:
         if state.left[:, asked.levels.index(level)].max(initial=0.0) < MISSED:
             continue
@@ -64,14 +64,14 @@ def within_reach(run: Run, state: Solved, smoothing: Passes) -> Reached:
         if missed.any() and level != asked.levels[-1]:
             # What is below may have led it astray: whether it is out of reach shows without.
             part, known = run_of(above), Known(~np.any(missed, axis=0), state.ranks[:, : len(above.levels)])
-            alone = solve_frames(part, motion, reference=motion, pull_root=False, known=known)
+            alone = solve_from_input(part, known)
             missed &= _missed(above, members, bent_where_missed(part, alone).motion)
         if not missed.any():
             continue
         above = _given_way(above, dict(zip(members, missed, strict=True)), smoothing)
         asked = _with_paths(asked, above, here)
         run = run_of(asked)
-        state = bent_where_missed(run, solve_frames(run, motion, reference=motion, pull_root=False))
+        state = bent_where_missed(run, solve_from_input(run))
     return Reached(run, in_passes(run, state, smoothing))
 
 
@@ -114,8 +114,7 @@ def _within(frames: BoolArray, targets: Targets) -> BoolArray:
 
 def _solved(run: Run, smoothing: Passes) -> Solved:
     """Return the smooth solution of an edit."""
-    state = solve_frames(run, run.motion, reference=run.motion, pull_root=False)
-    return in_passes(run, bent_where_missed(run, state), smoothing)
+    return in_passes(run, bent_where_missed(run, solve_from_input(run)), smoothing)
 
 
 def _missed(asked: Asked, which: list[int], motion: Motion) -> BoolArray:
@@ -138,7 +137,7 @@ def _given_way(above: Asked, missed: Mapping[int, BoolArray], smoothing: Passes)
         return run.aimed_at(_toward(soft, original, shares, smooth))
 
     run = run_of(soft)
-    state = solve_frames(run, motion, reference=motion, pull_root=False)
+    state = solve_from_input(run)
     smoother = replace(smoothing, sigma=_SMOOTHER * smoothing.sigma)
     state = in_passes(run, state, smoother, aimed=aimed)
     everywhere = {k: np.ceil(share) for k, share in shares.items()}

@@ -13,7 +13,7 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.priorities.splines import kochanek_bartels
-from motionedit.core.rotation_vectors import unwrapped, whole_turns
+from motionedit.core.rotation_vectors import least_turned
 from motionedit.core.timeline import round_half_up
 from motionedit.dataclass import dataclass
 
@@ -342,9 +342,4 @@ def _arcs(before: FloatArray, after: FloatArray, weights: FloatArray) -> FloatAr
     turn from its goal. Of the ways round that one is taken whose longest arc, by its weight (n,), is the least: a joint
     that is never farther than half a turn from the input is never asked to come back from the other side.
     """
-    shortest = rot.log(rot.multiply(rot.conjugate(before), after))[:, None]
-    heaviest = int(np.argmax(weights))
-    down, up = unwrapped(shortest[heaviest::-1])[::-1], unwrapped(shortest[heaviest:])
-    arcs = np.concatenate((down[:-1], up))[:, 0]
-    ways = [arcs, *(whole_turns(arcs, turns) for turns in (-1.0, 1.0))]
-    return min(ways, key=lambda way: float((weights * np.linalg.norm(way, axis=1)).max()))
+    return least_turned(rot.log(rot.multiply(rot.conjugate(before), after)), weights)

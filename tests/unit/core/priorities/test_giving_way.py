@@ -176,7 +176,7 @@ def test_whether_a_layer_makes_the_motion_step_is_judged_without_what_is_below(m
     feet = held_feet(FRAMES)
     run, _ = prepare(MOTION, [*feet, reaching(SHIFTS[1]), CenterOfMass(name="com", priority=2)], BODY, SMOOTH)
     alone, seen = solve_in_passes(run_of(run.asked.only(range(len(feet) + 1))), Passes()), []
-    monkeypatch.setattr(giving_way, "steps_at", lambda run, motion: seen.append(motion) or np.zeros(len(motion)))
+    monkeypatch.setattr(giving_way, "steps_at", lambda _, motion: seen.append(motion) or np.zeros(len(motion)))
     solve_in_passes(replace(run, calm=True), Passes())
     _, hand, _ = seen
     assert rot.angle_between(hand.rotations, alone.state.motion.rotations).max() < 1e-6
