@@ -77,7 +77,7 @@ def _at(asked: Asked, frame: int) -> Asked:
     motion, rows = asked.motion, slice(frame, frame + 1)
     still = Motion(motion.skeleton, motion.rotations[rows], motion.translations[rows], motion.frame_time)
     targets = tuple(_targets_at(each, frame) for each in asked.targets)
-    return replace(asked, motion=still, targets=targets, arcs=(None,) * len(targets))
+    return replace(asked, motion=still, targets=targets, arcs=(None,) * len(targets), ramps=((),) * len(targets))
 
 
 def _targets_at(targets: Targets, frame: int) -> Targets:

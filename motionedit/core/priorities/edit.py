@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -13,6 +14,7 @@ from motionedit.core.priorities.continuity import NO_DISPLACEMENT
 from motionedit.core.priorities.frames import run_of
 from motionedit.core.priorities.kinds.constraint import Movable
 from motionedit.core.priorities.passes import solve
+from motionedit.core.priorities.ramps import led_to
 from motionedit.core.priorities.recruiting import Breach, Reach, Recruits, breaches, expanded
 from motionedit.core.priorities.settings import Passes
 from motionedit.core.priorities.switching import eased_from_others
@@ -163,19 +165,20 @@ def edit_by_priorities(
     run, found = prepare(motion, constraints, body, settings, follows=follows)
     passed = solve(run, settings.smoothing)
     state = passed.state
+    asked = run.asked if state.ends is None else replace(run.asked, targets=led_to(run.asked, state.ends))
     touched, moved = changes(follows.input or motion, state.motion, body.travel)
     return PrioritizedEdit(
         motion=state.motion,
         touched=touched,
         moved=moved,
-        errors=errors_of(run.asked, state.motion),
+        errors=errors_of(asked, state.motion),
         iterations=passed.iterations,
         converged=state.converged,
         ranks=state.ranks,
         solver="compiled" if compiled() and all(group.prepared.layout for group in run.groups) else "numpy",
         recruits=run.asked.recruits,
         breaches=tuple(found),
-        asked=run.asked,
+        asked=asked,
     )
 
 

@@ -18,6 +18,7 @@ from motionedit.dataclass import dataclass
 if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.priorities.kinds.constraint import Targets
+    from motionedit.core.priorities.ramps import Ends
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +59,7 @@ class Solved:
     """A motion whose frames are solved in place, and how it went: iterations (F,), converged (F,), ranks (F, L).
 
     `left` (F, L) is what was left of each layer before the last step, as `LayeredSolution` has it. `steps`: whether
-    its change still steps after all passes.
+    its change still steps after all passes; `ends`: where the ramps ended in the last, None where they were not led.
     """
 
     motion: Motion
@@ -67,6 +68,7 @@ class Solved:
     ranks: IntArray
     left: FloatArray
     steps: bool = False
+    ends: Ends | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,6 +92,8 @@ def solve_frames(run: Run, start: Motion, *, reference: Motion, pull_root: bool,
     solved = _unsolved(run, start)
     for group in run.groups:
         done = None if known is None else known.done[group.frames]
+        if done is not None and done.all():
+            continue
         _solve(run, solved, group, reference, done=done, pull_root=pull_root)
     if known is not None:
         solved.ranks[known.done] = known.ranks[known.done]

@@ -15,6 +15,7 @@ import numpy as np
 
 from motionedit.core.priorities.frames import Known, run_of, solve_from_input
 from motionedit.core.priorities.kinds.constraint import between
+from motionedit.core.priorities.ramps import ending_in
 from motionedit.core.priorities.shares import shares_of
 from motionedit.core.priorities.smoothing import in_passes, steps_at
 from motionedit.core.priorities.straight import bent_where_missed
@@ -54,18 +55,22 @@ class Reached:
 def within_reach(run: Run, state: Solved, smoothing: Passes) -> Reached:
     """Return an edit with goals that can be reached, and its smooth solution, from the solution of what was asked."""
     asked = run.asked
-    for level in asked.levels:
-        if state.left[:, asked.levels.index(level)].max(initial=0.0) < MISSED:
+    for place, level in enumerate(asked.levels):
+        # A frame in which anything is missed is not solved on with limits: how far those reach shows without it.
+        unsure = state.left[:, place if not asked.body.limits else slice(place, None)]
+        unsure = np.atleast_2d(unsure.T).max(axis=0) >= MISSED
+        if not unsure.any():
             continue
         here = _down_to(level, asked)
         above = asked.only(here)
         members = _members(level, above)
-        missed = _missed(asked, [here[k] for k in members], state.motion)
-        if missed.any() and level != asked.levels[-1]:
+        if level == asked.levels[-1]:
+            missed = _missed(asked, [here[k] for k in members], state.motion)
+        else:
             # What is below may have led it astray: whether it is out of reach shows without.
-            part, known = run_of(above), Known(~np.any(missed, axis=0), state.ranks[:, : len(above.levels)])
+            part, known = run_of(above), Known(~unsure, state.ranks[:, : len(above.levels)])
             alone = solve_from_input(part, known)
-            missed &= _missed(above, members, bent_where_missed(part, alone).motion)
+            missed = _missed(above, members, bent_where_missed(part, alone).motion) & unsure
         if not missed.any():
             continue
         above = _given_way(above, dict(zip(members, missed, strict=True)), smoothing)
@@ -131,7 +136,7 @@ def _given_way(above: Asked, missed: Mapping[int, BoolArray], smoothing: Passes)
     motion, original = above.motion, above.targets
     ramp = max(1, round(_RAMP / motion.frame_time))
     shares = {k: shares_of(frames, ramp, _changes(above, k)) for k, frames in missed.items() if frames.any()}
-    soft = _softened(above, shares, _SOFTNESS)
+    soft = _unled(_softened(above, shares, _SOFTNESS), shares)
 
     def aimed(smooth: Motion) -> Run:
         return run.aimed_at(_toward(soft, original, shares, smooth))
@@ -141,9 +146,10 @@ def _given_way(above: Asked, missed: Mapping[int, BoolArray], smoothing: Passes)
     smoother = replace(smoothing, sigma=_SMOOTHER * smoothing.sigma)
     state = in_passes(run, state, smoother, aimed=aimed)
     everywhere = {k: np.ceil(share) for k, share in shares.items()}
-    targets = _toward(soft, original, everywhere, state.motion)
-    without = {k: share for k, share in shares.items() if targets[k] is original[k]}
-    kept = _softened(replace(above, targets=targets), shares, _KEPT * _SOFTNESS)
+    led = ending_in(above, state.ends, shares)
+    targets = _toward(soft, led.targets, everywhere, state.motion)
+    without = {k: share for k, share in shares.items() if targets[k] is led.targets[k]}
+    kept = _softened(replace(led, targets=targets), shares, _KEPT * _SOFTNESS)
     return _softened(kept, without, _SOFTNESS)
 
 
@@ -154,6 +160,14 @@ def _softened(asked: Asked, shares: Mapping[int, FloatArray], softness: float) -
         now = asked.softness[k]
         soft[k] = softness * share**2 if now is None else np.maximum(now, softness * share**2)
     return replace(asked, softness=tuple(soft))
+
+
+def _unled(asked: Asked, shares: Mapping[int, FloatArray]) -> Asked:
+    """Return what is asked with ramps that are led as far as paths have not taken their place, by shares (F,)."""
+    ramps = list(asked.ramps)
+    for k, share in shares.items():
+        ramps[k] = tuple(replace(ramp, left=ramp.left * (1.0 - share)) for ramp in ramps[k])
+    return replace(asked, ramps=tuple(ramps))
 
 
 def _toward(
@@ -185,8 +199,8 @@ def _changes(above: Asked, k: int) -> list[int]:
 
 
 def _with_paths(asked: Asked, above: Asked, here: list[int]) -> Asked:
-    """Return what is asked with the targets and softness of some of its constraints, `here`, replaced."""
-    targets, softness = list(asked.targets), list(asked.softness)
+    """Return what is asked with the targets, softness and ramps of some of its constraints, `here`, replaced."""
+    targets, softness, ramps = list(asked.targets), list(asked.softness), list(asked.ramps)
     for k, i in enumerate(here):
-        targets[i], softness[i] = above.targets[k], above.softness[k]
-    return replace(asked, targets=tuple(targets), softness=tuple(softness))
+        targets[i], softness[i], ramps[i] = above.targets[k], above.softness[k], above.ramps[k]
+    return replace(asked, targets=tuple(targets), softness=tuple(softness), ramps=tuple(ramps))

@@ -29,11 +29,31 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
+class Ramp:
+    """A ramp of a constraint.
+
+    Attributes
+    ----------
+    left : shape (F,)
+        How much of it is left at every frame: 1 at its end, 0 within the constraint's points and beyond.
+    outside : int
+        The frame just outside of it.
+    end : Targets
+        Where its targets end: of one frame.
+    """
+
+    left: FloatArray
+    outside: int
+    end: Targets
+
+
+@dataclass(frozen=True, eq=False)
 class Asked:
     """All that is asked of a motion: each constraint, what it may move, and where its task shall be.
 
     `softness` has lambda^2 at every frame, shape (F,), of the constraints that give way: see `Problem`. `arcs` has the
-    way round of the targets, shape (n, 3), that turn a joint far: see `far_turns`.
+    way round of the targets, shape (n, 3), that turn a joint far: see `far_turns`; `ramps` those of each constraint
+    that are led to the edit.
     """
 
     motion: Motion
@@ -44,6 +64,7 @@ class Asked:
     settings: LayeredSettings
     softness: tuple[FloatArray | None, ...]
     arcs: tuple[FloatArray | None, ...]
+    ramps: tuple[tuple[Ramp, ...], ...]
 
     def softness_at(self, i: int, frames: IntArray) -> FloatArray:
         """Return lambda^2 of a constraint at frames, shape (N,): 0 where it does not give way."""
@@ -59,6 +80,7 @@ class Asked:
             targets=tuple(self.targets[i] for i in keep),
             softness=tuple(self.softness[i] for i in keep),
             arcs=tuple(self.arcs[i] for i in keep),
+            ramps=tuple(self.ramps[i] for i in keep),
         )
 
     @property

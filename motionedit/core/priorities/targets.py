@@ -57,8 +57,9 @@ def with_targets(
         if not free:
             return before
         own = tuple(constraints[i] for i in free), tuple(recruits[i] for i in free), tuple(found[i] for i in free)
-        none = (None,) * len(free)
-        solved = solve_from_input(run_of(Asked(motion, *own, body, settings, softness=none, arcs=none)))
+        none, no_ramps = (None,) * len(free), ((),) * len(free)
+        alone = Asked(motion, *own, body, settings, softness=none, arcs=none, ramps=no_ramps)
+        solved = solve_from_input(run_of(alone))
         return _seen(solved.motion, constraints, body)
 
     goals = _goals(constraints, found, len(motion))
@@ -67,8 +68,8 @@ def with_targets(
         for i, each in enumerate(constraints)
     )
     arcs = tuple(arcs_of(there, each.reached(there, before)) for each, there in zip(constraints, targets, strict=True))
-    none = (None,) * len(targets)
-    return Asked(motion, tuple(constraints), tuple(recruits), targets, body, settings, none, arcs)
+    none, no_ramps = (None,) * len(targets), ((),) * len(targets)
+    return Asked(motion, tuple(constraints), tuple(recruits), targets, body, settings, none, arcs, no_ramps)
 
 
 def errors_of(asked: Asked, motion: Motion) -> tuple[ConstraintErrors, ...]:

@@ -101,12 +101,17 @@ int smooth_rotations(const double *before, const double *after, const double *ax
         const int is_hinge = axis[0] != 0.0 || axis[1] != 0.0 || axis[2] != 0.0;
         int moves = 0;
         for (int64_t f = 0; f < frames; f++) {
+            const double *q = before + 4 * (f * joints + j), *edited = after + 4 * (f * joints + j);
             double inverse[4], turn[4], *v = f < first ? turns + 3 * f : padded + 3 * (f - first + radius);
-            q_conjugate(before + 4 * (f * joints + j), inverse);
+            if (memcmp(q, edited, 4 * sizeof *q) == 0) {
+                v[0] = v[1] = v[2] = 0.0;
+                continue;
+            }
+            q_conjugate(q, inverse);
             if (is_hinge)
-                q_multiply(after + 4 * (f * joints + j), inverse, turn);
+                q_multiply(edited, inverse, turn);
             else
-                q_multiply(inverse, after + 4 * (f * joints + j), turn);
+                q_multiply(inverse, edited, turn);
             q_log(turn, turn);
             if (is_hinge) {
                 const double angle = dot(axis, turn);

@@ -14,7 +14,7 @@ from motionedit.core.compiled import solver_name
 from motionedit.core.priorities import compiled_solver
 from motionedit.core.priorities.edit import edit_by_priorities
 from motionedit.core.priorities.kinds import CenterOfMass, Posture
-from motionedit.core.priorities.settings import LayeredSettings, Passes
+from motionedit.core.priorities.settings import LayeredSettings, PaperFilter, Passes
 
 pytestmark = pytest.mark.skipif(solver_name() == "numpy", reason="no compiled solver here")
 
@@ -55,8 +55,10 @@ def edit_of(seed, joints, count, **how):
 @given(**SEEDS)
 @settings(max_examples=80, derandomize=True, **PATIENT)
 def test_both_solvers_hold_joints_alike(patch, seed, joints, count):
-    mine = edit_of(seed, joints, count)
-    theirs = by_numpy(patch, lambda: edit_of(seed, joints, count))
+    # Nothing gives way: whether something does is told by a threshold, from which rounding may lead anywhere.
+    hard = {"smoothing": PaperFilter(0)}
+    mine = edit_of(seed, joints, count, **hard)
+    theirs = by_numpy(patch, lambda: edit_of(seed, joints, count, **hard))
     np.testing.assert_array_equal(mine.ranks, theirs.ranks)
     assert difference(mine, theirs) < (FEASIBLE if is_met(mine) else INFEASIBLE)
     if is_met(mine):

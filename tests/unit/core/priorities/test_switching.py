@@ -107,3 +107,16 @@ def test_where_a_motion_has_a_task_is_read_off_the_whole_edit_of_the_others():
         reached(asked, 1, alone).positions - reached(asked, 1, MOTION).positions
     )
     np.testing.assert_allclose(eased.positions, expected, atol=1e-12)
+
+
+@pytest.mark.parametrize("feet", [[], held_feet(FRAMES)])
+def test_the_hand_goes_on_smoothly_beyond_the_end_of_its_ramp(feet):
+    edit = edited(MOTION, [*feet, riding((0.1, 0.25, 0.1), 34, 44)], SMOOTH)
+    moved = path(edit.motion, "RightHand") - path(MOTION, "RightHand")
+    bends = np.linalg.norm(np.diff(moved, n=2, axis=0), axis=1)
+    # What passes smooth over the ramp's end is some millimetres outside of it: the ramp goes on from there, not from 0.
+    for outside, inside in ((21, 22), (57, 56)):
+        assert np.linalg.norm(moved[outside]) > 0.5 * MM
+        assert np.linalg.norm(moved[inside] - moved[outside]) < 0.5 * MM
+    assert bends[20] < 0.2 * bends.max()
+    assert edit.errors[-1].positions.max() < 0.1 * MM
