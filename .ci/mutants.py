@@ -3,9 +3,9 @@
 Usage: python .ci/mutants.py FILE[:A-B] ... [--most N] [--seconds S] [--jobs J] [--tests PATH ...]
 
 A FILE is one of motionedit/, or some lines of it; all are Python, or all are C. Of the faults of each
-(.ci/mutations.py) N are tried, evenly spread. For each those tests run that go through its line, the quickest first,
-S seconds of them at the most; of a C file any, on a build of its own. The working tree is not touched: all this happens
-in copies of it.
+(.ci/mutations.py) N are tried, evenly spread. For each those tests run that go through its line, the nearest and
+quickest first, S seconds of them at the most; of a C file any, on a build of its own. The working tree is not touched:
+all this happens in copies of it.
 
 What survives is a place to look at, not a verdict: some faults change nothing, and others only a speed.
 """
@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -55,17 +56,23 @@ class Suite:
     traced: Path | None
 
     def tests(self, file: str, line: int, most: float) -> list[str]:
-        """Return the tests to run for a line of a file, the quickest first, `most` seconds of them."""
+        """Return the tests to run for a line of a file, the nearest and quickest first, `most` seconds of them."""
         names = self.seconds.keys()
         if self.traced is not None:
             names &= tests_through(self.traced / ".coverage", self.traced / file).get(line, set())
         chosen: list[str] = []
-        for name in sorted(names, key=lambda name: (self.seconds[name], name)):
+        for name in sorted(names, key=lambda name: (-nearness(name, file), self.seconds[name], name)):
             most -= self.seconds[name]
             if chosen and most < 0.0:
                 break
             chosen.append(name)
         return chosen
+
+
+def nearness(test: str, file: str) -> int:
+    """Return how many words of a file's path are in that of a test: `tests/unit` mirrors the package."""
+    words = set(re.split(r"[/_.]", file)) - {"motionedit", "py"}
+    return len(words & set(re.split(r"[/_.]", test.partition("::")[0])))
 
 
 def main() -> int:
@@ -156,7 +163,7 @@ def build(folder: Path) -> bool:
 
 def pytest_in(folder: Path, *options: str, patience: float | None = None) -> int | None:
     """Run pytest in a copy and return how it ended; None where it took too long."""
-    environment = {**os.environ, "PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
+    environment = {**os.environ, "PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1", "OPENBLAS_NUM_THREADS": "1"}
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-m", "not slow", *options]
     process = subprocess.Popen(
         command,

@@ -71,10 +71,12 @@ def test_so_many_are_chosen_evenly_and_on_the_lines_that_are_asked_for():
     assert [each.line for each in chosen(found, "5", 9)] == [5]
 
 
-def test_the_quickest_tests_run_and_one_at_least():
-    suite = Suite({"a": 3.0, "b": 1.0, "c": 2.0}, None)
-    assert suite.tests("f.c", 1, 3.5) == ["b", "c"]
-    assert suite.tests("f.c", 1, 0.1) == ["b"]
+def test_the_nearest_and_quickest_tests_run_and_one_at_least():
+    near, quick, slow = "tests/unit/core/body/test_up.py::a", "tests/cli/test_a.py::b", "tests/cli/test_a.py::c"
+    suite = Suite({near: 2.0, quick: 1.0, slow: 3.0}, None)
+    assert suite.tests("motionedit/core/body/up.py", 1, 3.5) == [near, quick]
+    assert suite.tests("motionedit/core/body/up.py", 1, 0.1) == [near]
+    assert suite.tests("motionedit/report/table.py", 1, 3.5) == [quick, near]
 
 
 @pytest.mark.parametrize(
