@@ -224,7 +224,7 @@ def fate(folder: Path, file: str, text: bytes, tests: list[str]) -> str:
 def report(file: str, text: bytes, found: list[Mutation], fates: list[str]) -> list[str]:
     """Return the lines of the report: what survived, where, and the counts."""
     lines = [
-        f"{file}:{each.line}: {ended}: {each.told(text)}"
+        f"{file}:{each.line}:{each.column(text)}: {ended}: {each.told(text)}"
         for each, ended in zip(found, fates, strict=True)
         if ended in {"survived", "no test"}
     ]

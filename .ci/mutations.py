@@ -38,6 +38,10 @@ class Mutation:
         """Return the file with the fault in it."""
         return text[: self.start] + self.new + text[self.stop :]
 
+    def column(self, text: bytes) -> int:
+        """Return where on its line it begins, from 1."""
+        return self.start - text.rfind(b"\n", 0, self.start)
+
     def told(self, text: bytes) -> str:
         """Return what became what, on one line."""
         old = b" ".join(text[self.start : self.stop].split()).decode()

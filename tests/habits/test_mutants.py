@@ -94,6 +94,6 @@ def test_a_fault_is_killed_by_a_test_that_fails_or_hangs(tmp_path, fault, expect
 def test_the_report_names_what_survived():
     found = mutations_of(b"x = 1 + 2\n", name="a.py")
     assert report("a.py", b"x = 1 + 2\n", found, ["survived", "killed", "killed"]) == [
-        "a.py:1: survived: 1  ->  (2)",
+        "a.py:1:5: survived: 1  ->  (2)",
         "a.py: 3 faults: 2 killed, 1 survived",
     ]
