@@ -20,7 +20,11 @@ def named():
 def test_everything_that_is_tracked_is_distributed():
     listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
     folders, files = named()
-    tracked = {name.partition("/")[0] for name in listed.split("\0") if name} - {"MANIFEST.in", "motionedit", "pyproject.toml"}
+    tracked = {name.partition("/")[0] for name in listed.split("\0") if name} - {
+        "MANIFEST.in",
+        "motionedit",
+        "pyproject.toml",
+    }
     assert tracked == folders | files
 
 
