@@ -72,6 +72,18 @@ def relabelled(v: FloatArray, target: FloatArray) -> tuple[FloatArray, FloatArra
     return v, k
 
 
+def least_turned(v: FloatArray, weights: FloatArray) -> FloatArray:
+    """Return the rotations of a track, (F, 3), by vectors that follow each other, the longest by its weight the least.
+
+    Of the ways round, whole turns apart, one is right for all frames.
+    """
+    heaviest = int(np.argmax(weights))
+    down, up = unwrapped(v[heaviest::-1, None])[::-1, 0], unwrapped(v[heaviest:, None])[:, 0]
+    track = np.concatenate((down[:-1], up))
+    ways = [track, *(_turned(track, _length(track), turns) for turns in (-1.0, 1.0))]
+    return min(ways, key=lambda way: float((weights * _length(way)).max()))
+
+
 def _turned(v: FloatArray, length: FloatArray, k: float) -> FloatArray:
     safe = np.where(length < _NO_DIRECTION, 1.0, length)
     turned: FloatArray = v * (1.0 + TURN * k / safe)[..., None]

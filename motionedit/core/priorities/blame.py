@@ -76,7 +76,8 @@ def _at(asked: Asked, frame: int) -> Asked:
     """Return what is asked of a motion that is one of its frames alone."""
     motion, rows = asked.motion, slice(frame, frame + 1)
     still = Motion(motion.skeleton, motion.rotations[rows], motion.translations[rows], motion.frame_time)
-    return replace(asked, motion=still, targets=tuple(_targets_at(each, frame) for each in asked.targets))
+    targets = tuple(_targets_at(each, frame) for each in asked.targets)
+    return replace(asked, motion=still, targets=targets, arcs=(None,) * len(targets))
 
 
 def _targets_at(targets: Targets, frame: int) -> Targets:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.motion import Motion
+from motionedit.core.priorities.far_turns import parts_of
 from motionedit.core.priorities.groups import Asked, Group, groups_of, part_of, retargeted, spans_of
 from motionedit.core.priorities.problem import Reference
 from motionedit.core.priorities.solver import solve_layers
@@ -93,6 +94,17 @@ def solve_frames(run: Run, start: Motion, *, reference: Motion, pull_root: bool,
     if known is not None:
         solved.ranks[known.done] = known.ranks[known.done]
     return solved
+
+
+def solve_from_input(run: Run, known: Known | None = None) -> Solved:
+    """Return the motion with every frame solved from the input, and attracted to it; far turns part by part."""
+    motion = start = run.motion
+    for targets, far in parts_of(run.asked):
+        idle = ~far if known is None else ~far | known.done
+        ranks = np.zeros((len(motion), len(run.asked.levels)), dtype=np.intp)
+        part = run.aimed_at(targets)
+        start = solve_frames(part, start, reference=motion, pull_root=False, known=Known(idle, ranks)).motion
+    return solve_frames(run, start, reference=motion, pull_root=False, known=known)
 
 
 def solve_in_order(run: Run) -> Solved:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motionedit.core.priorities.frames import Known, run_of, solve_frames
+from motionedit.core.priorities.frames import Known, run_of, solve_from_input
 from motionedit.core.priorities.kinds.constraint import between
 from motionedit.core.priorities.shares import shares_of
 from motionedit.core.priorities.smoothing import in_passes, steps_at
@@ -45,24 +45,15 @@ _SMOOTHER = 1.5
 
 @dataclass(frozen=True, eq=False)
 class Reached:
-    """An edit whose goals can be reached: how it is solved, and smooth solutions down to some of its priorities.
-
-    That of the last one, which is the edit's, is always there.
-    """
+    """An edit whose goals can be reached: how it is solved, and its smooth solution."""
 
     run: Run
-    smooth: Mapping[int, Solved]
-
-    @property
-    def state(self) -> Solved:
-        """The edit's smooth solution."""
-        return self.smooth[self.run.asked.levels[-1]]
+    state: Solved
 
 
 def within_reach(run: Run, state: Solved, smoothing: Passes) -> Reached:
     """Return an edit with goals that can be reached, and its smooth solution, from the solution of what was asked."""
-    asked, motion = run.asked, run.motion
-    smooth: dict[int, Solved] = {}
+    asked = run.asked
     for level in asked.levels:
         if state.left[:, asked.levels.index(level)].max(initial=0.0) < MISSED:
             continue
@@ -73,38 +64,35 @@ def within_reach(run: Run, state: Solved, smoothing: Passes) -> Reached:
         if missed.any() and level != asked.levels[-1]:
             # What is below may have led it astray: whether it is out of reach shows without.
             part, known = run_of(above), Known(~np.any(missed, axis=0), state.ranks[:, : len(above.levels)])
-            alone = solve_frames(part, motion, reference=motion, pull_root=False, known=known)
+            alone = solve_from_input(part, known)
             missed &= _missed(above, members, bent_where_missed(part, alone).motion)
         if not missed.any():
             continue
-        above, smooth[level] = _given_way(above, dict(zip(members, missed, strict=True)), smoothing)
+        above = _given_way(above, dict(zip(members, missed, strict=True)), smoothing)
         asked = _with_paths(asked, above, here)
         run = run_of(asked)
-        state = bent_where_missed(run, solve_frames(run, motion, reference=motion, pull_root=False))
-    smooth[asked.levels[-1]] = in_passes(run, state, smoothing)
-    return Reached(run, smooth)
+        state = bent_where_missed(run, solve_from_input(run))
+    return Reached(run, in_passes(run, state, smoothing))
 
 
 def without_steps(found: Reached, smoothing: Passes) -> Solved:
     """Return a solution in which constraints that yield do so where meeting them makes the motion step.
 
     Layer by layer from the top: what steps with a layer, and does not without it, that layer is to blame for. The most
-    important one yields to nothing.
+    important one yields to nothing. What is below a layer has no say here either.
     """
-    run, asked, smooth = found.run, found.run.asked, dict(found.smooth)
+    run, asked = found.run, found.run.asked
     before = np.zeros(len(run.motion), dtype=np.bool_)
     for level in asked.levels:
         here = _down_to(level, asked)
         above = asked.only(here)
-        if level not in smooth:
-            smooth[level] = _solved(run_of(above), smoothing)
-        steps = steps_at(run, smooth[level].motion) > 0.0
+        unchanged = asked is run.asked and level == asked.levels[-1]
+        steps = steps_at(run, (found.state if unchanged else _solved(run_of(above), smoothing)).motion) > 0.0
         new, before = steps & ~before, steps
         members = [k for k in _members(level, above) if above.constraints[k].yields and level != asked.levels[0]]
         stepping = {k: _within(new, above.targets[k]) for k in members}
         if any(frames.any() for frames in stepping.values()):
-            above, state = _given_way(above, stepping, smoothing)
-            asked, smooth = _with_paths(asked, above, here), {level: state}
+            asked = _with_paths(asked, _given_way(above, stepping, smoothing), here)
     return found.state if asked is run.asked else _solved(run_of(asked), smoothing)
 
 
@@ -126,8 +114,7 @@ def _within(frames: BoolArray, targets: Targets) -> BoolArray:
 
 def _solved(run: Run, smoothing: Passes) -> Solved:
     """Return the smooth solution of an edit."""
-    state = solve_frames(run, run.motion, reference=run.motion, pull_root=False)
-    return in_passes(run, bent_where_missed(run, state), smoothing)
+    return in_passes(run, bent_where_missed(run, solve_from_input(run)), smoothing)
 
 
 def _missed(asked: Asked, which: list[int], motion: Motion) -> BoolArray:
@@ -136,10 +123,10 @@ def _missed(asked: Asked, which: list[int], motion: Motion) -> BoolArray:
     return missed
 
 
-def _given_way(above: Asked, missed: Mapping[int, BoolArray], smoothing: Passes) -> tuple[Asked, Solved]:
+def _given_way(above: Asked, missed: Mapping[int, BoolArray], smoothing: Passes) -> Asked:
     """Return what is asked of a motion with paths that can be reached for constraints that are missed at frames (F,).
 
-    These are the last of its layers. And return the smooth solution on these paths.
+    These are the last of its layers.
     """
     motion, original = above.motion, above.targets
     ramp = max(1, round(_RAMP / motion.frame_time))
@@ -150,14 +137,14 @@ def _given_way(above: Asked, missed: Mapping[int, BoolArray], smoothing: Passes)
         return run.aimed_at(_toward(soft, original, shares, smooth))
 
     run = run_of(soft)
-    state = solve_frames(run, motion, reference=motion, pull_root=False)
+    state = solve_from_input(run)
     smoother = replace(smoothing, sigma=_SMOOTHER * smoothing.sigma)
     state = in_passes(run, state, smoother, aimed=aimed)
     everywhere = {k: np.ceil(share) for k, share in shares.items()}
     targets = _toward(soft, original, everywhere, state.motion)
     without = {k: share for k, share in shares.items() if targets[k] is original[k]}
     kept = _softened(replace(above, targets=targets), shares, _KEPT * _SOFTNESS)
-    return _softened(kept, without, _SOFTNESS), state
+    return _softened(kept, without, _SOFTNESS)
 
 
 def _softened(asked: Asked, shares: Mapping[int, FloatArray], softness: float) -> Asked:

@@ -32,7 +32,8 @@ if TYPE_CHECKING:
 class Asked:
     """All that is asked of a motion: each constraint, what it may move, and where its task shall be.
 
-    `softness` has lambda^2 at every frame, shape (F,), of the constraints that give way: see `Problem`.
+    `softness` has lambda^2 at every frame, shape (F,), of the constraints that give way: see `Problem`. `arcs` has the
+    way round of the targets, shape (n, 3), that turn a joint far: see `far_turns`.
     """
 
     motion: Motion
@@ -42,6 +43,7 @@ class Asked:
     body: Body
     settings: LayeredSettings
     softness: tuple[FloatArray | None, ...]
+    arcs: tuple[FloatArray | None, ...]
 
     def softness_at(self, i: int, frames: IntArray) -> FloatArray:
         """Return lambda^2 of a constraint at frames, shape (N,): 0 where it does not give way."""
@@ -50,9 +52,14 @@ class Asked:
 
     def only(self, keep: Sequence[int]) -> Asked:
         """Return what some of the constraints ask for."""
-        constraints, recruits = tuple(self.constraints[i] for i in keep), tuple(self.recruits[i] for i in keep)
-        targets, softness = tuple(self.targets[i] for i in keep), tuple(self.softness[i] for i in keep)
-        return replace(self, constraints=constraints, recruits=recruits, targets=targets, softness=softness)
+        return replace(
+            self,
+            constraints=tuple(self.constraints[i] for i in keep),
+            recruits=tuple(self.recruits[i] for i in keep),
+            targets=tuple(self.targets[i] for i in keep),
+            softness=tuple(self.softness[i] for i in keep),
+            arcs=tuple(self.arcs[i] for i in keep),
+        )
 
     @property
     def levels(self) -> list[int]:

@@ -6,7 +6,15 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from motionedit.core.priorities.continuity import filtered_root
-from motionedit.core.priorities.frames import Run, Solved, known_after, run_of, solve_frames, solve_in_order
+from motionedit.core.priorities.frames import (
+    Run,
+    Solved,
+    known_after,
+    run_of,
+    solve_frames,
+    solve_from_input,
+    solve_in_order,
+)
 from motionedit.core.priorities.giving_way import within_reach, without_steps
 from motionedit.core.priorities.recruiting import Recruits
 from motionedit.core.priorities.settings import PaperFilter, Passes
@@ -33,8 +41,7 @@ def solve(run: Run, smoothing: Passes | PaperFilter) -> Passed:
 
 def solve_in_passes(run: Run, smoothing: Passes) -> Passed:
     """Return the motion solved, smoothed and solved again."""
-    motion = run.motion
-    state = bent_where_missed(run, solve_frames(run, motion, reference=motion, pull_root=False))
+    state = bent_where_missed(run, solve_from_input(run))
     iterations = state.iterations.copy()
     found = within_reach(run, state, smoothing)
     calm = run.calm or found.state.steps

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.motion import Motion
-from motionedit.core.priorities.frames import run_of, solve_frames
+from motionedit.core.priorities.far_turns import arcs_of
+from motionedit.core.priorities.frames import run_of, solve_from_input
 from motionedit.core.priorities.groups import Asked
 from motionedit.core.priorities.kinds.constraint import Scene, Targets
 from motionedit.core.priorities.sight import Sight, sight_of
@@ -56,8 +57,8 @@ def with_targets(
         if not free:
             return before
         own = tuple(constraints[i] for i in free), tuple(recruits[i] for i in free), tuple(found[i] for i in free)
-        alone = run_of(Asked(motion, *own, body, settings, softness=(None,) * len(free)))
-        solved = solve_frames(alone, motion, reference=motion, pull_root=False)
+        none = (None,) * len(free)
+        solved = solve_from_input(run_of(Asked(motion, *own, body, settings, softness=none, arcs=none)))
         return _seen(solved.motion, constraints, body)
 
     goals = _goals(constraints, found, len(motion))
@@ -65,8 +66,9 @@ def with_targets(
         found[i] if i in found else each.targets(Scene(seen[i], settings.curve, goals, others))
         for i, each in enumerate(constraints)
     )
+    arcs = tuple(arcs_of(there, each.reached(there, before)) for each, there in zip(constraints, targets, strict=True))
     none = (None,) * len(targets)
-    return Asked(motion, tuple(constraints), tuple(recruits), targets, body, settings, none)
+    return Asked(motion, tuple(constraints), tuple(recruits), targets, body, settings, none, arcs)
 
 
 def errors_of(asked: Asked, motion: Motion) -> tuple[ConstraintErrors, ...]:

@@ -13,7 +13,7 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.priorities.splines import kochanek_bartels
-from motionedit.core.rotation_vectors import unwrapped
+from motionedit.core.rotation_vectors import least_turned
 from motionedit.core.timeline import round_half_up
 from motionedit.dataclass import dataclass
 
@@ -283,13 +283,23 @@ def rotation_targets(
     if not points:
         return first, targets
     begin, end = eased(points, ease_in=ease_in, ease_out=ease_out)
-    before, since = rotations, begin
-    for point in points:
-        source = _source(point, rotations)
-        _blend(targets, before, source, (since, point.start), (first, last))
+    share = share_of(points, ease_in=ease_in, ease_out=ease_out, frames=len(rotations))
+    sources = [rotations, *(_source(point, rotations) for point in points), rotations]
+    starts = [first, *(point.start for point in points), end]
+    stops = [begin, *(point.stop for point in points), last]
+    for k, (before, after) in enumerate(pairwise(sources)):
+        ramp = (stops[k], starts[k + 1])
+        if 0 < k < len(points):
+            span = slice(stops[k], starts[k + 1] + 1)
+            t = np.linspace(0.0, 1.0, span.stop - span.start)
+            weights = np.minimum(t, 1.0 - t)
+        else:
+            # To the input and from it the same way round, over all that one point does.
+            span = slice(first if k < 2 else starts[k], (last if k > len(points) - 2 else stops[k + 1]) + 1)
+            weights = share[span]
+        _blend(targets, before, after, ramp, span, weights)
+    for point, source in zip(points, sources[1:-1], strict=True):
         targets[point.span] = source[point.span]
-        before, since = source, point.stop
-    _blend(targets, before, rotations, (since, end), (first, last))
     return first, targets[first : last + 1]
 
 
@@ -307,28 +317,29 @@ def _source(point: ControlPoint, rotations: FloatArray) -> FloatArray:
 
 
 def _blend(
-    targets: FloatArray, before: FloatArray, after: FloatArray, ramp: tuple[int, int], active: tuple[int, int]
+    targets: FloatArray, before: FloatArray, after: FloatArray, ramp: tuple[int, int], span: slice, weights: FloatArray
 ) -> None:
-    """Write the slerp from one source to another over the frames between a ramp's ends that are active."""
+    """Write the slerp from one source to another over the frames between a ramp's ends.
+
+    Parameters
+    ----------
+    span, weights : slice, shape (n,)
+        Frames at which the arcs are looked at, and how much each is felt.
+    """
     start, stop = ramp
-    inside = np.arange(max(start + 1, active[0]), min(stop, active[1] + 1))
+    inside = np.arange(max(start + 1, span.start), min(stop, span.stop))
     if before is after or not len(inside):
         return
-    # Of the whole ramp as far as the clip has it: the arc is chosen where it weighs most.
-    span = slice(max(start, active[0]), min(stop, active[1]) + 1)
-    arc = _arcs(before[span], after[span])[inside - span.start]
+    arc = _arcs(before[span], after[span], weights)[inside - span.start]
     t = ((inside - start) / (stop - start))[:, None]
     targets[inside] = rot.multiply(before[inside], rot.exp(t * t * (3.0 - 2.0 * t) * arc))
 
 
-def _arcs(before: FloatArray, after: FloatArray) -> FloatArray:
+def _arcs(before: FloatArray, after: FloatArray, weights: FloatArray) -> FloatArray:
     """Return rotation vectors from one source to another that follow each other in time, shape (n, 3).
 
-    The shorter arc is taken half way, where it weighs most. A shorter arc at every frame would change to the other
-    side, and the target jump, where the input turns past half a turn from its goal.
+    A shorter arc at every frame would change to the other side, and the target jump, where the input turns past half a
+    turn from its goal. Of the ways round that one is taken whose longest arc, by its weight (n,), is the least: a joint
+    that is never farther than half a turn from the input is never asked to come back from the other side.
     """
-    shortest = rot.log(rot.multiply(rot.conjugate(before), after))[:, None]
-    middle = len(shortest) // 2
-    down, up = unwrapped(shortest[middle::-1])[::-1], unwrapped(shortest[middle:])
-    arcs: FloatArray = np.concatenate((down[:-1], up))[:, 0]
-    return arcs
+    return least_turned(rot.log(rot.multiply(rot.conjugate(before), after)), weights)

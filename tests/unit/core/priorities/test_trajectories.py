@@ -442,6 +442,17 @@ def test_any_targets_are_continuous_finer_frames_take_steps_as_much_smaller(sess
     assert largest_step(160) <= 0.2 * largest_step(20) + 1e-12
 
 
+def test_a_joint_less_than_half_a_turn_from_its_goal_is_led_back_on_the_side_on_which_it_is():
+    # The input turns on while the goal stands: by 1.2 rad at its end, and half way through the ramp by more than pi.
+    angle = np.where(T < 4.0, 1.2, 1.2 + 6.0 * (T - 4.0))
+    turns = rot.exp(np.outer(angle, [0.0, 0.0, 1.0]))
+    found = turned([hold(2000, 4000, orientation=rot.exp(np.zeros(3)))], turns=turns)
+    behind = rot.log(rot.multiply(rot.conjugate(turns), found))[4000:5001, 2]
+    assert behind.max() < 1e-9
+    assert -np.pi < behind.min() < -1.2
+    assert largest_turn_jump(found[4001:5000]) < 0.1
+
+
 # A real walk.
 
 
