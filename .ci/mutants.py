@@ -59,7 +59,9 @@ class Suite:
         """Return the tests to run for a line of a file, the nearest and quickest first, `most` seconds of them."""
         names = self.seconds.keys()
         if self.traced is not None:
-            names &= tests_through(self.traced / ".coverage", self.traced / file).get(line, set())
+            through = tests_through(self.traced / ".coverage", self.traced / file)
+            # A constant's line is run on import, before all tests: those of the whole file may notice.
+            names &= (through.get(line, set()) - {""}) or set().union(*through.values())
         chosen: list[str] = []
         for name in sorted(names, key=lambda name: (-nearness(name, file), self.seconds[name], name)):
             most -= self.seconds[name]
