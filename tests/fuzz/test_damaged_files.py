@@ -18,6 +18,9 @@ from motionedit.core.bvh import new_bytes
 from motionedit.core.pca.array_file import array_bytes
 from motionedit.core.pca.model_file import model_bytes
 
+# Edits of all kinds at once: files are read alike with either solver.
+pytestmark = pytest.mark.compiled
+
 HERE = Path(__file__).parent
 FUZZ = settings.get_profile("fuzz")
 PLAYER = bvh_text(frames=10).encode()
