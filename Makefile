@@ -18,7 +18,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 export OMP_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install demo test test-numpy test-lowest sanitize test-all changelog release-check lint types docs docs-check golden bench bench-peers bench-scale figures pictures trials paper data clean
+.PHONY: help install demo test test-numpy test-lowest sanitize fuzz mutants test-all changelog release-check lint types docs docs-check golden bench bench-peers bench-scale figures pictures trials paper data clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -64,7 +64,15 @@ test-lowest: $(LOWEST)/.installed  ## run the tests of parts and commands with t
 	$(LOWEST)/bin/python -m pytest -n $(JOBS) -m 'not slow' -W ignore::DeprecationWarning tests/cli tests/library tests/spec tests/unit
 
 sanitize: $(STAMP)  ## run the compiled part's tests under the address and undefined-behaviour sanitizers (gcc)
-	bash tests/sanitize.sh $(abspath $(BIN)/python)
+	JOBS=$(JOBS) bash tests/sanitize.sh $(abspath $(BIN)/python)
+
+EXAMPLES ?= 300
+fuzz: $(STAMP)  ## give the commands damaged files of every kind that they read; EXAMPLES=10000: so many of each kind
+	MOTIONEDIT_FUZZ=$(EXAMPLES) $(BIN)/python -m pytest -n $(JOBS) tests/fuzz
+
+MOST ?= 60
+mutants: $(STAMP)  ## report which small faults in FILE=motionedit/... no test notices; MOST=100: so many are tried
+	$(BIN)/python .ci/mutants.py $(FILE) --most $(MOST) --jobs $(JOBS)
 
 test-all: $(STAMP)  ## run every test, with branch coverage
 	$(BIN)/python -m pytest -n $(JOBS) --cov --cov-report=term-missing:skip-covered

@@ -48,6 +48,8 @@ out of date. What the words mean: [conventions.md](conventions.md). Specs to sta
 
 A spec is a YAML file. Its first key is `schema`. Unknown and repeated keys are errors, with the line. `--set KEY=VALUE`
 overrides one key; items of a list are named by their `name` or their index: `--set goals.ball.shift='[0, 0, 5]'`.
+Editors check by the schemas what a JSON Schema can say; that an interval ends before it begins, that two items have one
+name or that a joint is measured in its own frame, the program alone says (`motionedit check CLIPS -s SPEC`).
 """
 COLUMNS = "| key | form | default | meaning |\n|---|---|---|---|"
 

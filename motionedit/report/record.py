@@ -77,4 +77,7 @@ def plain(value: Any) -> Any:  # noqa: ANN401  any value that a report may hold
 
 
 def _rounded(value: float) -> float | None:
-    return float(f"{value:.{_DIGITS}g}") + 0.0 if math.isfinite(value) else None
+    if not math.isfinite(value):
+        return None
+    short = float(f"{value:.{_DIGITS}g}")
+    return round(short, _DIGITS) + 0.0 if -1.0 < short < 1.0 else short

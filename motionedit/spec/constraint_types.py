@@ -92,6 +92,7 @@ class AimConstraint(Recruiting, Placed, EffectorItem, ConstraintItem):
     has_angle = True
     only_warns = True
     between_keys = (
+        *Placed.between_keys,
         {"anyOf": [{"required": ["target"]}, {"required": ["points"]}]},
         {"not": {"required": ["target", "relative_to"]}},
         {

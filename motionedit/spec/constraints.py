@@ -8,7 +8,7 @@ from pydantic import Field
 from motionedit.dataclass import dataclass
 from motionedit.spec import kinds
 from motionedit.spec.faults import Fault, Keys
-from motionedit.spec.items import Item, measured_in_itself
+from motionedit.spec.items import NOT_TWO_FRAMES, Item, measured_in_itself, without
 from motionedit.spec.model import Kind, SpecModel, mappings_in
 from motionedit.spec.points import Point
 from motionedit.spec.scalars import one_of
@@ -55,11 +55,16 @@ class ConstraintItem(Item):
 
     @classmethod
     def __pydantic_init_subclass__(cls, **kwargs: object) -> None:
-        """Make a type known by its name."""
+        """Make a type known by its name, and to editors what its points and its tolerance may not have."""
         super().__pydantic_init_subclass__(**kwargs)
         if "type" in cls.model_fields:
             (name,) = get_args(cls.model_fields["type"].annotation)
             TYPES[name] = cls
+            foreign = [key for key in Point.model_fields if key not in (*_TIME_KEYS, *cls.point_keys)]
+            lacking = [key for key, has in (("position", cls.has_position), ("angle", cls.has_angle)) if not has]
+            rules = (("points", {"items": {"allOf": [without(key) for key in foreign]}}),)
+            rules += tuple(("tolerance", without(key)) for key in lacking)
+            cls.between_keys = (*cls.between_keys, *({"properties": {key: rule}} for key, rule in rules))
 
     priority: Annotated[int, kinds.whole()] = Field(
         default=1, description="Larger is more important; only the order matters. Equal ones share by weight."
@@ -144,6 +149,7 @@ class Placed(SpecModel):
     """What a constraint has that is measured in some frame of coordinates."""
 
     measure_keys: ClassVar[tuple[str, ...]] = ("frame", "relative_to")
+    between_keys: ClassVar[tuple[Mapping[str, Any], ...]] = (NOT_TWO_FRAMES,)
 
     frame: Annotated[kinds.Frame, kinds.FRAME] = Field(
         default="world", description="Axes of positions, shifts and orientations: world, or the character's heading."

@@ -8,7 +8,7 @@ from pydantic import AfterValidator, Field
 from motionedit.spec import kinds
 from motionedit.spec.document import Document
 from motionedit.spec.faults import Fault
-from motionedit.spec.items import EffectorItem, measured_in_itself, repeated_names, taken_apart
+from motionedit.spec.items import NOT_TWO_FRAMES, EffectorItem, measured_in_itself, repeated_names, taken_apart, without
 from motionedit.spec.model import SpecModel, mappings_in
 from motionedit.spec.scalars import Vector
 from motionedit.spec.times import Time
@@ -22,6 +22,11 @@ class PcGoal(EffectorItem):
 
     at_least_one = (("position", "shift", "orientation"),)
     at_most_one = (("position", "shift"),)
+    between_keys = (
+        NOT_TWO_FRAMES,
+        {"if": {"required": ["axes"]}, "then": {"anyOf": [{"required": [key]} for key in ("position", "shift")]}},
+        {"if": {"not": {"required": ["orientation"]}}, "then": {"properties": {"tolerance": without("angle")}}},
+    )
 
     at: Annotated[Time, kinds.TIME] = Field(description="The instant of the goal.")
     position: Annotated[Vector | None, kinds.VECTOR] = Field(
@@ -84,8 +89,18 @@ class PcGoal(EffectorItem):
                 yield Fault("belongs to a goal with a position or shift", ("tolerance", "position"))
 
 
+_DAMPED_KEYS = ("damping", "damping_unit", "max_iterations", "tolerance")
+
+
 class PcSolver(SpecModel):
     """How the coefficients are found."""
+
+    between_keys = (
+        {
+            "if": {"properties": {"method": {"const": "damped"}}, "required": ["method"]},
+            "else": {"not": {"anyOf": [{"required": [key]} for key in _DAMPED_KEYS]}},
+        },
+    )
 
     method: Annotated[Literal["map", "gauss-newton", "damped"], kinds.word("map", "gauss-newton", "damped")] = Field(
         default="map",
@@ -111,7 +126,7 @@ class PcSolver(SpecModel):
         method = data.get("method", "map")
         if method in ("map", "gauss-newton"):
             for key in data:
-                if key in ("damping", "damping_unit", "max_iterations", "tolerance"):
+                if key in _DAMPED_KEYS:
                     yield Fault(f"belongs to method: damped; {method} needs no settings", (key,))
 
 

@@ -23,6 +23,14 @@ _PASSES = {"passes": 3, "paper": 2}
 class Smoothing(SpecModel):
     """How the edit is kept continuous in time, section 5."""
 
+    between_keys = (
+        {
+            "if": {"properties": {"method": {"const": "paper"}}, "required": ["method"]},
+            "then": {"not": {"required": ["sigma"]}},
+            "else": {"not": {"required": ["cutoff"]}},
+        },
+    )
+
     method: Annotated[Literal["passes", "paper"], kinds.word("passes", "paper")] = Field(
         default="passes",
         description="passes: low-pass the displacement and solve again; paper: eq. (4) and a filter on the root.",

@@ -93,6 +93,18 @@ class DetectRule(SpecModel):
 
     exactly_one = (("minimum_of", "maximum_of"),)
     at_most_one = (("between", "after"),)
+    between_keys = (
+        {
+            "if": {
+                "anyOf": [
+                    {"properties": {key: {"const": "distance"}}, "required": [key]}
+                    for key in ("minimum_of", "maximum_of")
+                ]
+            },
+            "then": {"required": ["to"]},
+            "else": {"not": {"required": ["to"]}},
+        },
+    )
 
     effector: Annotated[EffectorSpec, kinds.EFFECTOR] = Field(description="The point that is watched.")
     minimum_of: Annotated[Measure | None, MEASURE] = Field(

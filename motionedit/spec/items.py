@@ -79,6 +79,15 @@ class EffectorItem(Item):
             yield item
 
 
+# For `between_keys`: the heading's frame beside a joint's.
+NOT_TWO_FRAMES = {"not": {"properties": {"frame": {"const": "heading"}}, "required": ["frame", "relative_to"]}}
+
+
+def without(key: str) -> dict[str, Any]:
+    """Return the JSON Schema of what has not this key: another mapping, or no mapping at all."""
+    return {"not": {"type": "object", "required": [key]}}
+
+
 def measured_in_itself(data: Mapping[str, Any]) -> Iterator[Fault]:
     """Yield a fault where an item's effector is on the joint in whose frame it is measured: there it never moves."""
     base, effectors = data.get("relative_to"), data.get("effector")

@@ -43,7 +43,9 @@ _EFFECTOR: Schema = {
 _ORIENTATION: Schema = {
     "anyOf": [
         _closed({"euler": _VECTOR, "order": _text(grammar.ORDER)}, "euler", "order"),
-        _closed({"quaternion": {**_VECTOR, "minItems": 4, "maxItems": 4}}, "quaternion"),
+        _closed(
+            {"quaternion": {**_VECTOR, "minItems": 4, "maxItems": 4, "not": {"items": {"const": 0}}}}, "quaternion"
+        ),
         _closed({"rotation_vector": _VECTOR}, "rotation_vector"),
     ]
 }

@@ -47,6 +47,23 @@ def test_it_is_drawn_in_device_pixels(browser, single):
     )
 
 
+@pytest.mark.parametrize("size", [(700, 900), (1900, 1000), (420, 800)])
+def test_no_picture_is_stretched_from_an_old_size_to_a_new_one(browser, pair, size):
+    browser.open(pair + "#frame=10")
+    # Nothing but the change of size draws from here on.
+    browser.evaluate("window.later = requestAnimationFrame; window.requestAnimationFrame = () => 0; null")
+    browser.evaluate("new Promise(done => later(() => later(done)))")
+    browser.send(
+        "Emulation.setDeviceMetricsOverride", width=size[0], height=size[1], deviceScaleFactor=1.0, mobile=False
+    )
+    browser.wait(f"innerWidth === {size[0]}")
+    browser.evaluate("new Promise(done => later(() => later(done)))")
+    sizes = "['scene', 'ruler'].map(id => document.getElementById(id)).map(c => [c.width, c.height, c.{}, c.{}])"
+    found = browser.evaluate(sizes.format("clientWidth", "clientHeight"))
+    assert all(drawn == shown for *drawn, width, height in found for shown in [[width, height]]), found
+    assert browser.errors == []
+
+
 def test_it_plays_in_time_and_space_pauses_it(browser, single):
     browser.open(single)
     assert browser.evaluate(PLAYING)

@@ -61,6 +61,7 @@ HEADERS = [
     ("a long OFFSET", with_text("-1e-1", "1 2"), "8: OFFSET of joint 'Spine' has more than 3 values, it needs 3"),
     ("nan in OFFSET", with_text("-1e-1", "nan"), "8: OFFSET of joint 'Spine': 'nan' is not a finite number"),
     ("an infinite OFFSET", with_text("-1e-1", "1e999"), "8: OFFSET of joint 'Spine': '1e999' is not a finite number"),
+    ("an OFFSET too far", with_text("-1e-1", "-1e31"), "8: OFFSET of joint 'Spine': '-1e31' is beyond any length"),
     ("two OFFSETs", with_text("-1e-1", "1\nOFFSET 0 0 0"), "9: a second OFFSET in joint 'Spine'"),
     ("two CHANNELS", with_text("\t\tEnd", "CHANNELS 0\nEnd"), "10: a second CHANNELS in joint 'Spine'"),
     (
@@ -159,6 +160,14 @@ def test_a_word_that_is_no_finite_number_is_refused_with_its_line_and_text(word)
     # Also among other long numbers and exponents, which are read another way.
     longer = with_text("-21", f"1e-3 {word} 0.12345678901234567890").replace(b" 11 1e", b" 1e").replace(b" 31", b"")
     assert refusal(longer) == f"walk.bvh:20: frame 1: '{word}' is not a finite number"
+
+
+@pytest.mark.parametrize("word", ["1e31", "-1e160"])
+def test_a_position_too_far_is_refused_and_an_angle_of_that_size_is_not(word):
+    size = word.removeprefix("-").replace("e", "e+")
+    expected = f"walk.bvh:20: frame 1 has a position of {size}, which is beyond any length"
+    assert refusal(with_text("1.5 2 3", f"1.5 {word} 3")) == expected
+    assert len(parse_clip(with_text("-21", "1e31"), label="walk.bvh").motion) == 3
 
 
 @pytest.mark.parametrize("lenient", [False, True])

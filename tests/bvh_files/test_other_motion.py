@@ -113,6 +113,7 @@ def test_what_the_file_cannot_hold_is_refused():
         "rotations must have shape (1, 2, 4), not (0, 2, 4)": replace(motion, rotations=motion.rotations[:0]),
         "translations must have shape (2, 2, 3), not (3, 2, 3)": replace(motion, rotations=motion.rotations[:2]),
         "frame_time must be more than 0 s, not nan": replace(motion, frame_time=np.nan),
+        "frame_time must be more than 0 s, not 0.0": replace(motion, frame_time=0.0),
         "'Spine', which has no rotation channels": turned(motion, 1, 1),
         "moves 'Spine' along an axis without a position channel": moved(motion, 1, [1.0, 0.0, 0.0]),
         "another skeleton": replace(motion, skeleton=replace(motion.skeleton, offsets=2.0 * motion.skeleton.offsets)),

@@ -2,6 +2,7 @@
 
 import pytest
 from click.testing import CliRunner
+from prioritized_edits import edits_in
 from small_motions import make_motion
 
 from motionedit.cli import main
@@ -41,3 +42,9 @@ def run(monkeypatch, tmp_path):
         return result
 
     return invoke
+
+
+@pytest.fixture
+def edit(run, tmp_path):
+    """Return a runner of edit-prioritized: constraints, options of the command, and further keys of the spec."""
+    return edits_in(tmp_path, run)

@@ -10,6 +10,7 @@ import pytest
 from small_motions import make_motion
 
 from motionedit.core import rotations as rot
+from motionedit.core.body.anatomy import anatomy_of
 from motionedit.core.bvh import new_bytes
 
 NAMES = ("Hips", "Spine", "LeftArm", "LeftForeArm")
@@ -49,6 +50,15 @@ def test_a_turned_joint_is_found_with_its_frame(run, write):
     # by the chord 20 sin(2.5 degrees).
     assert "turned by 5 degrees at frame 77, joint LeftArm" in result.stdout
     assert "apart at frame 77, joint LeftForeArm" in result.stdout
+
+
+@pytest.mark.parametrize(("share", "code"), [(0.9e-5, 0), (1.1e-5, 3)])
+def test_without_a_tolerance_places_are_the_same_to_a_hundred_thousandth_of_the_skeletons_height(
+    run, write, share, code
+):
+    motion = make_motion(names=NAMES)
+    higher = replace(motion, translations=motion.translations + share * anatomy_of(motion).height * np.array([0, 1, 0]))
+    assert run("diff", write("a.bvh", motion), write("b.bvh", higher)).exit_code == code
 
 
 def test_the_measures_are_the_chord_and_the_angle(run, write):

@@ -1,39 +1,18 @@
 """Distances and floors on the walk of data/: held, kept as limits, and what is said where they cannot be."""
 
-import json
-from pathlib import Path
-
 import numpy as np
 import pytest
+from prioritized_edits import FEET, FEET_AS_CAPTURED, WALK
 
 from motionedit.core.bvh import read_clip
 from motionedit.core.kinematics import forward
 from studies.lab import effector_path
 
-WALK = Path(__file__).resolve().parents[2] / "data" / "walk.bvh"
-FEET = ("LeftFoot", "LeftToeBase", "RightFoot", "RightToeBase")
-FEET_AS_CAPTURED = {"name": "feet", "type": "position", "effector": list(FEET), "priority": 10}
-
-
-class Edited:
-    def __init__(self, result, folder):
-        self.result, self.path = result, folder / "e.bvh"
-        report = folder / "r.json"
-        self.record = json.loads(report.read_text())["clips"][0] if report.exists() else None
-
-    def constraint(self, name):
-        return next(each for each in self.record["constraints"] if each["name"] == name)
-
 
 @pytest.fixture
-def edit(run, tmp_path):
-    def invoke(*constraints, options=(), clip=WALK, **keys):
-        spec = {"schema": "motionedit/edit-prioritized/v1", **keys, "constraints": list(constraints)}
-        (tmp_path / "s.yaml").write_text(json.dumps(spec, indent=1))
-        result = run("edit-prioritized", clip, "-s", "s.yaml", "-o", "e.bvh", "--report", "r.json", *options)
-        return Edited(result, tmp_path)
-
-    return invoke
+def edit(edit):
+    """Return a runner of constraints one by one, with options of the command."""
+    return lambda *constraints, options=(), **keys: edit(list(constraints), *options, **keys)
 
 
 def grip(*points, **more):

@@ -1,4 +1,4 @@
-"""Write the golden file anew: what the golf session comes to, in numbers that any machine reproduces.
+"""Write the golden files anew: what a few sessions come to, in numbers that any machine and both solvers reproduce.
 
 Run it with `make golden`, and look at the difference before you commit it.
 """
@@ -6,6 +6,7 @@ Run it with `make golden`, and look at the difference before you commit it.
 from __future__ import annotations
 
 import json
+import re
 import sys
 import tempfile
 from pathlib import Path
@@ -13,7 +14,11 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
-PATH = Path(__file__).with_name("golf.json")
+HERE = Path(__file__).parent
+# Which clip each spec of configs/ is an edit of: holds, rides, aims, distances, limits, what gives way.
+EDITS = {"reach": "walk", "karate": "kick", "stairs": "walk", "carry": "walk", "look": "walk", "floor": "walk"}
+JOINTS = ("Hips", "Head", "LeftHand", "RightHand", "LeftFoot", "RightToeBase")
+EVERY = 24  # frames
 
 
 def golf_session(folder: Path) -> dict[str, Any]:
@@ -41,11 +46,36 @@ def golf_session(folder: Path) -> dict[str, Any]:
     }
 
 
+def prioritized_session(name: str) -> dict[str, Any]:
+    """Return what a spec of configs/ makes of its clip: verdicts, errors, and places of joints, rounded."""
+    import motionedit
+    from motionedit.core.kinematics import forward
+
+    edit = motionedit.edit_prioritized(ROOT / "data" / f"{EDITS[name]}.bvh", ROOT / "configs" / f"{name}.yaml")
+    motion = edit.clip.motion
+    places = forward(motion).positions[::EVERY].round(3)
+    return {
+        "about": f"data/{EDITS[name]}.bvh by configs/{name}.yaml, cm, y up; every {EVERY}th frame",
+        "status": edit.report["status"],
+        "constraints": {each["name"]: each["status"] for each in edit.report["constraints"]},
+        "error_max": [None if x is None else round(x, 3) for x in (e["error_max"] for e in edit.report["constraints"])],
+        **{joint: places[:, motion.skeleton.names.index(joint)].tolist() for joint in JOINTS},
+    }
+
+
+def written(content: dict[str, Any]) -> str:
+    """Return a golden file: a list of numbers on one line."""
+    text = json.dumps(content, indent=1)
+    return re.sub(r"\[\s*([-\d.,\s]|null)+\]", lambda found: f"[{' '.join(found[0][1:-1].split())}]", text) + "\n"
+
+
 def main() -> None:
-    """Write the file."""
+    """Write the files."""
     with tempfile.TemporaryDirectory() as folder:
-        content = golf_session(Path(folder))
-    PATH.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+        golf = golf_session(Path(folder))
+    (HERE / "golf.json").write_text(written(golf), encoding="utf-8")
+    for name in EDITS:
+        (HERE / f"{name}.json").write_text(written(prioritized_session(name)), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -28,7 +28,7 @@ def test_scripts_and_folders_of_tests_that_it_names_exist():
 def test_targets_of_make_that_it_names_exist():
     targets = set(re.findall(r"^([a-z-]+):.*## ", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE))
     named = set(re.findall(r"^make ([a-z-]+)", COMMANDS, re.MULTILINE))
-    assert {"demo", "test", "docs-check", "sanitize"} <= named <= targets
+    assert {"demo", "test", "test-lowest", "docs-check", "sanitize", "fuzz"} <= named <= targets
 
 
 def test_a_job_waits_for_jobs_that_exist_and_a_release_for_all_of_them():

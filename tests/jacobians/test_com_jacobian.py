@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from human import BONES, skeleton_of, split
+from increments import turned
 
 from motionedit.core import rotations as rot
 from motionedit.core.body.anatomy import find_anatomy
@@ -24,17 +25,6 @@ def moving(skeleton):
     rng = np.random.default_rng(7)
     rotations = rot.exp(rng.normal(scale=0.6, size=(3, len(skeleton), 3)))
     return Motion(skeleton, rotations, rng.normal(size=(3, 1, 3)), 0.01)
-
-
-def turned(motion, joint, w):
-    """Return the motion with one joint turned by a world rotation vector: q <- exp(R_parent^-1 w) q."""
-    parent = motion.skeleton.parents[joint]
-    local = np.broadcast_to(w, (len(motion), 3))
-    if parent >= 0:
-        local = rot.rotate(rot.conjugate(forward(motion).rotations[:, parent]), local)
-    rotations = motion.rotations.copy()
-    rotations[:, joint] = rot.multiply(rot.exp(local), rotations[:, joint])
-    return replace(motion, rotations=rotations)
 
 
 def jacobian(motion, masses, joints):

@@ -1,9 +1,8 @@
 """The Jacobians of an effector's position and orientation, as their tasks have them, agree with central differences."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
+from increments import turned
 
 from motionedit.core import rotations as rot
 from motionedit.core.kinematics import Effector, effector_positions, forward
@@ -28,17 +27,6 @@ SKELETON = Skeleton(
 def motion():
     rng = np.random.default_rng(2)
     return Motion(SKELETON, rot.normalize(rng.normal(size=(4, 5, 4))), rng.normal(size=(4, 1, 3)), 0.01)
-
-
-def turned(motion, joint, w):
-    """Return the motion with one joint turned by a world rotation vector: q <- exp(R_parent^-1 w) q."""
-    parent = SKELETON.parents[joint]
-    local = np.broadcast_to(w, (len(motion), 3))
-    if parent >= 0:
-        local = rot.rotate(rot.conjugate(forward(motion).rotations[:, parent]), local)
-    rotations = motion.rotations.copy()
-    rotations[:, joint] = rot.multiply(rot.exp(local), rotations[:, joint])
-    return replace(motion, rotations=rotations)
 
 
 def point(effector, joints):

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NoReturn
 import numpy as np
 
 from motionedit.core.arrays import frozen
-from motionedit.core.bvh.scan import WORD_LENGTH, number, quoted, refusal, text_of
+from motionedit.core.bvh.scan import LARGEST_LENGTH, WORD_LENGTH, number, quoted, refusal, text_of
 from motionedit.core.skeleton import EndSite, Skeleton
 from motionedit.dataclass import dataclass
 from motionedit.errors import BvhError
@@ -202,6 +202,8 @@ class _Parser:
         for (word, place), value in zip(words, values, strict=True):
             if value is None:
                 self.refuse(f"OFFSET of {block.shown}: {quoted(word)} is not a finite number", place)
+            if abs(value) > LARGEST_LENGTH:
+                self.refuse(f"OFFSET of {block.shown}: {quoted(word)} is beyond any length", place)
         block.offset = frozen(np.array(values, dtype=np.float64))
 
     def _channels(self, block: _Joint, at: int) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 from motionedit.core.arrays import frozen
 from motionedit.core.bvh.header import read_header
 from motionedit.core.bvh.rows import read_rows, row_capacity
-from motionedit.core.bvh.scan import refusal
+from motionedit.core.bvh.scan import LARGEST_LENGTH, refusal
 from motionedit.core.bvh.text import BvhText
 from motionedit.core.motion import Motion, write_poses
 from motionedit.dataclass import dataclass
@@ -157,8 +157,19 @@ def parse_clip(data: bytes, *, label: str, lenient: bool = False, source: Path |
     rows = read_rows(data, start, columns=columns, expected=header.frames, label=label, lenient=lenient, take=take)
     warnings = _row_count_warnings(data, header, rows, label=label, lenient=lenient)
     frames = len(rows.starts)
+    _refuse_far_places(data, rows, translations[:frames], label=label)
     motion = Motion(skeleton, frozen(rotations[:frames]), frozen(translations[:frames]), header.frame_time)
     return Clip(label, motion, BvhText(data, header, rows, motion), warnings, source)
+
+
+def _refuse_far_places(data: bytes, rows: Rows, translations: FloatArray, *, label: str) -> None:
+    """Refuse a position that is beyond any length, with its line."""
+    if max(translations.max(initial=0.0), -translations.min(initial=0.0)) <= LARGEST_LENGTH:
+        return
+    sizes = np.abs(translations).max(axis=(1, 2))
+    frame = int(np.argmax(sizes > LARGEST_LENGTH))
+    message = f"frame {frame} has a position of {sizes[frame]:.3g}, which is beyond any length"
+    raise refusal(data, message, label=label, at=int(rows.starts[frame]))
 
 
 def _row_count_warnings(data: bytes, header: Header, rows: Rows, *, label: str, lenient: bool) -> tuple[str, ...]:

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 _QUOTE_LENGTH = 40
 # The longest exact decimal expansion of a double has fewer characters; longer words are no numbers anyone wrote.
 WORD_LENGTH = 1200
+# No body is larger in any unit, and squares and cubes of it are still numbers, its own in single precision, too.
+LARGEST_LENGTH = 1e30
 _NUMBER = re.compile(rb"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 
 

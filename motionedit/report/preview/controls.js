@@ -211,7 +211,8 @@ function listen() {
     redraw();
   }, { passive: false });
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", applyTheme);
-  new ResizeObserver(() => { if (camera.preset) setView(camera.preset, true); redraw(); }).observe(canvas);
+  const observer = new ResizeObserver(resized);
+  for (const element of [canvas, byId("ruler")]) observer.observe(element);
   addEventListener("hashchange", applyAddress);
 }
 
@@ -298,14 +299,22 @@ function tick(now) {
     redraw();
   }
   if (glide(seconds)) redraw();
-  if (dirty) {
-    dirty = false;
-    drawScene();
-    drawRuler();
-    drawLanes();
-    drawTexts();
-  }
+  if (dirty) draw();
   requestAnimationFrame(tick);
+}
+
+function draw() {
+  dirty = false;
+  drawScene();
+  drawRuler();
+  drawLanes();
+  drawTexts();
+}
+
+// At once: until the next tick the browser would stretch the pictures of the old size over the new one.
+function resized() {
+  if (camera.preset) setView(camera.preset, true);
+  draw();
 }
 
 buildLegend();

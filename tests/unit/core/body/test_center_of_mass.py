@@ -236,6 +236,7 @@ def test_given_masses_replace_the_table():
 def test_given_masses_need_no_human_and_no_warning():
     skeleton = skeleton_of(BONES[:3], {})
     assert masses_of(skeleton, given={1: 2.0}).warnings == ()
+    assert masses_of(skeleton, given={1: 0.0, 2: 1e-3}).warnings == ()
     assert masses_of(skeleton, given={}).warnings
 
 

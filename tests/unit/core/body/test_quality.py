@@ -70,12 +70,13 @@ def test_the_fastest_of_several_plants_of_a_point_counts():
 
 
 def test_drift_is_the_largest_distance_between_planted_points_of_two_motions():
-    before = np.zeros((20, 2, 3))
+    before = np.random.default_rng(0).normal(size=(20, 2, 3))
     after = before.copy()
-    after[5, 0] = [3.0, 4.0, 0.0]
-    after[15, 0] = 100.0
-    assert foot_drift(before, after, [planted(0, 0, 10), planted(1, 0, 19)]) == pytest.approx(5.0)
-    assert foot_drift(before, after, [planted(0, 0, 15)]) == pytest.approx(100.0 * np.sqrt(3.0))
+    after[5, 0] += [3.0, 4.0, 0.0]
+    after[15, 0] += 100.0
+    assert foot_drift(before, after, [planted(0, 0, 14), planted(1, 0, 19)]) == pytest.approx(5.0)
+    assert foot_drift(before, after, [planted(0, 6, 14)]) == 0.0
+    assert foot_drift(before, after, [planted(0, 5, 15)]) == pytest.approx(100.0 * np.sqrt(3.0))
     assert foot_drift(before, after, []) == 0.0
 
 

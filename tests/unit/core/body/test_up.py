@@ -121,6 +121,12 @@ def test_where_nothing_tells_y_from_z_it_is_y_and_that_is_said():
     assert warning.startswith("up is taken to be y, but ")
 
 
+def test_a_way_that_is_nearly_as_likely_is_named():
+    axis, warning = up_of(leaning(offsets=45.0, body=41.0))
+    assert axis == "y"
+    assert "but z is nearly as likely; 'up' in a spec" in warning
+
+
 def test_the_frames_of_a_rest_pose_have_no_say():
     motion = with_rotation(
         leaning(offsets=45.0, body=90.0, frames=5), "Hips", slice(0, 3), np.radians([-45.0, 0.0, 0.0])

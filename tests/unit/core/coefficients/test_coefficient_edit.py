@@ -54,6 +54,12 @@ def test_a_goal_at_any_frame_is_met_in_the_clips_own_timing(model, frames, hit):
         assert edit.changes[0].solution.iterations <= 12
 
 
+def test_a_projection_knows_how_long_the_clip_lasts(model):
+    motion = stroke(3, frames=71, hit=0.5)
+    for resampled in (False, True):
+        assert projected(model, motion, 35.0, resampled=resampled).seconds == pytest.approx(70 * motion.frame_time)
+
+
 def test_no_shift_touches_nothing(model):
     motion = stroke(21, noise=0.01)
     edit = edited(model, projected(model, motion, 36.0), [request_of(motion, 36, np.zeros(3))])

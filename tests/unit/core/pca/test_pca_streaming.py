@@ -9,7 +9,7 @@ from sklearn.decomposition import PCA
 from strokes import TIMELINE, database, fitted, model_of
 
 from motionedit.core import rotations as rot
-from motionedit.core.pca import tracks, vectors
+from motionedit.core.pca import streaming, tracks, vectors
 from motionedit.core.pca.database import FitSettings
 from motionedit.core.pca.fit import AllTheSameError, ComponentCount, TooFewComponentsError
 from motionedit.core.pca.streaming import DEFAULT_COMPONENTS, MOST_COMPONENTS, RESIDUAL_TOLERANCE, stream_components
@@ -59,6 +59,22 @@ def test_a_residual_bounds_how_far_a_variance_is_from_the_nearest_true_one():
     ours, all_of_them = streamed(X, count=30), fitted(X)
     off = np.abs(ours.components.explained_variance[:, None] - all_of_them.explained_variance).min(axis=1)
     assert off.max() <= ours.residual * all_of_them.explained_variance[0]
+
+
+@pytest.mark.parametrize("limit", [2, 4, 40])
+def test_the_residual_is_that_of_the_worst_component_and_it_is_gone_on_until_that_is_little(limit, monkeypatch):
+    X = decaying(250, 300, rank=200, fall=0.99)
+    passes, blocks = [], CentredVectors.blocks
+    monkeypatch.setattr(CentredVectors, "blocks", lambda self: passes.append(self) or blocks(self))
+    monkeypatch.setattr(streaming, "MOST_PASSES", limit)
+    ours = streamed(X, count=12)
+    assert ours.passes == len(passes)
+    centred, E = X - X.mean(axis=0), ours.components.components
+    values = np.sum((centred @ E.T) ** 2, axis=0)
+    off = np.linalg.norm(centred.T @ (centred @ E.T) - E.T * values, axis=0).max() / values[0]
+    assert ours.residual == pytest.approx(off, rel=1e-3, abs=1e-13)
+    assert ours.passes == limit if limit < 40 else 4 < ours.passes < 40
+    assert (ours.residual < RESIDUAL_TOLERANCE) == (limit == 40)
 
 
 def test_streaming_gives_the_same_numbers_every_time():

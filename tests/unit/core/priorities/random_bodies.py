@@ -17,6 +17,8 @@ from motionedit.core.priorities.trajectories import ControlPoint
 from motionedit.core.skeleton import Skeleton
 
 FRAMES = 5
+# What the solvers may differ by (rad, m) where everything can be met, and where something cannot.
+FEASIBLE, INFEASIBLE = 1e-9, 1e-8
 
 
 def by_numpy(monkeypatch, function):

@@ -7,7 +7,9 @@ import pytest
 from arms import arms_of
 
 from motionedit.core.compiled import compiled, solver_name
-from motionedit.core.priorities.solver import prepare_problem
+from motionedit.core.motion import Motion
+from motionedit.core.priorities.problem import Reference
+from motionedit.core.priorities.solver import prepare_problem, solve_layers
 
 pytestmark = pytest.mark.skipif(solver_name() == "numpy", reason="no compiled solver here")
 
@@ -69,6 +71,23 @@ def raw_solve(problem, motion, *, frames=tuple(range(8)), in_order=False, **slip
     own = {"rotations": motion.rotations.copy(), "translations": motion.translations.copy()}
     pull = {"reference_rotations": motion.rotations, "reference_root": np.zeros(0), "softness": problem.softness}
     compiled().solve({**buffers, **how, **own, **pull, "frames": np.array(frames)}, 0, count, in_order)
+
+
+@pytest.mark.parametrize("weights", [(1.0, 1.0, 1.0, 1.0, 1.0), (3.0, 0.3, 1.0, 0.5, 2.0)])
+@pytest.mark.parametrize("seed", range(3))
+def test_points_that_share_joints_are_weighed_alike_by_both_solvers(seed, weights, monkeypatch):
+    problem, motion = arms_of(seed)
+    (tasks,) = problem.layers
+    layer = tuple(replace(task, weight=weight) for task, weight in zip(tasks, weights, strict=True))
+    found = []
+    for solver in ("", "numpy"):
+        monkeypatch.setenv("MOTIONEDIT_SOLVER", solver)
+        own = Motion(motion.skeleton, motion.rotations.copy(), motion.translations.copy(), motion.frame_time)
+        prepared = prepare_problem(replace(problem, layers=(layer,)))
+        solve_layers(prepared, own, Reference(motion.rotations, None), np.arange(8))
+        found.append(own.rotations)
+    assert np.abs(found[0] - motion.rotations).max() > 0.01
+    np.testing.assert_allclose(*found, atol=1e-9)
 
 
 def test_frames_in_order_follow_each_other():

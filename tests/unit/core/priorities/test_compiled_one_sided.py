@@ -8,7 +8,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from person import BODY, edited, end, held, held_feet, path, swaying
 from random_bodies import (
+    FEASIBLE,
     FRAMES,
+    INFEASIBLE,
     Narrow,
     body_of,
     by_numpy,
@@ -29,17 +31,9 @@ from motionedit.core.priorities.settings import LayeredSettings, PaperFilter
 
 pytestmark = pytest.mark.skipif(solver_name() == "numpy", reason="no compiled solver here")
 
-# What the two may differ by (rad, m) where everything can be met, and where something cannot.
-FEASIBLE, INFEASIBLE = 1e-9, 1e-8
 SETTING = LayeredSettings(smoothing=PaperFilter(0), max_iterations=12)
 SEEDS = {"seed": st.integers(0, 2**32 - 1), "joints": st.integers(3, 16), "count": st.integers(0, 4)}
 PATIENT = {"deadline": None, "suppress_health_check": [HealthCheck.function_scoped_fixture]}
-
-
-@pytest.fixture
-def patch():
-    with pytest.MonkeyPatch.context() as context:
-        yield context
 
 
 def edit_of(seed, joints, count, reach, **how):

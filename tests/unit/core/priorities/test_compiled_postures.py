@@ -7,7 +7,19 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from person import BODY, SKELETON, edited, held, held_feet, joint, swaying
-from random_bodies import FRAMES, Narrow, body_of, by_numpy, constraints_of, difference, is_met, motion_of, same_bits
+from random_bodies import (
+    FEASIBLE,
+    FRAMES,
+    INFEASIBLE,
+    Narrow,
+    body_of,
+    by_numpy,
+    constraints_of,
+    difference,
+    is_met,
+    motion_of,
+    same_bits,
+)
 
 from motionedit.core.arrays import frozen
 from motionedit.core.compiled import solver_name
@@ -18,19 +30,11 @@ from motionedit.core.priorities.settings import LayeredSettings, PaperFilter, Pa
 
 pytestmark = pytest.mark.skipif(solver_name() == "numpy", reason="no compiled solver here")
 
-# What the two may differ by (rad, m) where everything can be met, and where something cannot.
-FEASIBLE, INFEASIBLE = 1e-9, 1e-8
 # And where a direction is no freedom for either: what they leave out is askew by as much as the tolerance of the rank.
 IN_DOUBT = 1e-5
 SETTING = LayeredSettings(smoothing=Passes(0), max_iterations=12)
 SEEDS = {"seed": st.integers(0, 2**32 - 1), "joints": st.integers(10, 18), "count": st.integers(0, 3)}
 PATIENT = {"deadline": None, "suppress_health_check": [HealthCheck.function_scoped_fixture]}
-
-
-@pytest.fixture
-def patch():
-    with pytest.MonkeyPatch.context() as context:
-        yield context
 
 
 def postures_of(rng, joints):

@@ -1,11 +1,20 @@
 """What a job reads off a clip, and the world transforms that it keeps for as long as they are wanted."""
 
+import sys
 import time
+from dataclasses import replace
+from pathlib import Path
 
+import numpy as np
 import pytest
 from mannequin import bvh_text
 
-from motionedit.core.bvh import parse_clip
+sys.path.append(str(Path(__file__).parents[2] / "core"))
+
+from human import skeleton_of, standing, with_rotation
+
+from motionedit.core.bvh import new_bytes, parse_clip
+from motionedit.errors import ClipError
 from motionedit.jobs.clip import facts
 
 
@@ -45,3 +54,56 @@ def test_a_body_with_a_thousand_branches_is_looked_at_within_seconds():
     start = time.perf_counter()
     facts.facts_of(parse_clip(text.encode(), label="row.bvh"), up="y")
     assert time.perf_counter() - start < 5.0  # of all pairs it would be half a minute
+
+
+FRAMES = 400  # four seconds
+LEG_UP, LEG_BACK = (-1.0, 0.0, 0.0), (0.5, 0.0, 0.0)
+
+
+def facts_of_person(*turns, frames=FRAMES):
+    """Return the facts of a person who stands still, but for turns of joints in some frames."""
+    motion = standing(skeleton_of(), frames)
+    for turn in turns:
+        motion = with_rotation(motion, *turn)
+    return facts.facts_of(parse_clip(new_bytes(motion), label="person.bvh"), up="y", keep_rest_pose=True)
+
+
+@pytest.mark.parametrize("at", [None, 0, 0.5, 199, 350, FRAMES - 1])
+def test_a_person_with_both_feet_on_the_ground_side_by_side_stands(at):
+    assert facts_of_person().stands(at) is True
+
+
+def test_a_person_on_one_leg_does_not_stand_while_that_lasts():
+    found = facts_of_person(("RightUpLeg", slice(150, 250), LEG_UP))
+    assert [at for at in (0, 100, 160, 200, 240, 300, 350, FRAMES - 1) if found.stands(at)] == [
+        *(0, 100, 300, 350, FRAMES - 1)
+    ]
+
+
+def test_a_person_with_one_foot_before_the_other_does_not_stand():
+    stride = [("RightUpLeg", slice(None), LEG_BACK), ("LeftUpLeg", slice(None), (-0.5, 0.0, 0.0))]
+    found = facts_of_person(*stride)
+    assert {plant.foot for plant in found.plants} == {"left", "right"}
+    assert found.stands(200) is False
+
+
+def test_feet_on_one_spot_have_no_line_to_stand_by():
+    together = [("RightUpLeg", slice(None), (0.0, 0.0, 0.12)), ("LeftUpLeg", slice(None), (0.0, 0.0, -0.12))]
+    assert facts_of_person(*together).stands(200) is False
+
+
+def test_a_clip_is_aligned_by_the_line_of_its_feet_or_of_its_hips():
+    found = facts_of_person(("RightUpLeg", slice(None), LEG_BACK))
+    hips, feet = (found.alignment(by, heading=True, position=True, at=3) for by in ("hips", "feet"))
+    np.testing.assert_allclose(np.abs(hips.rotation), [1.0, 0.0, 0.0, 0.0], atol=1e-6)
+    assert abs(feet.rotation[2]) > 0.1
+
+
+@pytest.mark.parametrize(("frames", "first", "sound"), [(2, 0, True), (1, 0, False), (3, 1, True), (2, 1, False)])
+def test_a_motion_has_two_frames_after_the_rest_pose(frames, first, sound):
+    found = replace(facts_of_person(frames=frames), first=first)
+    if sound:
+        found.refuse_one_frame()
+    else:
+        with pytest.raises(ClipError, match="has one frame"):
+            found.refuse_one_frame()

@@ -4,7 +4,7 @@ from mannequin import bvh_text
 
 from motionedit.core.bvh import parse_clip
 from motionedit.jobs.clip.facts import facts_of
-from motionedit.jobs.preview.bodies import body_of, upright
+from motionedit.jobs.preview.bodies import _RADII, body_of, upright
 
 
 def made(**options):
@@ -71,6 +71,60 @@ def test_the_way_from_a_root_on_the_ground_up_to_the_pelvis_is_no_limb():
     text = head + "\n".join(moved) + "\n"
     grounded = body_of(facts_of(parse_clip(text.encode(), label="x.bvh")), label="x")
     assert "Ground" not in {grounded.names[limb.start] for limb in grounded.limbs}
+
+
+PARTS = {
+    "thigh": ("LeftLeg", "RightLeg"),
+    "shin": ("LeftFoot", "RightFoot"),
+    "foot": ("LeftToeBase", "RightToeBase"),
+    "spine": ("Spine", "Spine1"),
+    "neck": ("Neck", "Head"),
+    "upper arm": ("LeftForeArm", "RightForeArm"),
+    "forearm": ("LeftHand", "RightHand"),
+    "hand": ("LeftHand (end site)",),
+    "prop": ("Club", "Club (end site)"),
+}
+
+
+@pytest.mark.parametrize("part", PARTS)
+def test_each_link_is_as_thick_as_the_part_of_the_body_that_it_is(body, part):
+    for name in PARTS[part]:
+        assert limb_to(body, name).radii == tuple(body.size * radius for radius in _RADII[part]), name
+
+
+def test_what_is_below_the_toes_joint_is_thin():
+    end = "\tEnd Site\n\t\t\t\t\t{\n\t\t\t\t\t\tOFFSET 0.000000 0.000000 6.000000\n\t\t\t\t\t}\n"
+    text = bvh_text()
+    assert text.count(end) == 2
+    joint = "JOINT ToeEnd\n{\nOFFSET 0 0 6\nCHANNELS 0\n" + end.replace("6.000000", "2.000000") + "}\n"
+    body = body_of(facts_of(parse_clip(text.replace(end, joint, 1).encode(), label="x.bvh")), label="x")
+    radii = {part: tuple(body.size * radius for radius in _RADII[part]) for part in ("foot", "toe")}
+    links = {"LeftToeBase": "foot", "ToeEnd": "toe", "ToeEnd (end site)": "toe", "RightToeBase": "foot"}
+    assert {name: limb_to(body, name).radii for name in links} == {name: radii[part] for name, part in links.items()}
+
+
+def test_the_hulls_of_pelvis_and_chest_hold_hips_waist_and_shoulders(body):
+    pelvis, chest = body.hulls
+    names = [[body.names[point] for point in hull.points] for hull in body.hulls]
+    assert names == [["LeftUpLeg", "RightUpLeg", "Hips"], ["LeftArm", "RightArm", "Spine"]]
+    for hull in (pelvis, chest):
+        # Wide enough to round a hip, and by far narrower than the body.
+        assert all(0.05 * body.size < radius < 0.1 * body.size for radius in hull.radii)
+    assert not {"LeftUpLeg", "RightUpLeg", "LeftArm", "RightArm"} & {body.names[limb.end] for limb in body.limbs}
+
+
+def test_without_arms_there_is_a_pelvis_alone():
+    lines = bvh_text().splitlines()
+    start = next(i for i, line in enumerate(lines) if line.split()[-1:] == ["LeftShoulder"])
+    stop = next(i for i, line in enumerate(lines) if line == "MOTION")
+    hierarchy = [*lines[:start], *("}" * 3)]
+    columns = 6 + 3 * sum(line.split()[:1] == ["JOINT"] for line in hierarchy)
+    rows = [" ".join(line.split()[:columns]) for line in lines[stop + 3 :]]
+    text = "\n".join([*hierarchy, *lines[stop : stop + 3], *rows]) + "\n"
+    armless = body_of(facts_of(parse_clip(text.encode(), label="x.bvh")), label="x")
+    assert [[armless.names[point] for point in hull.points] for hull in armless.hulls] == [
+        ["LeftUpLeg", "RightUpLeg", "Hips"]
+    ]
 
 
 def test_a_thigh_is_thick_and_a_club_thin(body):

@@ -67,6 +67,14 @@ def test_a_goal_is_a_mark_of_one_frame():
     np.testing.assert_array_equal(mark.lengths.values, [0.3])
 
 
+@pytest.mark.parametrize(("off", "name"), [(0.005, "Club (end site)"), (0.02, "")])
+def test_an_offset_is_that_of_an_end_site_to_a_ten_thousandth_of_the_leg(off, name):
+    shown, (mark,) = marks(constraint(effector={"joint": "Club", "offset": [off, -70.0, 55.0]}))
+    assert [shown[body].body.names[point] for body, point in mark.points] == [name, name]
+    shown, (mark,) = marks(constraint(effector={"joint": "Club", "offset": [off, 0.0, 0.0]}))
+    assert [shown[body].body.names[point] for body, point in mark.points] == ["Club" if name else ""] * 2
+
+
 def test_an_effector_is_a_joint_an_end_site_or_a_point_of_its_own_in_both_clips():
     site = {"joint": "Club", "offset": [0.0, -70.0, 55.0]}
     point = {"joint": "Club", "offset": [0.0, -35.0, 0.0]}

@@ -1,0 +1,59 @@
+"""edit-prioritized: what a clip lacks that a spec asks for is said in one line, with its place."""
+
+import json
+
+import pytest
+from prioritized_edits import ARM_ONLY, FEET_AS_CAPTURED, RAISED, WALK, hand
+
+
+@pytest.mark.parametrize(
+    ("constraint", "keys", "place", "message"),
+    [
+        ({"effector": "LeftHnd"}, {}, "constraints.0.effector", "no joint 'LeftHnd' in"),
+        ({"effector": {"end_site": "LeftHand"}}, {}, "constraints.0.effector", "has no end site"),
+        ({"relative_to": "Spin1"}, {}, "constraints.0.relative_to", "did you mean 'Spine1'?"),
+        ({"recruit": {"up_to": "RightArm"}}, {}, "constraints.0.recruit.up_to", "'RightArm' is not on the way of 'h'"),
+        ({"recruit": {"joints": ["LeftArm", "Arm"]}}, {}, "constraints.0.recruit.joints.1", "no joint 'Arm'"),
+        ({}, {"defaults": {"recruit": {"up_to": "Head"}}}, "defaults.recruit.up_to", "'Head' is not on the way"),
+        ({"points": [{"at": 145}]}, {}, "constraints.0.points.0.at", "145 is outside the clip"),
+        ({"points": [{"hold": [3, 9]}, {"at": 8}]}, {}, "constraints.0.points.1", "'at 8'"),
+        ({"type": "com", "support": ["Foot"]}, {}, "constraints.0.support.0", "no joint 'Foot'"),
+        ({"type": "posture", "joints": ["Head", "Hat"]}, {}, "constraints.0.joints.1", "no joint 'Hat'"),
+        ({"type": "aim", "axis": [0, 0, 1], "target": "Hat"}, {}, "constraints.0.target", "no joint 'Hat'"),
+        ({}, {"masses": {"Hat": 1}}, "masses.Hat", "no joint 'Hat'"),
+        ({}, {"masses": {"Head": 0}}, "masses", "not 0 for all joints"),
+        ({}, {"events": {"hit": {"frames": {"walk": 200}}}}, "events.hit", "200 is outside"),
+    ],
+)
+def test_what_the_clip_lacks_is_said_in_one_line_with_its_place(edit, constraint, keys, place, message):
+    whole = {"name": "h", "type": "position", "effector": "LeftHand", **constraint}
+    if whole["type"] in {"com", "posture"}:
+        del whole["effector"]
+    done = edit([whole], **keys)
+    assert done.result.exit_code in {1, 2}
+    (error,) = done.errors
+    assert f": {place}: " in error
+    assert message in error
+    assert not done.path.exists()
+
+
+def test_all_that_a_clip_lacks_is_said_together(edit):
+    bad = hand({"at": 900}, effector="Hnd", recruit={"up_to": "Hat"})
+    done = edit([bad, {"type": "posture", "joints": ["Hat"]}], masses={"Hat": 1}, hinges=["Knee"])
+    assert len(done.errors) == 6
+
+
+def test_four_effectors_of_one_list_say_a_common_fault_once(edit):
+    done = edit([{**FEET_AS_CAPTURED, "points": [{"at": 900}]}])
+    assert len(done.errors) == 1
+    assert "more clips" not in done.errors[0]
+
+
+def test_a_clip_that_lacks_a_joint_fails_alone(run, clip, tmp_path):
+    clip("in/chain.bvh", frames=100)
+    (tmp_path / "in" / "walk.bvh").write_bytes(WALK.read_bytes())
+    spec = {"schema": "motionedit/edit-prioritized/v1", "constraints": [{**RAISED, "recruit": ARM_ONLY}]}
+    (tmp_path / "s.yaml").write_text(json.dumps(spec))
+    result = run("edit-prioritized", "in", "-s", "s.yaml", "-o", "out")
+    assert (result.exit_code, result.stdout) == (1, "out/walk.bvh\n")
+    assert "no joint 'LeftHand' in in/chain.bvh" in result.stderr
