@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.compiled import compiled
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -24,10 +26,13 @@ _SMALL_ANGLE = 1e-4
 
 def multiply(a: FloatArray, b: FloatArray) -> FloatArray:
     """Return the Hamilton product a b, shape (..., 4): first turn by b, then by a."""
+    product = _in_one_loop("multiply", a, b)
+    if product is not None:
+        return product
     aw, ax, ay, az = _parts(a)
     bw, bx, by, bz = _parts(b)
     # Part by part into its place: four parts beside the product would double the memory of a long motion.
-    product: FloatArray = np.empty((*np.broadcast(aw, bw).shape, 4))
+    product = np.empty((*np.broadcast(aw, bw).shape, 4))
     product[..., 0] = aw * bw - ax * bx - ay * by - az * bz
     product[..., 1] = aw * bx + ax * bw + ay * bz - az * by
     product[..., 2] = aw * by - ax * bz + ay * bw + az * bx
@@ -49,6 +54,9 @@ def normalize(q: FloatArray) -> FloatArray:
 
 def rotate(q: FloatArray, v: FloatArray) -> FloatArray:
     """Return vectors v turned by q, shape (..., 3)."""
+    turned = _in_one_loop("rotate", q, v)
+    if turned is not None:
+        return turned
     w, xyz = q[..., :1], q[..., 1:]
     t = 2.0 * cross(xyz, v)
     return v + w * t + cross(xyz, t)
@@ -63,6 +71,19 @@ def cross(a: FloatArray, b: FloatArray) -> FloatArray:
     product[..., 1] = az * bx - ax * bz
     product[..., 2] = ax * by - ay * bx
     return product
+
+
+def _in_one_loop(what: str, q: FloatArray, v: FloatArray) -> FloatArray | None:
+    """Return what the compiled part makes of quaternions and what they turn, the same to the bit; None without it.
+
+    Both have the same leading shape, or one of them is a single one: what else numpy broadcasts is left to numpy.
+    """
+    kernel = compiled()
+    if kernel is None or not (q.shape[:-1] == v.shape[:-1] or q.ndim == 1 or v.ndim == 1):
+        return None
+    out = np.empty((*(q if v.ndim == 1 else v).shape[:-1], v.shape[-1]))
+    getattr(kernel, what)(np.ascontiguousarray(q, np.float64), np.ascontiguousarray(v, np.float64), out)
+    return out
 
 
 def _parts(v: FloatArray) -> list[FloatArray]:

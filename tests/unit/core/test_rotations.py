@@ -118,3 +118,18 @@ def test_the_mean_is_scipys_whatever_the_signs(rng):
     parts = q.reshape(12, 5, 4)
     several = rot.mean_of_products(np.swapaxes(parts, 1, 2) @ parts)
     same_rotation(several, np.stack([rot.mean_of_products(part.T @ part) for part in parts]))
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize(
+    "leading", [((), (7,)), ((7,), ()), ((7,), (7,)), ((5, 3), (5, 3)), ((0,), (0,)), ((1,), (7,))]
+)
+@pytest.mark.parametrize("size", [3, 4])
+def test_compiled_products_and_turns_are_those_of_numpy_to_the_bit(leading, size, monkeypatch):
+    rng = np.random.default_rng(3)
+    # Every other one, so that nothing lies in memory as the compiled part has it.
+    q, v = (rng.normal(size=(*shape, 2 * n))[..., ::2] for shape, n in zip(leading, (4, size), strict=True))
+    work = rot.rotate if size == 3 else rot.multiply
+    compiled = work(q, v)
+    monkeypatch.setenv("MOTIONEDIT_SOLVER", "numpy")
+    np.testing.assert_array_equal(compiled, work(q, v))
