@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core import rotations as rot
 from motionedit.core.arrays import median
 from motionedit.core.kinematics import effector_positions
 from motionedit.core.units import STANDARD_LEG
@@ -166,7 +167,7 @@ def _speeds(places: FloatArray, frame_time: float) -> FloatArray:
     half = max(1, round(0.5 * _WHILE / frame_time))
     at = np.arange(len(places))
     before, after = np.maximum(at - half, 0), np.minimum(at + half, len(places) - 1)
-    way: FloatArray = np.linalg.norm(places[after] - places[before], axis=1)
+    way = rot.length(places[after] - places[before])
     return way / ((after - before) * frame_time)
 
 

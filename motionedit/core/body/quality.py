@@ -106,7 +106,7 @@ def foot_slide_max(tracks: FloatArray, plants: Sequence[Plant], *, up: FloatArra
     for point in {plant.point for plant in plants}:
         step = np.diff(tracks[:, point], axis=0)
         level = step - (step @ up)[:, None] * up
-        way = np.linalg.norm(level, axis=-1)
+        way = rot.length(level)
         here = [plant for plant in plants if plant.point == point]
         fastest = max(fastest, *(float(way[plant.start : plant.stop].max(initial=0.0)) for plant in here))
     return fastest / frame_time
@@ -119,7 +119,7 @@ def foot_drift(before: FloatArray, after: FloatArray, plants: Sequence[Plant]) -
     """
     return max(
         (
-            float(np.linalg.norm(after[span, plant.point] - before[span, plant.point], axis=-1).max())
+            float(rot.length(after[span, plant.point] - before[span, plant.point]).max())
             for plant in plants
             for span in [slice(plant.start, plant.stop + 1)]
         ),

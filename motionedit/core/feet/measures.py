@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core import rotations as rot
 from motionedit.core.units import STANDARD_LEG
 from motionedit.dataclass import dataclass
 
@@ -74,7 +75,7 @@ def foot_measures(
     places = tracks * (STANDARD_LEG / anatomy.leg_length)
     heights = places @ up
     level = places - heights[..., None] * up
-    speeds = np.linalg.norm(np.diff(level, axis=0), axis=-1) / frame_time
+    speeds = rot.length(np.diff(level, axis=0)) / frame_time
     toes = [p for p, point in enumerate(points) if point.part == "toe"] or list(range(len(points)))
     near = (heights[first:-1, toes] < _NEAR_FLOOR) & (heights[first + 1 :, toes] < _NEAR_FLOOR)
     skating = speeds[first:, toes][near]
@@ -82,7 +83,7 @@ def foot_measures(
     for plant in plants:
         span = slice(plant.start, plant.stop + 1)
         mean = places[span, plant.point].mean(axis=0)
-        drifts.append(float(np.linalg.norm(places[span, plant.point] - mean, axis=-1).max()))
+        drifts.append(float(rot.length(places[span, plant.point] - mean).max()))
         if plant.point in toes:
             slides.append(speeds[plant.start : plant.stop, plant.point] > _SLIDES)
             highest.append(float(heights[span, plant.point].mean()))

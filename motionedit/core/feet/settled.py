@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core import rotations as rot
 from motionedit.core.arrays import median
 from motionedit.core.units import STANDARD_LEG
 
@@ -46,7 +47,7 @@ def _cut(plant: Plant, places: FloatArray, up: FloatArray, frame_time: float) ->
     half = max(1, round(_HALF / frame_time))
     at = np.arange(len(places))
     before, after = np.maximum(at - half, 0), np.minimum(at + half, len(places) - 1)
-    speed = np.linalg.norm(places[after] - places[before], axis=1) / ((after - before) * frame_time)
+    speed = rot.length(places[after] - places[before]) / ((after - before) * frame_time)
     height = places @ up
     calm = np.flatnonzero((speed <= median(speed) + _FASTER) & (np.abs(height - median(height)) <= _ABOVE))
     if not len(calm) or (calm[-1] - calm[0] + 1) * frame_time < _SHORTEST:

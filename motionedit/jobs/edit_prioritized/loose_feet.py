@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core import rotations as rot
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -63,7 +65,7 @@ def _drift(before: Trace, after: Trace, plants: Sequence[Plant], free: BoolArray
     worst: tuple[float, int] | None = None
     for plant in plants:
         span = slice(plant.start, plant.stop + 1)
-        way = np.linalg.norm(after.tracks[span, plant.point] - before.tracks[span, plant.point], axis=-1)
+        way = rot.length(after.tracks[span, plant.point] - before.tracks[span, plant.point])
         way = np.where(free[span], way, -1.0)
         at = int(np.argmax(way))
         if way[at] >= 0.0 and (worst is None or way[at] > worst[0]):

@@ -27,6 +27,18 @@ void rotate_all(const double *q, int64_t q_step, const double *v, int64_t v_step
     }
 }
 
+void cross_all(const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out)
+{
+    for (int64_t i = 0; i < count; i++)
+        cross(a + i * a_step, b + i * b_step, out + 3 * i);
+}
+
+void dot_all(const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out)
+{
+    for (int64_t i = 0; i < count; i++)
+        out[i] = dot(a + i * a_step, b + i * b_step);
+}
+
 /* The sum of the steps between two triples of angles, each by whole turns the shortest. */
 static double distance_of(const double *from, const double *to)
 {

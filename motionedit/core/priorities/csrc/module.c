@@ -269,19 +269,24 @@ static int has_items(const Py_buffer *buffer, int64_t count, int64_t width, int6
     return *step == 0 || has_size(buffer, count * width, sizeof(double), name);
 }
 
-static PyObject *on_quaternions(PyObject *arguments, int64_t width,
-    void (*work)(const double *, int64_t, const double *, int64_t, int64_t, double *))
+/* What is done to rows of numbers, two and two, and how many numbers a row of each has, and of the results. */
+typedef struct {
+    void (*work)(const double *, int64_t, const double *, int64_t, int64_t, double *);
+    int64_t one, other, result;
+} OnRows;
+
+static PyObject *on_rows(const OnRows *of, PyObject *arguments)
 {
     Py_buffer b[3] = {{0}};
     int64_t one, other;
     if (!PyArg_ParseTuple(arguments, "y*y*w*", b, b + 1, b + 2))
         return NULL;
-    const int64_t count = b[2].len / (Py_ssize_t)sizeof(double) / width;
-    const int fits = has_size(b + 2, count * width, sizeof(double), "results") &&
-                     has_items(b, count, 4, &one, "quaternions") &&
-                     has_items(b + 1, count, width, &other, "what is turned");
+    const int64_t count = b[2].len / (Py_ssize_t)sizeof(double) / of->result;
+    const int fits = has_size(b + 2, count * of->result, sizeof(double), "results") &&
+                     has_items(b, count, of->one, &one, "the first") &&
+                     has_items(b + 1, count, of->other, &other, "the second");
     if (fits) {
-        Py_BEGIN_ALLOW_THREADS work(b[0].buf, one, b[1].buf, other, count, b[2].buf);
+        Py_BEGIN_ALLOW_THREADS of->work(b[0].buf, one, b[1].buf, other, count, b[2].buf);
         Py_END_ALLOW_THREADS
     }
     for (int i = 0; i < 3; i++)
@@ -294,13 +299,25 @@ static PyObject *on_quaternions(PyObject *arguments, int64_t width,
 static PyObject *multiply(PyObject *self, PyObject *arguments)
 {
     (void)self;
-    return on_quaternions(arguments, 4, multiply_all);
+    return on_rows(&(const OnRows){multiply_all, 4, 4, 4}, arguments);
 }
 
 static PyObject *rotate(PyObject *self, PyObject *arguments)
 {
     (void)self;
-    return on_quaternions(arguments, 3, rotate_all);
+    return on_rows(&(const OnRows){rotate_all, 4, 3, 3}, arguments);
+}
+
+static PyObject *cross_rows(PyObject *self, PyObject *arguments)
+{
+    (void)self;
+    return on_rows(&(const OnRows){cross_all, 3, 3, 3}, arguments);
+}
+
+static PyObject *dot_rows(PyObject *self, PyObject *arguments)
+{
+    (void)self;
+    return on_rows(&(const OnRows){dot_all, 3, 3, 1}, arguments);
 }
 
 static PyObject *make_continuous(PyObject *self, PyObject *arguments)
@@ -418,6 +435,8 @@ static PyMethodDef methods[] = {
     {"smooth", smooth, METH_VARARGS, "Write rotations plus their low-passed displacement."},
     {"multiply", multiply, METH_VARARGS, "Write the products of quaternions; one quaternion stands for all."},
     {"rotate", rotate, METH_VARARGS, "Write vectors turned by quaternions; one of either stands for all."},
+    {"cross", cross_rows, METH_VARARGS, "Write the cross products of vectors; one vector stands for all."},
+    {"dot", dot_rows, METH_VARARGS, "Write the dot products of vectors; one vector stands for all."},
     {"nearest_angles", make_continuous, METH_VARARGS, "Make a track of Euler angles continuous, in place."},
     {"rows_from_text", rows_from_text, METH_VARARGS,
         "Read rows of numbers; return how many and the most decimals, or None where it is no such text."},
