@@ -18,7 +18,7 @@ from motionedit.core.compiled import compiled
 from motionedit.core.motion import position_columns
 
 if TYPE_CHECKING:
-    from motionedit.core.arrays import FloatArray
+    from motionedit.core.arrays import BoolArray, FloatArray
     from motionedit.core.motion import Motion
 
 TURN = 2.0 * np.pi
@@ -29,7 +29,6 @@ GIMBAL_BAND = np.radians(1e-4)
 # Rotations that are solved together: a short clip's joints cost less than the calls they would take one by one, and
 # what is solved together stays in the processor's cache.
 TOGETHER = 1 << 13
-_NEVER = np.zeros(1, dtype=np.bool_)
 
 
 def joint_angles(motion: Motion, *, start: FloatArray) -> FloatArray:
@@ -74,9 +73,9 @@ def angles_near(q: FloatArray, axes: tuple[int, ...], *, seed: FloatArray) -> Fl
 
 def near(q: FloatArray, axes: tuple[int, ...], solved: FloatArray, seed: FloatArray) -> FloatArray:
     """Return what `angles_near` does, shape (F, A), from q (4, F) and one solution of each frame, (A, F)."""
-    locked = np.abs(solved[1]) > np.pi / 2.0 - GIMBAL_BAND if len(axes) == 3 else _NEVER
+    locked = gimbal_locked(solved)
     if not locked.any():
-        return _nearest(solved, seed).T
+        return nearest(solved, seed).T
     angles = np.empty_like(solved)
     bounds = np.concatenate(([0], np.flatnonzero(locked[1:] != locked[:-1]) + 1, [len(locked)]))
     for start, stop in pairwise(bounds.tolist()):
@@ -86,7 +85,7 @@ def near(q: FloatArray, axes: tuple[int, ...], solved: FloatArray, seed: FloatAr
             angles[:2, start:stop] = _unwrap(solve_angles(turned.T, axes[:2]), seed[:2])
             angles[2, start:stop] = seed[2]
         else:
-            angles[:, start:stop] = _nearest(solved[:, start:stop], seed)
+            angles[:, start:stop] = nearest(solved[:, start:stop], seed)
         seed = angles[:, stop - 1]
     return angles.T
 
@@ -96,7 +95,7 @@ def _angles_of_joints(q: FloatArray, axes: tuple[int, ...], seed: FloatArray) ->
     first = solve_angles(q, axes)
     if len(axes) < 3:
         return _unwrap(first, seed)
-    locked = (np.abs(first[1]) > np.pi / 2.0 - GIMBAL_BAND).any(axis=0)
+    locked = gimbal_locked(first).any(axis=0)
     distance = _distances(first, first, seed)
     far = np.flatnonzero((distance >= np.pi).any(axis=0))
     if len(far):
@@ -148,7 +147,15 @@ def other_solution(angles: FloatArray) -> FloatArray:
     return np.stack((a + np.pi, np.pi - b, c + np.pi))
 
 
-def _nearest(first: FloatArray, seed: FloatArray) -> FloatArray:
+def gimbal_locked(solved: FloatArray) -> BoolArray:
+    """Return at which frames angles (A, ..., F) are so near gimbal lock that the last one is kept, shape (..., F)."""
+    if len(solved) < 3:
+        return np.zeros(solved.shape[1:], dtype=np.bool_)
+    locked: BoolArray = np.abs(solved[1]) > np.pi / 2.0 - GIMBAL_BAND
+    return locked
+
+
+def nearest(first: FloatArray, seed: FloatArray) -> FloatArray:
     """Return angles (A, F) nearest the frame before, by whole turns, and of triples by their other solutions."""
     kernel = compiled()
     if kernel is not None:

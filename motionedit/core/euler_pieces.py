@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motionedit.core.euler import TOGETHER, TURN, angles_near, near, radians, solve_angles
+from motionedit.core.euler import TOGETHER, TURN, angles_near, gimbal_locked, near, nearest, radians, solve_angles
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -49,42 +49,56 @@ def touched_pieces(motion: Motion, touched: BoolArray, *, given: GivenRows, size
         No piece reaches over a multiple of this many frames. Clips of no more frames keep their angles, longer ones
         solve them again piece by piece, which costs time but hardly any memory.
     """
-    rows = cache(lambda start, stop: radians(given(start, stop)))  # joints mostly ask for the same few
+    # Joints mostly ask for the same few rows, and are touched at the same frames.
+    rows = cache(lambda start, stop: radians(given(start, stop)))
+    spans: dict[bytes, list[tuple[int, int]]] = {}
     turned = np.asarray(touched.any(axis=0))
     pieces = {}
     for group in motion.skeleton.rotation_groups:
-        joints = group.joints[turned[group.joints]]
+        places = np.flatnonzero(turned[group.joints])
         step = max(TOGETHER // len(motion), 1)
-        for first in range(0, len(joints), step):
-            some = joints[first : first + step]
-            q = np.ascontiguousarray(motion.rotations.transpose(2, 1, 0)[:, some])
+        for first in range(0, len(places), step):
+            some = places[first : first + step]
+            q = np.ascontiguousarray(motion.rotations.transpose(2, 1, 0)[:, group.joints[some]])
             solved = solve_angles(q, group.axes)
-            for place, joint in enumerate(some.tolist()):
-                track = _Track(q[:, place], group.axes, solved[:, place])
-                columns = motion.skeleton.columns(joint, "rotation")
-                pieces[joint] = _pieces(track, columns, given=rows, touched=touched[:, joint], size=size)
+            locked = np.any(gimbal_locked(solved), axis=-1).tolist()
+            for k, (joint, columns) in enumerate(zip(group.joints[some].tolist(), group.columns[some], strict=True)):
+                track = _Track(q[:, k], group.axes, solved[:, k], locked[k])
+                mask = touched[:, joint]
+                key = mask.tobytes()
+                if key not in spans:
+                    spans[key] = runs(mask)
+                pieces[joint] = _pieces(track, columns, given=rows, spans=spans[key], size=size)
     return pieces
 
 
 @dataclass(frozen=True, eq=False)
 class _Track:
-    """A joint's rotations `q` (4, F), its `axes`, and one solution of each frame, `solved` (A, F) rad."""
+    """A joint's rotations `q` (4, F), its `axes`, and one solution of each frame, `solved` (A, F) rad.
+
+    `locked` says whether any frame is at gimbal lock.
+    """
 
     q: FloatArray
     axes: tuple[int, ...]
     solved: FloatArray
+    locked: bool
 
     def near(self, frames: slice, seed: FloatArray) -> FloatArray:
         """Return the angles of some frames, shape (n, A), each nearest the one before, as `angles_near`."""
+        if not self.locked:
+            return nearest(self.solved[:, frames], seed).T
         return near(self.q[:, frames], self.axes, self.solved[:, frames], seed)
 
 
-def _pieces(track: _Track, columns: Sequence[int], *, given: GivenRows, touched: BoolArray, size: int) -> list[Piece]:
-    """Return one joint's pieces; the input's channel values (rad) are given(start, stop)."""
+def _pieces(
+    track: _Track, columns: IntArray, *, given: GivenRows, spans: Sequence[tuple[int, int]], size: int
+) -> list[Piece]:
+    """Return one joint's pieces over its runs of touched frames; the input's values (rad) are given(start, stop)."""
     pieces = []
-    for start, stop in runs(touched):
+    for start, stop in spans:
         angles, plain = _run(track, lambda a, b: given(a, b)[:, columns], start, stop)
-        keep = not plain or len(touched) <= size
+        keep = not plain or track.q.shape[1] <= size
         seed = given(max(start - 1, 0), max(start, 1))[0, columns]
         cuts = [start, *range((start // size + 1) * size, stop, size), stop]
         for first, last in pairwise(cuts):
