@@ -174,7 +174,7 @@ EDIT_PARTS: Schema = {
             "target": or_null(POINT, "where its effector was wanted, in the world; null for what only turns"),
         },
     ),
-    "constraint": obj("A constraint of edit-prioritized.", _CONSTRAINT),
+    "constraint": obj("A constraint of edit-prioritized.", _CONSTRAINT, optional=("frames",)),
     "layer": obj(
         "The constraints of one priority.",
         {
@@ -185,6 +185,7 @@ EDIT_PARTS: Schema = {
             ),
             "frames": obj("by frame of the clip", {"rank": list_of(INTEGER, "independent rows")}),
         },
+        optional=("frames",),
     ),
     "pc_clip": obj("A clip that edit-pc wrote.", _PC_CLIP, optional=("verify",)),
     "prioritized_clip": obj(

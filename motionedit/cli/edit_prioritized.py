@@ -11,6 +11,7 @@ from motionedit.cli.options import (
     not_supported_yet,
     output_option,
     preview_option,
+    report_frames_option,
     run_options,
     set_option,
     shard_option,
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
 @preview_option
 @shard_option
 @run_options(keep_going=True)
+@report_frames_option
 @not_supported_yet("--skeleton")
 def command(
     clips: tuple[Path, ...],

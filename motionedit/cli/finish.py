@@ -14,7 +14,7 @@ from motionedit.cli.words import printable, to_stdout
 from motionedit.errors import EXIT_DONE, MISSED, MotionEditError, SpecError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
     from motionedit.jobs.batch.plan import RunOptions
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 def finish_batch(result: BatchResult, options: RunOptions, *, command: str, spec: Mapping[str, Any] | None) -> int:
     """Print and write all that a run came to; return its exit code."""
-    from motionedit.report.record import report_bytes
+    from motionedit.report.record import report_pieces
 
     _say(result, options)
     on_stdout = options.report is not None and str(options.report) == "-"
@@ -34,7 +34,7 @@ def finish_batch(result: BatchResult, options: RunOptions, *, command: str, spec
     elif not on_stdout and result.paths:
         _list(result.paths)
     if options.report is not None:
-        report = report_bytes(command, result.records, spec=spec)
+        report = report_pieces(command, result.records, spec=spec)
         write_report(report, options.report, dry_run=options.dry_run)
     return result.exit_code
 
@@ -49,32 +49,34 @@ def _say(result: BatchResult, options: RunOptions) -> None:
     """Say on standard error what became of the clips: warnings, the table, what failed or was missed, the count."""
     from motionedit.report.table import count_line, results_table
 
-    made = [(record, time) for record, time in zip(result.records, result.seconds, strict=True) if time is not None]
+    made = any(time is not None for time in result.seconds)
     if options.verbosity >= 0:
         for warning in result.warnings:
             warn(warning)
         if made and not options.dry_run:
-            records, seconds = zip(*made, strict=True)
-            click.echo(printable(results_table(records, seconds, verbosity=options.verbosity)), err=True)
+            table = results_table(result.records, result.seconds, verbosity=options.verbosity)
+            click.echo(printable(table), err=True)
         if options.shard is not None and not result.records:
             click.echo(f"no clip belongs to shard {options.shard}: nothing to do", err=True)
         if result.current:
             click.echo(f"{result.current} up to date", err=True)
-    _show_missed(result, options)
+    statuses = _show_missed(result, options)
     show_failures(result.failures)
-    if len(result.records) > 1 and (made or result.exit_code) and _worth_a_count(result, options):
-        click.echo(count_line(result.records), err=True)
+    if len(statuses) > 1 and (made or result.exit_code) and _worth_a_count(result, options):
+        click.echo(count_line(statuses), err=True)
 
 
-def _show_missed(result: BatchResult, options: RunOptions) -> None:
+def _show_missed(result: BatchResult, options: RunOptions) -> list[str]:
     """Name the clips whose goals were not met, and why, where no warning has: those of an earlier run, and with -q.
 
-    As errors where they are counted as such.
+    As errors where they are counted as such. Returns the status of every clip.
     """
-    say = complain if options.strict else warn
+    say, statuses = complain if options.strict else warn, []
     for record, time in zip(result.records, result.seconds, strict=True):
+        statuses.append(record["status"])
         if record["status"] in MISSED and (time is None or options.verbosity < 0) and (options.strict or time is None):
             say(f"{record['clip']}: {record['status'].replace('_', ' ')}: {record['message']}")
+    return statuses
 
 
 def _worth_a_count(result: BatchResult, options: RunOptions) -> bool:
@@ -96,13 +98,14 @@ def show_failures(failures: Sequence[MotionEditError]) -> None:
             complain(f"{error}{others}")
 
 
-def write_report(report: bytes, path: Path, *, dry_run: bool = False) -> None:
-    """Write a report to its file, or to standard output for ``-``."""
+def write_report(report: bytes | Iterable[bytes], path: Path, *, dry_run: bool = False) -> None:
+    """Write a report, whole or in pieces, to its file, or to standard output for ``-``."""
     from motionedit.jobs.batch.files import clean_leftovers
     from motionedit.jobs.batch.one_clip import write_file
 
     if str(path) == "-":
-        write_stdout(report)
+        for piece in (report,) if isinstance(report, bytes) else report:
+            write_stdout(piece)
     elif dry_run:
         click.echo(f"would write the report {path}")
     else:

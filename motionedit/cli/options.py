@@ -89,6 +89,11 @@ report_option = click.option(
     type=click.Path(path_type=Path, dir_okay=False, allow_dash=True),
     help="Write a JSON report; '-' prints it in place of the paths.",
 )
+report_frames_option = click.option(
+    "--report-frames/--no-report-frames",
+    default=None,
+    help="Tell in the report of every frame, or not.  [default: of one clip, yes; of several, no]",
+)
 jobs_option = click.option(
     "-j",
     "--jobs",

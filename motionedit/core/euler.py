@@ -14,25 +14,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
+from motionedit.core.compiled import compiled
 from motionedit.core.motion import position_columns
-from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from motionedit.core.arrays import BoolArray, FloatArray, IntArray
+    from motionedit.core.arrays import BoolArray, FloatArray
     from motionedit.core.motion import Motion
 
-    GivenRows = Callable[[int, int], FloatArray]
-
-_TURN = 2.0 * np.pi
+TURN = 2.0 * np.pi
 _MOST_WOUND = 1e8  # degrees: six of the digits after the point are left
 # Within this angle (rad, 1e-4 degrees) of gimbal lock the last angle is kept. The rebuilt rotation is off by no more
 # than that; a wider band would cost more than the 2e-4 degrees that are promised.
 GIMBAL_BAND = np.radians(1e-4)
 # Rotations that are solved together: a short clip's joints cost less than the calls they would take one by one, and
 # what is solved together stays in the processor's cache.
-_TOGETHER = 1 << 13
+TOGETHER = 1 << 13
 
 
 def joint_angles(motion: Motion, *, start: FloatArray) -> FloatArray:
@@ -56,66 +52,13 @@ def joint_angles(motion: Motion, *, start: FloatArray) -> FloatArray:
         for axis, column in position_columns(skeleton, joint):
             values[:, column] = motion.translations[:, p, axis]
     for group in skeleton.rotation_groups:
-        step = max(_TOGETHER // len(motion), 1)
+        step = max(TOGETHER // len(motion), 1)
         for first in range(0, len(group.joints), step):
             joints, columns = group.joints[first : first + step], group.columns[first : first + step]
             q = np.ascontiguousarray(motion.rotations.transpose(2, 0, 1)[:, :, joints])
-            angles = _angles_of_joints(q, group.axes, _radians(start[columns.T]))
+            angles = _angles_of_joints(q, group.axes, radians(start[columns.T]))
             values[:, columns.reshape(-1)] = np.degrees(angles).transpose(1, 2, 0).reshape(len(motion), -1)
     return values
-
-
-@dataclass(frozen=True, eq=False)
-class Piece:
-    """The touched frames from `start` up to `stop` of one joint.
-
-    They are solved from `seed`, shape (A,) rad, before them, or are kept as `angles`, shape (stop - start, A) degrees.
-    """
-
-    start: int
-    stop: int
-    seed: FloatArray
-    angles: FloatArray | None
-
-
-def joint_pieces(motion: Motion, joint: int, *, given: GivenRows, touched: BoolArray, size: int) -> list[Piece]:
-    """Return one joint's touched frames in pieces that can be solved by themselves, for `piece_angles`.
-
-    Each run of touched frames starts from the input's angles at the frame before it, or at frame 0, and meets the
-    frame after it without a turn that the input has not.
-
-    Parameters
-    ----------
-    given : callable
-        given(start, stop) are the input's channel values of those frames, shape (stop - start, C).
-    touched : shape (F,)
-        Where the joint's rotation is to be written.
-    size : int
-        No piece reaches over a multiple of this many frames. Clips of no more frames keep their angles, longer ones
-        solve them again piece by piece, which costs time but hardly any memory.
-    """
-    axes = motion.skeleton.rotation_axes[joint]
-    columns = motion.skeleton.columns(joint, "rotation")
-    q = motion.rotations[:, joint]
-    pieces = []
-    for start, stop in runs(touched):
-        angles, plain = _run(q, axes, lambda a, b: _radians(given(a, b)[:, columns]), start, stop)
-        keep = not plain or len(q) <= size
-        seed = _radians(given(max(start - 1, 0), max(start, 1))[0, columns])
-        cuts = [start, *range((start // size + 1) * size, stop, size), stop]
-        for first, last in pairwise(cuts):
-            kept = np.degrees(angles[first - start : last - start]) if keep else None
-            pieces.append(Piece(first, last, seed, kept))
-            seed = angles[last - 1 - start].copy()
-    return pieces
-
-
-def piece_angles(motion: Motion, joint: int, *, piece: Piece) -> FloatArray:
-    """Return the angles of a piece of touched frames, shape (stop - start, A), degrees."""
-    if piece.angles is not None:
-        return piece.angles
-    q = motion.rotations[piece.start : piece.stop, joint]
-    return np.degrees(angles_near(q, motion.skeleton.rotation_axes[joint], seed=piece.seed))
 
 
 def angles_near(q: FloatArray, axes: tuple[int, ...], *, seed: FloatArray) -> FloatArray:
@@ -124,22 +67,25 @@ def angles_near(q: FloatArray, axes: tuple[int, ...], *, seed: FloatArray) -> Fl
     `seed`, shape (A,), stands before frame 0. With one axis or two the rotation nearest q is taken; with three,
     within `GIMBAL_BAND` of gimbal lock, the last angle stays that of the frame before. The result has shape (F, A).
     """
-    first = solve_angles(np.ascontiguousarray(q.T), axes)
-    if len(axes) < 3:
-        return _unwrap(first, seed).T
-    locked = np.abs(first[1]) > np.pi / 2.0 - GIMBAL_BAND
+    parts = np.ascontiguousarray(q.T)
+    return near(parts, axes, solve_angles(parts, axes), seed)
+
+
+def near(q: FloatArray, axes: tuple[int, ...], solved: FloatArray, seed: FloatArray) -> FloatArray:
+    """Return what `angles_near` does, shape (F, A), from q (4, F) and one solution of each frame, (A, F)."""
+    locked = gimbal_locked(solved)
     if not locked.any():
-        return _nearest(first, seed).T
-    angles = np.empty_like(first)
-    bounds = np.concatenate(([0], np.flatnonzero(locked[1:] != locked[:-1]) + 1, [len(q)]))
+        return nearest(solved, seed).T
+    angles = np.empty_like(solved)
+    bounds = np.concatenate(([0], np.flatnonzero(locked[1:] != locked[:-1]) + 1, [len(locked)]))
     for start, stop in pairwise(bounds.tolist()):
         if locked[start]:
             undone = rot.conjugate(rot.about_axis(axes[2], seed[2]))
-            turned = rot.multiply(q[start:stop], undone)
+            turned = rot.multiply(q[:, start:stop].T, undone)
             angles[:2, start:stop] = _unwrap(solve_angles(turned.T, axes[:2]), seed[:2])
             angles[2, start:stop] = seed[2]
         else:
-            angles[:, start:stop] = _nearest(first[:, start:stop], seed)
+            angles[:, start:stop] = nearest(solved[:, start:stop], seed)
         seed = angles[:, stop - 1]
     return angles.T
 
@@ -149,7 +95,7 @@ def _angles_of_joints(q: FloatArray, axes: tuple[int, ...], seed: FloatArray) ->
     first = solve_angles(q, axes)
     if len(axes) < 3:
         return _unwrap(first, seed)
-    locked = (np.abs(first[1]) > np.pi / 2.0 - GIMBAL_BAND).any(axis=0)
+    locked = gimbal_locked(first).any(axis=0)
     distance = _distances(first, first, seed)
     far = np.flatnonzero((distance >= np.pi).any(axis=0))
     if len(far):
@@ -201,8 +147,23 @@ def other_solution(angles: FloatArray) -> FloatArray:
     return np.stack((a + np.pi, np.pi - b, c + np.pi))
 
 
-def _nearest(first: FloatArray, seed: FloatArray) -> FloatArray:
-    """Return, of the triples and their other solutions, (3, F, ...), those nearest the frame before, unwrapped."""
+def gimbal_locked(solved: FloatArray) -> BoolArray:
+    """Return at which frames angles (A, ..., F) are so near gimbal lock that the last one is kept, shape (..., F)."""
+    if len(solved) < 3:
+        return np.zeros(solved.shape[1:], dtype=np.bool_)
+    locked: BoolArray = np.abs(solved[1]) > np.pi / 2.0 - GIMBAL_BAND
+    return locked
+
+
+def nearest(first: FloatArray, seed: FloatArray) -> FloatArray:
+    """Return angles (A, F) nearest the frame before, by whole turns, and of triples by their other solutions."""
+    kernel = compiled()
+    if kernel is not None:
+        angles = np.array(first, order="C")
+        kernel.nearest_angles(angles, np.ascontiguousarray(seed))
+        return angles
+    if len(first) < 3:
+        return _unwrap(first, seed)
     distance = _distances(first, first, seed)
     # The two solutions of one rotation are at least a whole turn apart, so a step below half a turn needs no change.
     if np.any(distance >= np.pi):
@@ -222,12 +183,12 @@ def _distances(before: FloatArray, after: FloatArray, seed: FloatArray) -> Float
     d = np.empty_like(after)
     np.subtract(after[:, 1:], before[:, :-1], out=d[:, 1:])
     np.subtract(after[:, 0], seed, out=d[:, 0])
-    d -= _TURN * np.rint(d * (1.0 / _TURN))
+    d -= TURN * np.rint(d * (1.0 / TURN))
     distance: FloatArray = np.abs(d, out=d).sum(axis=0)
     return distance
 
 
-def _radians(degrees: FloatArray) -> FloatArray:
+def radians(degrees: FloatArray) -> FloatArray:
     """Return a file's angles in radians, those that no body has wound up to without their whole turns.
 
     Near such an angle no other one can be written: the digits would not reach below a turn.
@@ -240,64 +201,9 @@ def _unwrap(angles: FloatArray, seed: FloatArray) -> FloatArray:
     turns = np.empty_like(angles)
     np.subtract(angles[:, 1:], angles[:, :-1], out=turns[:, 1:])
     np.subtract(angles[:, 0], seed, out=turns[:, 0])
-    turns *= 1.0 / _TURN
+    turns *= 1.0 / TURN
     np.rint(turns, out=turns)
     if not turns.any():
         return angles
-    unwrapped: FloatArray = angles - _TURN * np.cumsum(turns, axis=1)
+    unwrapped: FloatArray = angles - TURN * np.cumsum(turns, axis=1)
     return unwrapped
-
-
-def _run(q: FloatArray, axes: tuple[int, ...], given: GivenRows, start: int, stop: int) -> tuple[FloatArray, bool]:
-    """Return the angles (rad) of one run of touched frames, shape (stop - start, A), and whether none was put right.
-
-    The input's angles (rad) are given(first, last).
-    """
-    seed = given(max(start - 1, 0), max(start, 1))[0]
-    angles = angles_near(q[start:stop], axes, seed=seed)
-    if stop == len(q):
-        return angles, True
-    last, following = given(stop - 1, stop + 1)
-    if not _turns(last - angles[-1]).any():
-        return angles, True
-    steps = np.diff(given(start, stop), axis=0, prepend=seed[None])
-    return _meet_end(q[start:stop], axes, angles, steps, (seed, last, following)), False
-
-
-def runs(mask: BoolArray) -> list[tuple[int, int]]:
-    """Return the (start, stop) of each run of True, stop exclusive."""
-    padded = np.concatenate(([False], mask, [False]))
-    edges = np.flatnonzero(padded[1:] != padded[:-1])
-    return [(int(a), int(b)) for a, b in zip(edges[0::2], edges[1::2], strict=True)]
-
-
-def _turns(extra: FloatArray) -> IntArray:
-    """Return the half turns by which the step to the first untouched frame exceeds the input's own there."""
-    turns: IntArray = np.rint(extra / np.pi).astype(np.intp)
-    return turns
-
-
-def _meet_end(
-    q: FloatArray,
-    axes: tuple[int, ...],
-    angles: FloatArray,
-    steps: FloatArray,
-    ends: tuple[FloatArray, FloatArray, FloatArray],
-) -> FloatArray:
-    """Return a run's angles such that its last frame meets the input's next without a turn that the input has not.
-
-    First the input's own wraps are carried: where its values jump by 360 degrees, so do the run's. Where that is not
-    enough, the run is solved backwards from its end too and changes over from the one to the other at the frame
-    where that jumps least: the jump cannot be avoided, for the edit winds another way round than the input.
-
-    `steps`, shape of angles, are the input's from the frame before each; `ends` its angles at the frame before the
-    run, at the run's last and at the frame after.
-    """
-    before, last, following = ends
-    carried = angles + _TURN * np.cumsum(np.rint(steps / _TURN), axis=0)
-    if not _turns(last - carried[-1]).any():
-        return carried
-    backward = angles_near(q[::-1], axes, seed=following)[::-1]
-    jumps = np.abs(backward - np.concatenate((before[None], angles[:-1]))).sum(axis=-1)
-    change = int(np.argmin(jumps))
-    return np.concatenate((angles[:change], backward[change:]))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -63,10 +64,15 @@ class Motion:
 
 def scaled(motion: Motion, factor: float) -> Motion:
     """Return the motion with every length times `factor`: offsets, end sites, translations; rotations are shared."""
-    skeleton = motion.skeleton
-    sites = tuple(replace(site, offset=frozen(site.offset * factor)) for site in skeleton.end_sites)
-    sized = replace(skeleton, offsets=frozen(skeleton.offsets * factor), end_sites=sites)
+    sized = _scaled_skeleton(motion.skeleton, factor)
     return Motion(sized, motion.rotations, frozen(motion.translations * factor), motion.frame_time)
+
+
+@lru_cache(maxsize=8)
+def _scaled_skeleton(skeleton: Skeleton, factor: float) -> Skeleton:
+    """Return a skeleton with every length times a factor: the same one for the clips of a batch that share theirs."""
+    sites = tuple(replace(site, offset=frozen(site.offset * factor)) for site in skeleton.end_sites)
+    return replace(skeleton, offsets=frozen(skeleton.offsets * factor), end_sites=sites)
 
 
 def write_poses(skeleton: Skeleton, values: FloatArray, *, rotations: FloatArray, translations: FloatArray) -> None:

@@ -161,10 +161,18 @@ class Skeleton:
 
     def chain(self, joint: int) -> IntArray:
         """Return the joints from the root down to `joint`, both in."""
-        path = [joint]
-        while self.parents[path[-1]] >= 0:
-            path.append(int(self.parents[path[-1]]))
-        return np.array(path[::-1], dtype=np.intp)
+        known = self._chains.get(joint)
+        if known is None:
+            path = [int(joint)]
+            while self.parents[path[-1]] >= 0:
+                path.append(int(self.parents[path[-1]]))
+            known = self._chains[joint] = frozen(np.array(path[::-1], dtype=np.intp))
+        return known
+
+    @cached_property
+    def _chains(self) -> dict[int, IntArray]:
+        """Chains by their last joint, those that were asked for: of a long chain all would take its square."""
+        return {}
 
     def between(self, start: int, stop: int) -> list[int]:
         """Return the joints below one of a chain down to another, that one in; none where it does not lead there."""

@@ -43,7 +43,7 @@ def inputs_of(tasks: Iterable[ClipTask], files: Iterable[Path]) -> tuple[Path, .
 
 def report_of(
     command: str,
-    records: list[dict[str, Any]],
+    records: Iterable[dict[str, Any]],
     *,
     spec: Mapping[str, Any] | None,
     more: Mapping[str, Any] | None = None,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from motionedit.version import __version__
@@ -12,37 +12,63 @@ from motionedit.version import __version__
 SCHEMA = "motionedit/report/v1"
 # Enough for any comparison, and few enough that the last bits of two machines do not show.
 _DIGITS = 9
+_INDENT = "\n  "
 
 
 def report_bytes(
     command: str,
-    clips: list[dict[str, Any]],
+    clips: Iterable[dict[str, Any]],
     *,
     spec: Mapping[str, Any] | None = None,
     more: Mapping[str, Any] | None = None,
 ) -> bytes:
-    """Return the report as UTF-8 JSON.
+    """Return what `report_pieces` yields in one piece."""
+    return b"".join(report_pieces(command, clips, spec=spec, more=more))
+
+
+def report_pieces(
+    command: str,
+    clips: Iterable[dict[str, Any]],
+    *,
+    spec: Mapping[str, Any] | None = None,
+    more: Mapping[str, Any] | None = None,
+) -> Iterator[bytes]:
+    """Yield the report as UTF-8 JSON, clip by clip: a report of many clips need not be held to be written.
 
     Parameters
     ----------
-    clips : list of dict
+    clips : iterable of dict
         One entry per clip, in the run's order.
     spec : mapping or None
         The spec with `--set` applied.
     more : mapping or None
         What a command adds below the fixed keys.
     """
-    report = {
-        "schema": SCHEMA,
-        "version": __version__,
-        "command": command,
-        "spec": spec,
-        "clips": clips,
-        **(more or {}),
+    head = {"schema": SCHEMA, "version": __version__, "command": command, "spec": spec}
+    keys = "".join(f"{_INDENT}{_scalar(key)}: {_text(plain(value), _INDENT)}," for key, value in head.items())
+    yield _encoded(f'{{{keys}{_INDENT}"clips": [')
+    inner = f"{_INDENT}  "
+    count = 0
+    for count, clip in enumerate(clips, start=1):
+        yield _encoded(f"{',' if count > 1 else ''}{inner}{_text(plain(clip), inner)}")
+    rest = "".join(f",{_INDENT}{_scalar(key)}: {_text(plain(value), _INDENT)}" for key, value in (more or {}).items())
+    yield _encoded(f"{_INDENT if count else ''}]{rest}\n}}\n")
+
+
+def without_frames(record: dict[str, Any]) -> dict[str, Any]:
+    """Return a clip's entry without what is told frame by frame, which takes more than all else: `frames`, mappings."""
+    return {
+        key: [without_frames(item) if isinstance(item, dict) else item for item in value]
+        if isinstance(value, list)
+        else value
+        for key, value in record.items()
+        if key != "frames" or not isinstance(value, Mapping)
     }
-    text = _text(plain(report), "\n")
+
+
+def _encoded(text: str) -> bytes:
     # File names need not be text; JSON must be.
-    return f"{text}\n".encode(errors="replace")
+    return text.encode(errors="replace")
 
 
 def _text(value: Any, newline: str) -> str:  # noqa: ANN401  any plain value

@@ -39,36 +39,36 @@ def number(value: object) -> str:
     return f"{value:.4g}" if value == 0.0 or abs(value) >= 1e-3 else f"{value:.0e}"
 
 
-def results_table(records: Sequence[dict[str, Any]], seconds: Sequence[float], *, verbosity: int = 0) -> str:
-    """Return the results of a run: a row per clip, with -v the goals of each clip."""
-    shown = [
-        (record, time)
-        for record, time in zip(records, seconds, strict=True)
-        if verbosity > 0 or len(records) <= _MOST_ROWS or record["status"] != "ok"
-    ]
-    blocks = []
-    if shown:
-        error = "error" + _unit([record for record, _ in shown])
-        headings = (
-            *("clip", "status", "worst goal", error, "tolerance", "frame"),
-            *("iterations", "foot slide", "sliding", "jerk", "step", "seconds"),
-        )
-        blocks.append(text_table(headings, [_row(record, time) for record, time in shown]))
-    if verbosity > 0:
-        blocks += [_goals_table(record) for record, _ in shown if _goals(record)]
-    return "\n".join(blocks)
+def results_table(records: Sequence[dict[str, Any]], seconds: Sequence[float | None], *, verbosity: int = 0) -> str:
+    """Return the results of a run: a row per clip, with -v the goals of each clip.
+
+    `seconds` are the records' own; a clip without any, which an earlier run made, has no row.
+    """
+    rows, units, goals = [], set(), []
+    every = verbosity > 0 or sum(time is not None for time in seconds) <= _MOST_ROWS
+    for record, time in zip(records, seconds, strict=True):
+        if time is None or not (every or record["status"] != "ok"):
+            continue
+        rows.append(_row(record, time))
+        if record["status"] != "failed":
+            units.add(record.get("unit"))
+        if verbosity > 0 and _goals(record):
+            goals.append(_goals_table(record))
+    headings = (
+        *("clip", "status", "worst goal", "error" + _in(units), "tolerance", "frame"),
+        *("iterations", "foot slide", "sliding", "jerk", "step", "seconds"),
+    )
+    return "\n".join([*([text_table(headings, rows)] if rows else []), *goals])
 
 
-def count_line(records: Sequence[dict[str, Any]]) -> str:
+def count_line(statuses: Sequence[str]) -> str:
     """Return the line that counts clips by their status, which ends a run of several."""
-    counts = Counter(record["status"] for record in records)
-    return f"{len(records)} clips: " + ", ".join(f"{n} {status}" for status, n in counts.items())
+    return f"{len(statuses)} clips: " + ", ".join(f"{n} {status}" for status, n in Counter(statuses).items())
 
 
-def _unit(records: Sequence[dict[str, Any]]) -> str:
+def _in(units: set[str | None]) -> str:
     """Return the unit of the errors where all clips have one."""
-    units = {record.get("unit") for record in records if record["status"] != "failed"}
-    unit = units.pop() if len(units) == 1 else None
+    (unit,) = units if len(units) == 1 else (None,)
     return f" ({unit})" if unit else ""
 
 
@@ -112,7 +112,7 @@ def _goals(record: dict[str, Any]) -> list[dict[str, Any]]:
 
 
 def _goals_table(record: dict[str, Any]) -> str:
-    error = "error" + _unit([record])
+    error = "error" + _in({record.get("unit")})
     headings = (
         record["clip"],
         "priority",

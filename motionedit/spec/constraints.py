@@ -1,6 +1,7 @@
 """What constraints of edit-prioritized share: the keys that every type has, and those of several, [PRIO] section 4."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, get_args
 
 from pydantic import Field
@@ -113,11 +114,8 @@ class ConstraintItem(Item):
 
     def own_values(self) -> Iterator[OwnValue]:
         """Yield the values of the keys that not every constraint has."""
-        for name, info in type(self).model_fields.items():
-            value_kinds = [each for each in info.metadata if isinstance(each, Kind)]
-            if name not in ConstraintItem.model_fields and value_kinds:
-                key = info.alias or name
-                yield OwnValue(key, self.keys_of(key), value_kinds[0], getattr(self, name))
+        for name, key, kind in _own_fields(type(self)):
+            yield OwnValue(key, self.keys_of(key), kind, getattr(self, name))
 
     @classmethod
     def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
@@ -133,6 +131,17 @@ class ConstraintItem(Item):
                 if key in tolerance and not has:
                     what = "an angle" if cls.has_angle else "a length"
                     yield Fault(f"does not go with {data.get('type')}: its tolerance is {what}", ("tolerance", key))
+
+
+@cache
+def _own_fields(model: type[ConstraintItem]) -> tuple[tuple[str, str, Kind], ...]:
+    """Return the name, the key and the kind of what a type of constraint has of its own."""
+    found = []
+    for name, info in model.model_fields.items():
+        value_kinds = [each for each in info.metadata if isinstance(each, Kind)]
+        if name not in ConstraintItem.model_fields and value_kinds:
+            found.append((name, info.alias or name, value_kinds[0]))
+    return tuple(found)
 
 
 class Recruiting(SpecModel):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -114,7 +114,7 @@ class Anatomy:
             lines.append("no head found: up is found without it; body: in a spec says which joint is the head")
         return tuple(lines)
 
-    @property
+    @cached_property
     def sole_points(self) -> tuple[SolePoint, ...]:
         """The heel and toe of each foot, left before right; a leaf ankle's end site serves as its toe."""
         points = []

@@ -73,7 +73,7 @@ def _bend(
     """Return the bend of a limb whose end comes `towards` a side, shape (F, 3), where no frame shows it."""
     top, joint, end = limb
     sides = _sides(poses.positions, top, joint, end)
-    sines = np.linalg.norm(sides, axis=1)
+    sines = rot.length(sides)
     bent = sines > _BENT
     bent[:first] = False
     if not bent.any():
@@ -90,7 +90,7 @@ def _bend(
     lower = mean_direction(poses, joint, end, seen_from=joint, first=first)
     parent = poses.rotations[:, skeleton.parents[joint]]
     local = rot.multiply(rot.conjugate(parent), poses.rotations[:, joint])
-    angles = turns_about(axis / length, upper, rot.rotate(local, np.broadcast_to(lower, (len(local), 3))))
+    angles = turns_about(axis / length, upper, rot.rotate(local, lower))
     return Bend(
         joint, frozen(axis / length), frozen(sines < _STRAIGHT), frozen(upper), frozen(lower), frozen(angles[first:])
     )
@@ -101,8 +101,8 @@ def turns_about(axis: FloatArray, start: FloatArray, stop: FloatArray) -> FloatA
 
     atan2(a . (u x v), u . v - (a . u) (a . v)): what they have along the axis does not count.
     """
-    sine = np.sum(axis * rot.cross(np.broadcast_to(start, stop.shape), stop), axis=-1)
-    angles: FloatArray = np.arctan2(sine, np.sum(start * stop, axis=-1) - (start @ axis) * (stop @ axis))
+    sine = rot.dot(axis, rot.cross(start, stop))
+    angles: FloatArray = np.arctan2(sine, rot.dot(start, stop) - (start @ axis) * (stop @ axis))
     return angles
 
 
@@ -127,7 +127,7 @@ def mean_directions(
 def _sides(positions: FloatArray, top: int, joint: int, end: int) -> FloatArray:
     """Return upper x lower of a limb's unit bones, shape (F, 3): its axis, times the sine by which it is bent."""
     upper, lower = positions[:, joint] - positions[:, top], positions[:, end] - positions[:, joint]
-    lengths = np.linalg.norm(upper, axis=1) * np.linalg.norm(lower, axis=1)
+    lengths = rot.length(upper) * rot.length(lower)
     sides: FloatArray = rot.cross(upper, lower) / np.maximum(lengths, np.finfo(float).tiny)[:, None]
     return sides
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.body.anatomy import Anatomy
+    from motionedit.core.body.segments import Laid
     from motionedit.core.skeleton import Skeleton
 
 _BLOCK_FRAMES = 1 << 10
@@ -68,8 +70,7 @@ def find_masses(skeleton: Skeleton, anatomy: Anatomy, *, given: Mapping[int, flo
     ValueError
         When the given masses are negative, not finite, or all zero.
     """
-    by_length = lay_by_length(skeleton)
-    human = lay_human(skeleton, anatomy)
+    by_length, human = _laid(skeleton, anatomy)
     laid = by_length if human is None else human
     if given:
         weights = np.array(list(given.values()))
@@ -83,6 +84,12 @@ def find_masses(skeleton: Skeleton, anatomy: Anatomy, *, given: Mapping[int, flo
         is_human=human is not None,
         warnings=() if human is not None or given else (_NOT_HUMAN,),
     )
+
+
+@lru_cache(maxsize=8)
+def _laid(skeleton: Skeleton, anatomy: Anatomy) -> tuple[Laid, Laid | None]:
+    """Return the masses by length and, of a human, those of the table: once for the clips that share a skeleton."""
+    return lay_by_length(skeleton), lay_human(skeleton, anatomy)
 
 
 def center_of_mass(poses: WorldPoses, masses: Masses) -> FloatArray:

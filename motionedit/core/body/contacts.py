@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from bisect import bisect_left
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from motionedit.core import rotations as rot
 from motionedit.core.arrays import median
 from motionedit.core.kinematics import effector_positions
 from motionedit.core.units import STANDARD_LEG
@@ -14,7 +16,9 @@ from motionedit.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from motionedit.core.arrays import BoolArray, FloatArray
+    from numpy.typing import NDArray
+
+    from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.body.anatomy import Anatomy, Part
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.motion import Motion
@@ -61,6 +65,58 @@ class Plant:
     def frames(self) -> int:
         """How many frames the plant lasts."""
         return self.stop - self.start + 1
+
+
+@dataclass(frozen=True, eq=False)
+class PlantFrames:
+    """The frames of P plants one after the other, so that all are measured at once.
+
+    Attributes
+    ----------
+    frames, points : shape (N,)
+        Each frame, and the point that stands there: N is the sum over the plants.
+    starts, counts : shape (P,)
+        Where each plant's frames begin among them, and how many there are.
+    """
+
+    frames: IntArray
+    points: IntArray
+    starts: IntArray
+    counts: IntArray
+
+    def of(self, values: FloatArray) -> FloatArray:
+        """Return a plant's values frame by frame, shape (N, ...), of values by frame and point, (F, points, ...)."""
+        return values[self.frames, self.points]
+
+    def means(self, values: FloatArray) -> FloatArray:
+        """Return each plant's mean of values frame by frame, shape (P, ...) of (N, ...)."""
+        counts = self.counts.reshape(-1, *(1,) * (values.ndim - 1))
+        means: FloatArray = np.add.reduceat(values, self.starts, axis=0) / counts
+        return means
+
+    def medians(self, values: FloatArray) -> FloatArray:
+        """Return each plant's median of values frame by frame, shape (P,) of (N,)."""
+        ordered = values[np.lexsort((values, np.repeat(np.arange(len(self.counts)), self.counts)))]
+        above = ordered[self.starts + self.counts // 2]
+        medians: FloatArray = np.where(
+            self.counts % 2 == 1, above, (ordered[self.starts + np.maximum(self.counts // 2 - 1, 0)] + above) / 2.0
+        )
+        return medians
+
+    def spread(self, values: NDArray[Any]) -> NDArray[Any]:
+        """Return a value of each plant at all its frames, shape (N, ...) of (P, ...)."""
+        return np.repeat(values, self.counts, axis=0)
+
+
+def frames_of(plants: Sequence[Plant]) -> PlantFrames | None:
+    """Return the frames of plants; None of none."""
+    if not plants:
+        return None
+    starts, stops, points = np.array([(plant.start, plant.stop, plant.point) for plant in plants], dtype=np.intp).T
+    counts = stops - starts + 1
+    places = np.cumsum(counts) - counts
+    frames = np.arange(int(counts.sum())) + np.repeat(starts - places, counts)
+    return PlantFrames(frames, np.repeat(points, counts), places, counts)
 
 
 @dataclass(frozen=True)
@@ -166,15 +222,17 @@ def _speeds(places: FloatArray, frame_time: float) -> FloatArray:
     half = max(1, round(0.5 * _WHILE / frame_time))
     at = np.arange(len(places))
     before, after = np.maximum(at - half, 0), np.minimum(at + half, len(places) - 1)
-    way: FloatArray = np.linalg.norm(places[after] - places[before], axis=1)
+    way = rot.length(places[after] - places[before])
     return way / ((after - before) * frame_time)
 
 
 def _hysteresis(wide: BoolArray, narrow: BoolArray) -> BoolArray:
     """Return the runs of `wide` in which `narrow` is anywhere true."""
     kept = np.zeros_like(wide)
+    inside = np.flatnonzero(wide & narrow).tolist()
     for start, stop in _runs(wide):
-        kept[start : stop + 1] = narrow[start : stop + 1].any()
+        place = bisect_left(inside, start)
+        kept[start : stop + 1] = place < len(inside) and inside[place] <= stop
     return kept
 
 
@@ -191,8 +249,10 @@ def _rolling_minimum(values: FloatArray, width: int) -> FloatArray:
 
 def _runs(there: BoolArray) -> list[tuple[int, int]]:
     """Return (first, last) of the runs of True, shape (F,)."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], there.astype(np.int8), [0]))))
-    return [(int(a), int(b) - 1) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+    padded = np.zeros(len(there) + 2, dtype=np.bool_)
+    padded[1:-1] = there
+    edges = np.flatnonzero(padded[1:] != padded[:-1]).tolist()
+    return [(a, b - 1) for a, b in zip(edges[::2], edges[1::2], strict=True)]
 
 
 def _closed(runs: Sequence[tuple[int, int]], places: FloatArray, gap: int) -> list[tuple[int, int]]:

@@ -7,6 +7,7 @@ centre is the clip's own mean.
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -71,12 +72,7 @@ class Limit:
 
 def human_limits(motion: Motion, poses: WorldPoses, anatomy: Anatomy, *, travel: int, first: int) -> list[Limit]:
     """Return the limits of neck, spine, clavicles, shoulders, hips, wrists and ankles that were found."""
-    wanted: list[tuple[_Joint, Range]] = []
-    for region, joints in _regions(motion.skeleton, anatomy, travel):
-        # Of a region that n joints share each may do more than its nth part: not all of them are always asked.
-        share = 1.0 / np.sqrt(len(joints))
-        half = Range(share * region.swing, share * region.twist)
-        wanted += [(joint, half) for joint in joints]
+    wanted = _wanted(motion.skeleton, anatomy, travel)
     found: dict[int, Limit] = {}
     # A few joints at a time: those of a long motion all at once would take several times its memory.
     together = max(_BLOCK_POSES // len(motion), 1)
@@ -86,6 +82,18 @@ def human_limits(motion: Motion, poses: WorldPoses, anatomy: Anatomy, *, travel:
         along = mean_directions(poses, tops, ends, seen_from=joints, first=first)
         found.update({each.joint: each for each in _limits(motion, joints, along, [half for _, half in some], first)})
     return [found[joint] for joint in sorted(found)]
+
+
+@lru_cache(maxsize=8)
+def _wanted(skeleton: Skeleton, anatomy: Anatomy, travel: int) -> tuple[tuple[_Joint, Range], ...]:
+    """Return the joints that have limits, with their half ranges."""
+    wanted: list[tuple[_Joint, Range]] = []
+    for region, joints in _regions(skeleton, anatomy, travel):
+        # Of a region that n joints share each may do more than its nth part: not all of them are always asked.
+        share = 1.0 / np.sqrt(len(joints))
+        half = Range(share * region.swing, share * region.twist)
+        wanted += [(joint, half) for joint in joints]
+    return tuple(wanted)
 
 
 def given_limits(motion: Motion, poses: WorldPoses, given: Mapping[int, Range], *, first: int) -> list[Limit]:
@@ -129,12 +137,11 @@ def swing_and_twist(q: FloatArray, along: FloatArray) -> tuple[FloatArray, Float
 
     `along` (3,) is one vector for all, or (C, 3) one for each of the last but one axis of q.
     """
-    twist = 2.0 * np.arctan2(np.sum(q[..., 1:] * along, axis=-1), q[..., 0])
+    twist = 2.0 * np.arctan2(rot.dot(q[..., 1:], along), q[..., 0])
     twist = (twist + np.pi) % (2.0 * np.pi) - np.pi
-    still = np.broadcast_to(along, (*q.shape[:-1], 3))
-    turned = rot.rotate(q, still)
-    across = np.linalg.norm(rot.cross(still, turned), axis=-1)
-    swing: FloatArray = np.arctan2(across, np.sum(turned * still, axis=-1))
+    turned = rot.rotate(q, along)
+    across = rot.length(rot.cross(along, turned))
+    swing: FloatArray = np.arctan2(across, rot.dot(turned, along))
     return swing, twist
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
+from motionedit.core.body.contacts import frames_of
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -102,14 +103,15 @@ def foot_slide_max(tracks: FloatArray, plants: Sequence[Plant], *, up: FloatArra
 
     `tracks` (F, P, 3) are those of `sole_tracks`. For an edit the plants are those of its input.
     """
-    fastest = 0.0
-    for point in {plant.point for plant in plants}:
-        step = np.diff(tracks[:, point], axis=0)
-        level = step - (step @ up)[:, None] * up
-        way = np.linalg.norm(level, axis=-1)
-        here = [plant for plant in plants if plant.point == point]
-        fastest = max(fastest, *(float(way[plant.start : plant.stop].max(initial=0.0)) for plant in here))
-    return fastest / frame_time
+    down = frames_of([plant for plant in plants if plant.stop > plant.start])
+    if down is None:
+        return 0.0
+    inner = np.ones(len(down.frames), dtype=np.bool_)
+    inner[down.starts + down.counts - 1] = False
+    frames, points = down.frames[inner], down.points[inner]
+    step = tracks[frames + 1, points] - tracks[frames, points]
+    level = step - (step @ up)[:, None] * up
+    return float(rot.length(level).max()) / frame_time
 
 
 def foot_drift(before: FloatArray, after: FloatArray, plants: Sequence[Plant]) -> float:
@@ -117,14 +119,8 @@ def foot_drift(before: FloatArray, after: FloatArray, plants: Sequence[Plant]) -
 
     Both are the tracks (F, P, 3) of the same points; the plants are those of the first.
     """
-    return max(
-        (
-            float(np.linalg.norm(after[span, plant.point] - before[span, plant.point], axis=-1).max())
-            for plant in plants
-            for span in [slice(plant.start, plant.stop + 1)]
-        ),
-        default=0.0,
-    )
+    down = frames_of(plants)
+    return 0.0 if down is None else float(rot.length(down.of(after) - down.of(before)).max())
 
 
 def find_defects(motion: Motion, *, first: int = 0) -> list[Defect]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -50,6 +51,7 @@ class Beyond:
     most: float
 
 
+@lru_cache(maxsize=8)
 def regions_of(skeleton: Skeleton, anatomy: Anatomy, *, travel: int) -> tuple[Region, ...]:
     """Return what has a range: every joint against its parent, and neck, spine, limbs against what carries them.
 
@@ -76,17 +78,13 @@ def beyond_range(
     The range is the largest angle from the mean rotation of the input, the frames before `first` left out. A region
     with no joint among the `touched`, shape (J,), is left out.
     """
-    asked = [(region, *_ways(before.skeleton, region)) for region in regions]
-    asked = [(region, up, down) for region, up, down in asked if touched[[*up, *down]].any()]
+    asked = [each for each in _with_ways(before.skeleton, tuple(regions)) if touched[[*each[1], *each[2]]].any()]
     found = []
     # A few regions at a time: those of a long motion all at once would take several times its memory.
     together = max(_BLOCK_POSES // len(before), 1)
     for start in range(0, len(asked), together):
         some = asked[start : start + together]
-        own, taken = (
-            np.stack([_relative(motion.rotations[first:], up, down) for _, up, down in some], axis=1)
-            for motion in (before, after)
-        )
+        own, taken = (_all_relative(motion.rotations[first:], some) for motion in (before, after))
         means = rot.mean_of_products(np.einsum("fni,fnj->nij", own, own))
         angles = np.degrees(rot.angle_between(means, taken))
         worst = angles.argmax(axis=0)
@@ -141,14 +139,34 @@ def _trunk(skeleton: Skeleton, anatomy: Anatomy) -> frozenset[int]:
     return frozenset(int(j) for end in ends for j in skeleton.chain(end))
 
 
-def _ways(skeleton: Skeleton, region: Region) -> tuple[list[int], list[int]]:
+@lru_cache(maxsize=8)
+def _with_ways(
+    skeleton: Skeleton, regions: tuple[Region, ...]
+) -> tuple[tuple[Region, tuple[int, ...], tuple[int, ...]], ...]:
+    """Return regions, each with its `_ways`."""
+    return tuple((region, *_ways(skeleton, region)) for region in regions)
+
+
+def _ways(skeleton: Skeleton, region: Region) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """Return the joints between a region's upper joint and where the ways to both part, and between that and its lower.
 
     Both from the root outwards.
     """
     upper, lower = (skeleton.chain(joint).tolist() for joint in (region.upper, region.lower))
     shared = sum(one == other for one, other in zip(upper, lower, strict=False))
-    return upper[shared:], lower[shared:]
+    return tuple(upper[shared:]), tuple(lower[shared:])
+
+
+def _all_relative(
+    rotations: FloatArray, asked: Sequence[tuple[Region, tuple[int, ...], tuple[int, ...]]]
+) -> FloatArray:
+    """Return `_relative` of all regions, shape (F, n, 4)."""
+    # Most are a joint against its parent.
+    turned = rotations[:, [down[0] if down else 0 for _, _, down in asked]]
+    for i, (_, up, down) in enumerate(asked):
+        if up or len(down) != 1:
+            turned[:, i] = _relative(rotations, up, down)
+    return turned
 
 
 def _relative(rotations: FloatArray, up: Sequence[int], down: Sequence[int]) -> FloatArray:
@@ -158,6 +176,7 @@ def _relative(rotations: FloatArray, up: Sequence[int], down: Sequence[int]) -> 
 
 
 def _product(rotations: FloatArray, way: Sequence[int]) -> FloatArray:
+    """Return the product of the rotations of joints on a way, shape (F, 4)."""
     product = rotations[:, way[0]] if way else np.broadcast_to(rot.IDENTITY, (len(rotations), 4))
     for j in way[1:]:
         product = rot.multiply(product, rotations[:, j])
@@ -177,7 +196,7 @@ def _bend(motion: Motion, limb: tuple[int, int, int], axis: FloatArray) -> Float
         upper = upper + rot.rotate(rot.conjugate(turned), _path(motion, top, frame))
     lower = rot.rotate(motion.rotations[:, joint], lower)
     side = rot.cross(upper, lower)
-    angle = np.arctan2(np.linalg.norm(side, axis=1), np.einsum("fi,fi->f", upper, lower))
+    angle = np.arctan2(rot.length(side), rot.dot(upper, lower))
     bend: FloatArray = np.degrees(np.where(side @ axis < 0.0, -angle, angle))
     return bend
 
@@ -185,10 +204,12 @@ def _bend(motion: Motion, limb: tuple[int, int, int], axis: FloatArray) -> Float
 def _path(motion: Motion, top: int, end: int) -> FloatArray:
     """Return where a joint is in the frame of one above it, shape (F, 3)."""
     skeleton, way = motion.skeleton, motion.skeleton.chain(end).tolist()
-    places = {int(j): p for p, j in enumerate(skeleton.translated)}
-    path, turned = np.zeros((len(motion), 3)), np.broadcast_to(rot.IDENTITY, (len(motion), 4))
-    for j in way[way.index(top) + 1 :]:
-        local = motion.translations[:, places[j]] if j in places else skeleton.offsets[j]
+    path, turned = np.zeros((len(motion), 3)), rot.IDENTITY
+    joints = way[way.index(top) + 1 :]
+    for j in joints:
+        place = skeleton.translation_places[j]
+        local = motion.translations[:, place] if place >= 0 else skeleton.offsets[j]
         path = path + rot.rotate(turned, local)
-        turned = rot.multiply(turned, motion.rotations[:, j])
+        if j != joints[-1]:
+            turned = rot.multiply(turned, motion.rotations[:, j])
     return path

@@ -58,12 +58,13 @@ def change_steps(before: Motion, after: Motion, *, first: int) -> Steps:
     steps, to the bit.
     """
     one, other = before.rotations[first:], after.rotations[first:]
-    changed = [j for j in range(len(before.skeleton)) if not np.array_equal(one[:, j], other[:, j])]
+    # Joint by joint: of a long motion all at once would take as much memory as its rotations have numbers.
+    changed = np.flatnonzero([np.any(one[:, j] != other[:, j]) for j in range(len(before.skeleton))])
 
     def changes(some: IntArray) -> FloatArray:
         return rot.multiply(rot.conjugate(one[:, some]), other[:, some])
 
-    return _steps(np.array(changed, dtype=np.intp), changes, before, first)
+    return _steps(changed, changes, before, first)
 
 
 def _steps(joints: IntArray, turns: Callable[[IntArray], FloatArray], motion: Motion, first: int) -> Steps:

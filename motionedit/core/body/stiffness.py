@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
+
+from motionedit.core.arrays import frozen
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -23,6 +26,7 @@ WRIST_AND_ANKLE = 0.7
 TRAVEL = 0.25
 
 
+@lru_cache(maxsize=8)
 def human_mobility(skeleton: Skeleton, anatomy: Anatomy, *, travel: int) -> FloatArray:
     """Return the mobility of every joint, shape (J,), of a body's parts that were found; 1 elsewhere.
 
@@ -31,7 +35,7 @@ def human_mobility(skeleton: Skeleton, anatomy: Anatomy, *, travel: int) -> Floa
     mobility = np.ones(len(skeleton))
     for joint, value in _parts(skeleton, anatomy, travel):
         mobility[joint] = value
-    return mobility
+    return frozen(mobility)
 
 
 def _parts(skeleton: Skeleton, anatomy: Anatomy, travel: int) -> Iterator[tuple[int, float]]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
 from io import BytesIO
 from typing import TYPE_CHECKING
 
@@ -13,7 +12,7 @@ from motionedit.core.bvh.rows import BLOCK_BYTES
 from motionedit.core.bvh.scan import words_between
 from motionedit.core.bvh.write import LONGEST_WHOLE, check_finite, decimals_of_edits, head_bytes, rows_text
 from motionedit.core.compiled import compiled
-from motionedit.core.euler import joint_pieces, piece_angles, runs
+from motionedit.core.euler_pieces import piece_angles, runs, touched_pieces
 from motionedit.core.motion import position_columns
 from motionedit.dataclass import dataclass
 
@@ -24,7 +23,7 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.bvh.text import Written
-    from motionedit.core.euler import Piece
+    from motionedit.core.euler_pieces import Piece
     from motionedit.core.motion import Motion
 
 # Rows of a long clip that are solved and held at a time.
@@ -95,14 +94,8 @@ class _Edit:
 
 def _plan(clip: Written, motion: Motion, touched: BoolArray, moved: BoolArray | None) -> _Plan:
     skeleton = clip.text.motion.skeleton
-    # Joints mostly ask for the same few rows.
-    given = cache(clip.text.values_between)
-    pieces: dict[int, list[Piece]] = {}
-    columns: list[int] = []
-    for joint in np.flatnonzero(touched.any(axis=0)).tolist():
-        if skeleton.rotation_axes[joint]:
-            pieces[joint] = joint_pieces(motion, joint, given=given, touched=touched[:, joint], size=SEGMENT)
-            columns += skeleton.columns(joint, "rotation")
+    pieces = touched_pieces(motion, touched, given=clip.text.values_between, size=SEGMENT)
+    columns = [column for joint in pieces for column in skeleton.columns(joint, "rotation")]
     for p, joint in enumerate(skeleton.translated.tolist()):
         if moved is not None and moved[:, p].any():
             columns += skeleton.columns(joint, "position")

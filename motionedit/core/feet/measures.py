@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core import rotations as rot
+from motionedit.core.body.contacts import frames_of
 from motionedit.core.units import STANDARD_LEG
 from motionedit.dataclass import dataclass
 
@@ -74,19 +76,21 @@ def foot_measures(
     places = tracks * (STANDARD_LEG / anatomy.leg_length)
     heights = places @ up
     level = places - heights[..., None] * up
-    speeds = np.linalg.norm(np.diff(level, axis=0), axis=-1) / frame_time
+    speeds = rot.length(np.diff(level, axis=0)) / frame_time
     toes = [p for p, point in enumerate(points) if point.part == "toe"] or list(range(len(points)))
     near = (heights[first:-1, toes] < _NEAR_FLOOR) & (heights[first + 1 :, toes] < _NEAR_FLOOR)
     skating = speeds[first:, toes][near]
-    slides, drifts, highest = [], [0.0], [0.0]
-    for plant in plants:
-        span = slice(plant.start, plant.stop + 1)
-        mean = places[span, plant.point].mean(axis=0)
-        drifts.append(float(np.linalg.norm(places[span, plant.point] - mean, axis=-1).max()))
-        if plant.point in toes:
-            slides.append(speeds[plant.start : plant.stop, plant.point] > _SLIDES)
-            highest.append(float(heights[span, plant.point].mean()))
-    sliding = np.concatenate(slides) if slides else np.zeros(0)
+    sliding, drift, highest = np.zeros(0), 0.0, 0.0
+    down = frames_of(plants)
+    if down is not None:
+        at = down.of(places)
+        drift = float(rot.length(at - down.spread(down.means(at))).max())
+        of_toes = np.isin([plant.point for plant in plants], toes)
+        highest = float(down.means(down.of(heights))[of_toes].max(initial=0.0))
+        # From each frame of a plant to the next: not from its last.
+        steps = down.spread(of_toes)
+        steps[down.starts + down.counts - 1] = False
+        sliding = speeds[down.frames[steps], down.points[steps]] > _SLIDES
     depth = -heights[first:].min(axis=1)
     return FootMeasures(
         skate_mean=float(skating.mean()) if len(skating) else 0.0,
@@ -94,6 +98,6 @@ def foot_measures(
         sliding_share=float(sliding.mean()) if len(sliding) else 0.0,
         penetration_share=float((depth > _UNDER).mean()),
         penetration_max=max(float(depth.max()), 0.0),
-        drift_max=max(drifts),
-        floating_max=max(highest),
+        drift_max=drift,
+        floating_max=highest,
     )

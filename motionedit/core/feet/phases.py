@@ -55,6 +55,8 @@ def _held(plants: Sequence[Plant], path: FootPath, shortest: int, *, hip: FloatA
         stop = plant.stop
         while plant.part == "heel" and stop >= plant.start and not heel[stop]:
             stop -= 1
-        if stop == plant.stop or (stop - plant.start >= shortest and stance.toe[plant.start : stop + 1].any()):
+        if stop == plant.stop:
+            found.append(plant)
+        elif stop - plant.start >= shortest and stance.toe[plant.start : stop + 1].any():
             found.append(replace(plant, stop=stop))
     return found

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motionedit.core.arrays import median
+from motionedit.core import rotations as rot
+from motionedit.core.body.contacts import frames_of
 from motionedit.core.units import STANDARD_LEG
 
 if TYPE_CHECKING:
@@ -23,6 +24,7 @@ _FASTER = 0.12
 # m: nor farther above the plant's own median height.
 _ABOVE = 0.006
 _HALF = 0.02  # s: speed is measured over twice that
+_FEWEST = 3  # frames: a shorter plant has no ends
 _SHORTEST = 0.05  # s: what is left of a shorter one is the plant as it was
 
 
@@ -36,19 +38,26 @@ def settled(
     plants, tracks
         As `plants_of`, shape (F, P, 3), and its plants.
     """
-    metre = anatomy.leg_length / STANDARD_LEG
-    return [_cut(plant, tracks[plant.start : plant.stop + 1, plant.point] / metre, up, frame_time) for plant in plants]
-
-
-def _cut(plant: Plant, places: FloatArray, up: FloatArray, frame_time: float) -> Plant:
-    if len(places) < 3:
-        return plant
-    half = max(1, round(_HALF / frame_time))
-    at = np.arange(len(places))
-    before, after = np.maximum(at - half, 0), np.minimum(at + half, len(places) - 1)
-    speed = np.linalg.norm(places[after] - places[before], axis=1) / ((after - before) * frame_time)
-    height = places @ up
-    calm = np.flatnonzero((speed <= median(speed) + _FASTER) & (np.abs(height - median(height)) <= _ABOVE))
-    if not len(calm) or (calm[-1] - calm[0] + 1) * frame_time < _SHORTEST:
-        return plant
-    return replace(plant, start=plant.start + int(calm[0]), stop=plant.start + int(calm[-1]))
+    down = frames_of(plants)
+    if down is None:
+        return []
+    places, half = tracks / (anatomy.leg_length / STANDARD_LEG), max(1, round(_HALF / frame_time))
+    first = down.spread(down.starts)
+    at = np.arange(len(first))
+    before, after = np.maximum(at - half, first), np.minimum(at + half, first + down.spread(down.counts) - 1)
+    stands = down.of(places)
+    # A plant of one frame, which is too short to be cut, has no speed.
+    seconds = np.maximum(after - before, 1) * frame_time
+    speed, height = rot.length(stands[after] - stands[before]) / seconds, stands @ up
+    above = np.abs(height - down.spread(down.medians(height)))
+    calm = np.flatnonzero((speed <= down.spread(down.medians(speed)) + _FASTER) & (above <= _ABOVE))
+    begins = np.searchsorted(calm, down.starts)
+    ends = np.searchsorted(calm, down.starts + down.counts)
+    cut = []
+    for plant, start, begin, end in zip(plants, down.starts.tolist(), begins.tolist(), ends.tolist(), strict=True):
+        found = calm[begin:end].tolist()
+        if plant.frames < _FEWEST or not found or (found[-1] - found[0] + 1) * frame_time < _SHORTEST:
+            cut.append(plant)
+        else:
+            cut.append(replace(plant, start=plant.start + found[0] - start, stop=plant.start + found[-1] - start))
+    return cut

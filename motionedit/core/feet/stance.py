@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -42,7 +43,7 @@ class FootPath:
     turn: FloatArray
     toe: FloatArray
 
-    @property
+    @cached_property
     def toe_place(self) -> FloatArray:
         """The toe in the world, shape (F, 3)."""
         return self.ankle + rot.rotate(self.turn, self.toe)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError, MotionEditError
 from motionedit.jobs.batch.files import atomic_write
+from motionedit.report.record import without_frames
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -100,9 +101,10 @@ class RunOne:
         outcome = self.work(clip, task)
         warnings = (*clip.warnings, *outcome.warnings)
         content = outcome.content
+        # A page beside the clip shows what is told frame by frame, whether or not the report does.
+        record = outcome.record if self.options.report_frames else without_frames(outcome.record)
         if content is None or self.options.dry_run:
-            return Done(replace(outcome, content=None, page=None, motion=None, warnings=warnings))
-        record = outcome.record
+            return Done(Outcome(None, record, outcome.status, warnings, details=outcome.details))
         if not isinstance(content, bytes) and (self.options.verify or task.output is None):
             content = b"".join(content)
         if isinstance(content, bytes) and self.options.verify:

@@ -66,6 +66,8 @@ class RunOptions:
         0 as usual, below it less, above it more; from 2 on an error that is no user's is raised as it is.
     report : Path or None
         The JSON report, a file that is to be neither a clip nor an output.
+    report_frames : bool or None
+        What is told frame by frame stays in the records; None: where there is one clip alone.
     progress : callable
         Given the number of clips, a context manager whose value is called once per finished clip.
     """
@@ -83,6 +85,7 @@ class RunOptions:
     verify: bool = False
     verbosity: int = 0
     report: Path | None = None
+    report_frames: bool | None = None
     progress: Callable[[int], AbstractContextManager[Callable[[], None]]] = no_progress
 
 

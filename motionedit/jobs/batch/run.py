@@ -21,6 +21,7 @@ from motionedit.jobs.batch.files import clean_leftovers
 from motionedit.jobs.batch.one_clip import Done, Outcome, RunOne, RunOwn
 from motionedit.jobs.batch.plan import no_progress
 from motionedit.jobs.batch.pool import results_in_order
+from motionedit.jobs.batch.records import Records
 from motionedit.jobs.batch.verdicts import Verdict
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ class BatchResult:
 
     Attributes
     ----------
-    records : list of dict
+    records : sequence of dict
         Entries of the report's `clips`.
     paths : list of str
         The files written.
@@ -62,7 +63,7 @@ class BatchResult:
         How many outputs --update left alone.
     """
 
-    records: list[dict[str, Any]]
+    records: Sequence[dict[str, Any]]
     paths: list[str]
     warnings: list[str]
     failures: list[MotionEditError]
@@ -84,7 +85,7 @@ def run_batch(
     """Do the same work on every clip but those that are elsewhere; see `run_each`."""
     tasks = [task for task in tasks if not task.elsewhere]
     waiting = [task for task in tasks if not task.current]
-    run_one = RunOne(replace(options, progress=no_progress), work)
+    run_one = RunOne(_for_workers(options, clips=len(tasks)), work)
     return _run(tasks, run_one, [_placed(task, options) for task in waiting], options, verdicts)
 
 
@@ -97,14 +98,14 @@ def run_each(
     by a fault of the spec, the exit code is that of a spec error. A clip that is current stands in the result with what
     `verdicts` know of it; what becomes of the others they are told.
     """
-    run_one = RunOwn(replace(options, progress=no_progress))
+    run_one = RunOwn(_for_workers(options, clips=len(pairs)))
     items = [(_placed(task, options), work) for task, work in pairs if not task.current]
     return _run([task for task, _ in pairs], run_one, items, options, verdicts)
 
 
 def earlier(tasks: Sequence[ClipTask], options: RunOptions) -> BatchResult:
     """Return what earlier runs came to, of tasks that are all current."""
-    return _collect(_with_current(tasks, []), options, total=len(tasks), current=len(tasks))
+    return _collect(_with_current(tasks, []), Records(), options, total=len(tasks), current=len(tasks))
 
 
 def _run(
@@ -120,6 +121,7 @@ def _run(
     waiting = [task for task in tasks if not task.current]
     folders = [task.output.parent for task in waiting if task.output is not None]
     done: list[Done] = []
+    records = Records()
     try:
         if not options.dry_run:
             clean_leftovers(folders)
@@ -129,9 +131,12 @@ def _run(
         with closing(results), options.progress(len(waiting)) as advance:
             for result in results:
                 one = result if isinstance(result, Done) else Done(errors=(result,))
-                if verdicts is not None:
-                    _keep(verdicts, waiting[len(done)], one)
-                done.append(one)
+                task = waiting[len(done)]
+                record = _record(task, one)
+                if verdicts is not None and one.digest is not None and task.output is not None:
+                    verdicts.keep(task.output, one.digest, Verdict(record, one.outcome.warnings))
+                records.append(record)
+                done.append(replace(one, outcome=replace(one.outcome, record={})))
                 advance()
     finally:
         # Workers that were ended in the middle of a file could not clean up themselves.
@@ -142,12 +147,7 @@ def _run(
     pairs = _with_current(tasks, done)
     if options.strict and not options.dry_run:
         _make_stale([task for task, one in pairs if one.outcome.status in MISSED and not one.errors])
-    return _collect(pairs, options, total=len(tasks), current=len(tasks) - len(waiting))
-
-
-def _keep(verdicts: Verdicts, task: ClipTask, done: Done) -> None:
-    if done.digest is not None and task.output is not None:
-        verdicts.keep(task.output, done.digest, Verdict(_record(task, done), done.outcome.warnings))
+    return _collect(pairs, records, options, total=len(tasks), current=len(tasks) - len(waiting))
 
 
 def _with_current(tasks: Sequence[ClipTask], done: Sequence[Done]) -> list[tuple[ClipTask, Done]]:
@@ -218,6 +218,12 @@ def _has_failed(result: Done | MotionEditError) -> bool:
     return not isinstance(result, Done) or bool(result.errors)
 
 
+def _for_workers(options: RunOptions, *, clips: int) -> RunOptions:
+    """Return the options as workers get them: nothing that cannot be pickled, and nothing left to be told by."""
+    frames = clips == 1 if options.report_frames is None else options.report_frames
+    return replace(options, progress=no_progress, report_frames=frames)
+
+
 def _placed(task: ClipTask, options: RunOptions) -> ClipTask:
     """Return the task with paths that hold in a cluster worker's own folder, where the run is on a cluster."""
     if not options.scheduler:
@@ -230,11 +236,13 @@ def _placed(task: ClipTask, options: RunOptions) -> ClipTask:
     )
 
 
-def _collect(pairs: Sequence[tuple[ClipTask, Done]], options: RunOptions, *, total: int, current: int) -> BatchResult:
+def _collect(
+    pairs: Sequence[tuple[ClipTask, Done]], records: Records, options: RunOptions, *, total: int, current: int
+) -> BatchResult:
     made = [(task, one) for task, one in pairs if not one.current]
     failures = [_named(error, task) for task, one in pairs for error in one.errors]
     return BatchResult(
-        records=[_record(task, one) for task, one in pairs],
+        records=_in_order(pairs, records),
         paths=[str(path) for task, one in made if one.written for path in task.outputs],
         warnings=[_about(task, warning, alone=total == 1) for task, one in made for warning in one.outcome.warnings],
         failures=failures,
@@ -244,6 +252,14 @@ def _collect(pairs: Sequence[tuple[ClipTask, Done]], options: RunOptions, *, tot
         contents=[one.outcome.content if isinstance(one.outcome.content, bytes) else None for _, one in made],
         current=current,
     )
+
+
+def _in_order(pairs: Sequence[tuple[ClipTask, Done]], made: Records) -> Records:
+    """Return the entries of all clips: those that this run made, and those of clips that are current among them."""
+    if not any(one.current for _, one in pairs):
+        return made
+    following = iter(made)
+    return Records(_record(task, one) if one.current else next(following) for task, one in pairs)
 
 
 def _record(task: ClipTask, done: Done) -> dict[str, Any]:

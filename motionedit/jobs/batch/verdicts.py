@@ -83,17 +83,20 @@ class Verdicts:
         self._root = place(folder)
         self._path = folder / NAME
         self._key = key
-        self._known: dict[str, dict[str, Any]] | None = None
+        self._known: dict[str, bytes] | None = None
         self._added = 0
 
     def recall(self, output: Path) -> Verdict | None:
         """Return the verdict on an output; None where there is none on this very file, made as it would be made now."""
         if self._known is None:
             self._known = dict(self._lines())
-        said = self._known.get(self._name(output))
-        if said is None or said.get("key") != self._key:
+        line = self._known.get(self._name(output))
+        if line is None:
             return None
         try:
+            said = mapping(json_of(line))
+            if said["key"] != self._key:
+                return None
             if said["sha256"] != hashlib.sha256(read_file(output)).hexdigest():
                 return None
             record = mapping(said["record"])
@@ -126,7 +129,7 @@ class Verdicts:
                 return
             with self._opened():
                 last = sorted(dict(self._lines()).items())
-                atomic_write(self._path, [json.dumps(said).encode() + b"\n" for _, said in last])
+                atomic_write(self._path, [line + b"\n" for _, line in last])
 
     def _name(self, output: Path) -> str:
         return place(output).removeprefix(self._root)
@@ -142,10 +145,10 @@ class Verdicts:
                     yield stream
                     return
 
-    def _lines(self) -> Iterator[tuple[str, dict[str, Any]]]:
+    def _lines(self) -> Iterator[tuple[str, bytes]]:
+        """Yield the outputs that the file tells of, each with its line: as text, which takes the least memory."""
         with contextlib.suppress(OSError):
             for line in read_file(self._path).splitlines():
                 # A line that a killed run began is none.
                 with contextlib.suppress(ValueError, KeyError):
-                    said = mapping(json_of(line))
-                    yield text(said["output"]), said
+                    yield text(mapping(json_of(line))["output"]), line

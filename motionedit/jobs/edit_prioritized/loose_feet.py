@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core import rotations as rot
+from motionedit.core.body.contacts import frames_of
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -60,12 +63,9 @@ def _drift(before: Trace, after: Trace, plants: Sequence[Plant], free: BoolArray
 
     Frames that are not `free`, shape (F,), do not count; None where none does.
     """
-    worst: tuple[float, int] | None = None
-    for plant in plants:
-        span = slice(plant.start, plant.stop + 1)
-        way = np.linalg.norm(after.tracks[span, plant.point] - before.tracks[span, plant.point], axis=-1)
-        way = np.where(free[span], way, -1.0)
-        at = int(np.argmax(way))
-        if way[at] >= 0.0 and (worst is None or way[at] > worst[0]):
-            worst = float(way[at]), plant.start + at
-    return worst
+    down = frames_of(plants)
+    if down is None:
+        return None
+    way = np.where(free[down.frames], rot.length(down.of(after.tracks) - down.of(before.tracks)), -1.0)
+    worst = int(np.argmax(way))
+    return (float(way[worst]), int(down.frames[worst])) if way[worst] >= 0.0 else None

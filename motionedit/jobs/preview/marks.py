@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 _GOAL = "goal"
 # An offset and an end site nearer to each other than this (leg lengths) are one point.
 _SAME_POINT = 1e-4
+_NO_FRAMES = {"error": None, "error_angle": None}
 
 
 @dataclass(eq=False)
@@ -152,7 +153,8 @@ def _mark(
     first, last = int(record["first_frame"]), int(record["last_frame"])
     if not 0 <= first <= last < len(figures[edited].facts.clip.motion):
         raise ValueError("frames")
-    frames, count = record["frames"], last - first + 1
+    # A report of many clips tells nothing frame by frame: the goal has its interval then, but no place and no curves.
+    frames, count = record.get("frames", _NO_FRAMES), last - first + 1
     target = frames.get("target")
     found = [(f, figures[f].point(record, masses)) for f in (edited, before) if f is not None]
     if record.get("effector") is not None and found[0][1] is None:

@@ -11,12 +11,10 @@ from motionedit.core.euler import (
     GIMBAL_BAND,
     angles_near,
     joint_angles,
-    joint_pieces,
     other_solution,
-    piece_angles,
-    runs,
     solve_angles,
 )
+from motionedit.core.euler_pieces import piece_angles, runs, touched_pieces
 from motionedit.core.motion import Motion
 from motionedit.core.skeleton import Skeleton
 
@@ -64,6 +62,17 @@ def test_both_solutions_are_the_rotation(axes, rng):
 def test_a_continuous_track_comes_back_as_it_was(axes, rng):
     track = walk(rng, 2000, 0.15)
     np.testing.assert_allclose(angles_near(rot.from_euler(track, axes), axes, seed=track[0]), track, atol=1e-10)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("axes", [*ORDERS, (1, 2), (0,)])
+@pytest.mark.parametrize("size", [0.05, 0.5, 3.0])
+def test_the_compiled_choice_is_that_of_numpy_to_the_bit(axes, size, rng, monkeypatch):
+    q = rot.from_euler(walk(rng, 400, size, count=len(axes)), axes)
+    seed = rng.uniform(-9.0, 9.0, size=len(axes))
+    compiled = angles_near(q, axes, seed=seed)
+    monkeypatch.setenv("MOTIONEDIT_SOLVER", "numpy")
+    np.testing.assert_array_equal(compiled, angles_near(q, axes, seed=seed))
 
 
 @pytest.mark.parametrize("size", [0.3, 1.5, 10.0])
@@ -159,8 +168,8 @@ def solved(values, q, touched, *, size=10_000):
     """Return the channel values with the touched frames solved anew from rotations q."""
     motion = Motion(SKELETON, q[:, None], np.empty((len(q), 0, 3)), 0.01)
     result = values.copy()
-    pieces = joint_pieces(motion, 0, given=lambda a, b: values[a:b], touched=touched, size=size)
-    for piece in pieces:
+    pieces = touched_pieces(motion, touched[:, None], given=lambda a, b: values[a:b], size=size)
+    for piece in pieces[0]:
         result[piece.start : piece.stop] = piece_angles(motion, 0, piece=piece)
     return result
 

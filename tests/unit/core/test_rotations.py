@@ -118,3 +118,26 @@ def test_the_mean_is_scipys_whatever_the_signs(rng):
     parts = q.reshape(12, 5, 4)
     several = rot.mean_of_products(np.swapaxes(parts, 1, 2) @ parts)
     same_rotation(several, np.stack([rot.mean_of_products(part.T @ part) for part in parts]))
+
+
+LEADING = [((), (7,)), ((7,), ()), ((7,), (7,)), ((5, 3), (5, 3)), ((0,), (0,)), ((1,), (7,)), ((3,), (5, 3)), ((), ())]
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("leading", LEADING)
+@pytest.mark.parametrize(
+    ("work", "widths"), [(rot.multiply, (4, 4)), (rot.rotate, (4, 3)), (rot.cross, (3, 3)), (rot.dot, (3, 3))]
+)
+def test_what_is_compiled_is_that_of_numpy_to_the_bit(work, widths, leading, monkeypatch):
+    rng = np.random.default_rng(3)
+    # Every other one, so that nothing lies in memory as the compiled part has it.
+    a, b = (rng.normal(size=(*shape, 2 * n))[..., ::2] for shape, n in zip(leading, widths, strict=True))
+    compiled = work(a, b)
+    monkeypatch.setenv("MOTIONEDIT_SOLVER", "numpy")
+    np.testing.assert_array_equal(compiled, work(a, b), strict=True)
+
+
+def test_dots_and_lengths_are_sums_and_norms_to_the_bit():
+    a, b = np.random.default_rng(5).normal(size=(2, 500, 3))
+    np.testing.assert_array_equal(rot.dot(a, b), np.sum(a * b, axis=-1))
+    np.testing.assert_array_equal(rot.length(a), np.linalg.norm(a, axis=-1))

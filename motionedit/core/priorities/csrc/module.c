@@ -1,6 +1,6 @@
 /* The Python module `_compiled`: buffers in, work without the interpreter's lock, results in buffers that came in.
 
-   compiled_solver.py lays out the buffers of `solve`, core/kinematics.py and continuity.py those of the others; sizes are
+   compiled_solver.py lays out the buffers of `solve`, core/kinematics.py, rotations.py, euler.py and continuity.py those of the others; sizes are
    checked here, so that a slip there is an error and not a crash. */
 
 #define PY_SSIZE_T_CLEAN
@@ -8,6 +8,7 @@
 #include <Python.h>
 
 #include "../../bvh/csrc/text.h"
+#include "arrays.h"
 #include "layered.h"
 
 #include <math.h>
@@ -261,6 +262,86 @@ static PyObject *smooth(PyObject *self, PyObject *arguments)
     Py_RETURN_NONE;
 }
 
+/* Whether a buffer has one item of `width` numbers, for which the step from item to item is 0, or one for each of `count`. */
+static int has_items(const Py_buffer *buffer, int64_t count, int64_t width, int64_t *step, const char *name)
+{
+    *step = buffer->len == width * (Py_ssize_t)sizeof(double) ? 0 : width;
+    return *step == 0 || has_size(buffer, count * width, sizeof(double), name);
+}
+
+/* What is done to rows of numbers, two and two, and how many numbers a row of each has, and of the results. */
+typedef struct {
+    void (*work)(const double *, int64_t, const double *, int64_t, int64_t, double *);
+    int64_t one, other, result;
+} OnRows;
+
+static PyObject *on_rows(const OnRows *of, PyObject *arguments)
+{
+    Py_buffer b[3] = {{0}};
+    int64_t one, other;
+    if (!PyArg_ParseTuple(arguments, "y*y*w*", b, b + 1, b + 2))
+        return NULL;
+    const int64_t count = b[2].len / (Py_ssize_t)sizeof(double) / of->result;
+    const int fits = has_size(b + 2, count * of->result, sizeof(double), "results") &&
+                     has_items(b, count, of->one, &one, "the first") &&
+                     has_items(b + 1, count, of->other, &other, "the second");
+    if (fits) {
+        Py_BEGIN_ALLOW_THREADS of->work(b[0].buf, one, b[1].buf, other, count, b[2].buf);
+        Py_END_ALLOW_THREADS
+    }
+    for (int i = 0; i < 3; i++)
+        PyBuffer_Release(b + i);
+    if (!fits)
+        return NULL;
+    Py_RETURN_NONE;
+}
+
+static PyObject *multiply(PyObject *self, PyObject *arguments)
+{
+    (void)self;
+    return on_rows(&(const OnRows){multiply_all, 4, 4, 4}, arguments);
+}
+
+static PyObject *rotate(PyObject *self, PyObject *arguments)
+{
+    (void)self;
+    return on_rows(&(const OnRows){rotate_all, 4, 3, 3}, arguments);
+}
+
+static PyObject *cross_rows(PyObject *self, PyObject *arguments)
+{
+    (void)self;
+    return on_rows(&(const OnRows){cross_all, 3, 3, 3}, arguments);
+}
+
+static PyObject *dot_rows(PyObject *self, PyObject *arguments)
+{
+    (void)self;
+    return on_rows(&(const OnRows){dot_all, 3, 3, 1}, arguments);
+}
+
+static PyObject *make_continuous(PyObject *self, PyObject *arguments)
+{
+    Py_buffer angles = {0}, seed = {0};
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "w*y*", &angles, &seed))
+        return NULL;
+    const int64_t axes = seed.len / (Py_ssize_t)sizeof(double);
+    const int64_t frames = axes > 0 ? angles.len / (Py_ssize_t)sizeof(double) / axes : 0;
+    int fits = has_size(&angles, axes * frames, sizeof(double), "angles");
+    if (fits && (axes < 1 || axes > 3)) {
+        PyErr_SetString(PyExc_ValueError, "a joint turns about one to three axes");
+        fits = 0;
+    }
+    if (fits)
+        nearest_angles(angles.buf, axes, frames, seed.buf);
+    PyBuffer_Release(&angles);
+    PyBuffer_Release(&seed);
+    if (!fits)
+        return NULL;
+    Py_RETURN_NONE;
+}
+
 static int read_double(const char *word, int64_t length, double *value)
 {
     char text[LONGEST_WORD + 1];
@@ -352,6 +433,11 @@ static PyMethodDef methods[] = {
     {"solve_narrow", solve_narrow, METH_VARARGS, "As solve, with what every processor has: the same to the bit."},
     {"forward", forward_frames, METH_VARARGS, "Write the world transforms of all joints at all frames."},
     {"smooth", smooth, METH_VARARGS, "Write rotations plus their low-passed displacement."},
+    {"multiply", multiply, METH_VARARGS, "Write the products of quaternions; one quaternion stands for all."},
+    {"rotate", rotate, METH_VARARGS, "Write vectors turned by quaternions; one of either stands for all."},
+    {"cross", cross_rows, METH_VARARGS, "Write the cross products of vectors; one vector stands for all."},
+    {"dot", dot_rows, METH_VARARGS, "Write the dot products of vectors; one vector stands for all."},
+    {"nearest_angles", make_continuous, METH_VARARGS, "Make a track of Euler angles continuous, in place."},
     {"rows_from_text", rows_from_text, METH_VARARGS,
         "Read rows of numbers; return how many and the most decimals, or None where it is no such text."},
     {"rows_to_text", rows_to_text, METH_VARARGS,

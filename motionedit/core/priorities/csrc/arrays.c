@@ -1,0 +1,77 @@
+/* Whole arrays of rotations. */
+
+#define ONE_LANE
+#include "arrays.h"
+#include "rotations.h"
+
+#include <math.h>
+
+#define PI 3.14159265358979323846
+#define TURN (2.0 * PI)
+
+void multiply_all(const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out)
+{
+    for (int64_t i = 0; i < count; i++)
+        q_multiply(a + i * a_step, b + i * b_step, out + 4 * i);
+}
+
+void rotate_all(const double *q, int64_t q_step, const double *v, int64_t v_step, int64_t count, double *out)
+{
+    for (int64_t i = 0; i < count; i++, q += q_step, v += v_step, out += 3) {
+        double t[3], s[3];
+        cross(q + 1, v, t);
+        t[0] *= 2.0, t[1] *= 2.0, t[2] *= 2.0;
+        cross(q + 1, t, s);
+        for (int axis = 0; axis < 3; axis++)
+            out[axis] = v[axis] + q[0] * t[axis] + s[axis];
+    }
+}
+
+void cross_all(const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out)
+{
+    for (int64_t i = 0; i < count; i++)
+        cross(a + i * a_step, b + i * b_step, out + 3 * i);
+}
+
+void dot_all(const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out)
+{
+    for (int64_t i = 0; i < count; i++)
+        out[i] = dot(a + i * a_step, b + i * b_step);
+}
+
+/* The sum of the steps between two triples of angles, each by whole turns the shortest. */
+static double distance_of(const double *from, const double *to)
+{
+    double sum = 0.0;
+    for (int axis = 0; axis < 3; axis++) {
+        const double step = to[axis] - from[axis];
+        sum += fabs(step - TURN * rint(step * (1.0 / TURN)));
+    }
+    return sum;
+}
+
+void nearest_angles(double *angles, int64_t axes, int64_t frames, const double *seed)
+{
+    double solved[3], taken[3], turns[3] = {0.0};
+    int is_other = 0; /* whether the other solutions are taken */
+    for (int64_t axis = 0; axis < axes; axis++)
+        solved[axis] = taken[axis] = seed[axis];
+    for (int64_t f = 0; f < frames; f++) {
+        double one[3], other[3];
+        for (int64_t axis = 0; axis < axes; axis++)
+            one[axis] = angles[axis * frames + f];
+        if (axes == 3) {
+            other[0] = one[0] + PI, other[1] = PI - one[1], other[2] = one[2] + PI;
+            /* The two solutions are at least a whole turn apart: a step below half a turn needs no other one. */
+            const double distance = distance_of(solved, one);
+            if (distance >= PI && distance_of(solved, other) < distance)
+                is_other = !is_other;
+        }
+        for (int64_t axis = 0; axis < axes; axis++) {
+            const double angle = is_other ? other[axis] : one[axis];
+            turns[axis] += rint((angle - taken[axis]) * (1.0 / TURN));
+            angles[axis * frames + f] = angle - TURN * turns[axis];
+            solved[axis] = one[axis], taken[axis] = angle;
+        }
+    }
+}

@@ -1,0 +1,25 @@
+/* Whole arrays of rotations: what motionedit/core/rotations.py and euler.py do in many calls of numpy, in one loop.
+   The same operations in the same order, so that the results are the same to the bit. */
+
+#ifndef MOTIONEDIT_ARRAYS_H
+#define MOTIONEDIT_ARRAYS_H
+
+#include <stdint.h>
+
+/* out = a b of `count` quaternions; a step of 0 takes the first of a or b for all, of 4 each its own. */
+void multiply_all(const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out);
+
+/* out = v turned by q; a step of 0 takes the first of q or v for all, else of 4 and of 3 each its own. */
+void rotate_all(const double *q, int64_t q_step, const double *v, int64_t v_step, int64_t count, double *out);
+
+/* out = a x b, of 3 numbers each. */
+void cross_all(const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out);
+
+/* out = a . b, one number each. */
+void dot_all(const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out);
+
+/* Make a track of Euler angles, shape (axes, frames), rad, continuous: each frame by whole turns, and with three axes by
+   the other solution of its rotation, nearest the frame before, the first one nearest `seed`, shape (axes,). */
+void nearest_angles(double *angles, int64_t axes, int64_t frames, const double *seed);
+
+#endif
