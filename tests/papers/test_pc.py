@@ -64,8 +64,10 @@ def test_one_constraint_at_one_frame_moves_the_whole_clip_without_a_break(golf):
     moved = np.linalg.norm(head(edit.path) - head(clip), axis=1)
     frame = edit.record["goals"][0]["frame"]
     assert moved[frame] == pytest.approx(10.0, abs=1e-3)
-    assert moved.min() > 0.5
-    before, after = (np.abs(np.diff(joint_positions(path), 3, axis=0)).max() for path in (clip, edit.path))
+    bodies = [joint_positions(path) for path in (clip, edit.path)]
+    # One point may cross its own old path; the body as a whole is somewhere else at every frame.
+    assert np.linalg.norm(bodies[1] - bodies[0], axis=-1).max(axis=1).min() > 0.5
+    before, after = (np.abs(np.diff(body, 3, axis=0)).max() for body in bodies)
     assert after < 1.5 * before
 
 
