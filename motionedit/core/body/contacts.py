@@ -191,8 +191,10 @@ def _rolling_minimum(values: FloatArray, width: int) -> FloatArray:
 
 def _runs(there: BoolArray) -> list[tuple[int, int]]:
     """Return (first, last) of the runs of True, shape (F,)."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], there.astype(np.int8), [0]))))
-    return [(int(a), int(b) - 1) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+    edges = (1 + np.nonzero(there[1:] != there[:-1])[0]).tolist()
+    begin, end = ([0] if there[0] else []), ([len(there)] if there[-1] else [])
+    edges = [*begin, *edges, *end]
+    return [(a, b - 1) for a, b in zip(edges[::2], edges[1::2], strict=True)]
 
 
 def _closed(runs: Sequence[tuple[int, int]], places: FloatArray, gap: int) -> list[tuple[int, int]]:
