@@ -48,8 +48,11 @@ def chosen_solver(
 
 
 def _believed(share: float) -> float:
-    """Return the correlation of a motion with what the database makes of it, sqrt(1 - its left-out share)."""
-    return math.sqrt(max(1.0 - share / _OF_LEFT_OUT, 0.0))
+    """Return how much of what components say far from a goal is believed: 1 - r^2, r the left-out share.
+
+    r of a motion is not what the database says; at both ends of a correlation, the goal's and the far one, r^2 is.
+    """
+    return 1.0 - min(share / _OF_LEFT_OUT, 1.0) ** 2
 
 
 def residual_share(spec: EditPcSpec, model: MotionModel) -> float:
