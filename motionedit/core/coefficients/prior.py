@@ -33,7 +33,7 @@ FADE = 0.15
 _ALONE, _LEAST_VARIANCE = 0.5, 1e-12
 # Metres at leg length 0.85 m: a point of a planted foot that is so far off for twice `FADE` counts as one standard
 # deviation.
-FOOT_DEVIATION = 0.045
+FOOT_DEVIATION = 0.06
 # Beside 1 on the diagonal of K: frames next to each other are nearly one.
 _JITTER = 1e-9
 
