@@ -11,8 +11,8 @@ from benchmarks.clock import Row, best_of, duration
 from data.generator.golf import make_swing
 from data.generator.players import random_swings
 from motionedit.core.bvh import new_bytes, read_clip
-from motionedit.jobs import fit_pca
 from motionedit.jobs.batch.plan import RunOptions
+from motionedit.jobs.fit_pca import job as fit_pca
 from motionedit.jobs.normalize import job as normalize
 from motionedit.spec.load import load_spec
 

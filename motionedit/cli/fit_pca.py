@@ -19,7 +19,7 @@ from motionedit.cli.progress import progress_on_terminal
 from motionedit.cli.verbosity import verbosity_of, verbosity_options
 
 if TYPE_CHECKING:
-    from motionedit.jobs.fit_pca import FitReport
+    from motionedit.jobs.fit_pca.report import FitReport
 
 
 @click.command(
@@ -57,9 +57,9 @@ def command(
     if overrides and spec_path is None:
         raise click.UsageError("--set overrides a key of a spec: give -s too")
     from motionedit.cli.finish import write_report
-    from motionedit.jobs import fit_pca
     from motionedit.jobs.batch.outputs import refuse_existing
     from motionedit.jobs.batch.plan import RunOptions
+    from motionedit.jobs.fit_pca import job
     from motionedit.report.record import report_bytes
     from motionedit.spec.load import load_spec
 
@@ -73,7 +73,7 @@ def command(
         verbosity=verbosity_of(ctx),
         progress=progress_on_terminal,
     )
-    fit = fit_pca.run(folder, Path(output), loaded, options)
+    fit = job.run(folder, Path(output), loaded, options)
     if options.verbosity >= 0:
         _show(fit)
     if str(report) != "-":

@@ -22,6 +22,7 @@ IDENTITY.setflags(write=False)
 
 # Below this angle (rad) sin(x)/x and its kin are taken from their series, exact to double precision there.
 _SMALL_ANGLE = 1e-4
+_STRAIGHT_ARC = 1e-8
 
 
 def multiply(a: FloatArray, b: FloatArray) -> FloatArray:
@@ -199,8 +200,15 @@ def from_matrix(R: FloatArray) -> FloatArray:
 
 def slerp(a: FloatArray, b: FloatArray, t: FloatArray) -> FloatArray:
     """Return the rotation at fraction t of the shorter arc from a to b, shape (..., 4); t has shape (...)."""
-    step = log(multiply(conjugate(a), b))
-    return multiply(a, exp(t[..., None] * step))
+    cosine = np.einsum("...i,...i->...", a, b)
+    angle = np.arccos(np.minimum(np.abs(cosine), 1.0))
+    # Where sin(x) is x to the last bit, a line will do.
+    straight = angle < _STRAIGHT_ARC
+    sine = np.where(straight, 1.0, np.sin(angle))
+    first = np.where(straight, 1.0 - t, np.sin((1.0 - t) * angle) / sine)
+    second = np.copysign(np.where(straight, t, np.sin(t * angle) / sine), cosine)
+    between: FloatArray = first[..., None] * a + second[..., None] * b
+    return between
 
 
 def mean_of_products(products: FloatArray) -> FloatArray:

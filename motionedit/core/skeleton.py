@@ -74,7 +74,7 @@ class Skeleton:
     def __len__(self) -> int:
         return len(self.names)
 
-    @property
+    @cached_property
     def channel_count(self) -> int:
         """Number of values in a row of the file."""
         return sum(len(names) for names in self.channels)

@@ -34,6 +34,8 @@ def match_joints(reference: Skeleton, other: Skeleton, *, height: float, label: 
     ClipError
         If names, parents or offsets differ; it says which.
     """
+    if other is reference:
+        return np.arange(len(reference))
     missing = [name for name in reference.names if name not in other.names]
     extra = [name for name in other.names if name not in reference.names]
     if missing or extra or len(reference) != len(other):

@@ -7,6 +7,7 @@ from pathlib import Path
 from motionedit.core.pca.model import MotionModel
 from motionedit.core.pca.model_file import read_model
 from motionedit.jobs.edit_pc import job
+from motionedit.jobs.edit_pc.model_events import events_of_model
 from motionedit.library.clips import AnyClip, clip_task
 from motionedit.library.edited import Edited, edited
 from motionedit.library.file_errors import file_errors
@@ -68,7 +69,7 @@ def edit_pc(
     loaded = load_spec(spec_of(spec), "edit-pc", events=events_of(events))
     before, task = clip_task(clip, lenient=options.lenient)
     full, label, files = _model(model)
-    known = loaded.known_events | {name for name, _ in full.timeline.events}
+    known = loaded.known_events.union(events_of_model(full))
     refuse_unknown_events(events, known, where="the spec or the model")
     return edited(before, task, job.edit(loaded, [task], model=full, label=label, options=options), loaded, files)
 

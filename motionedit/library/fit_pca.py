@@ -10,8 +10,9 @@ from motionedit.core.pca.model import MotionModel
 from motionedit.core.pca.model_file import model_bytes
 from motionedit.dataclass import dataclass
 from motionedit.errors import UsageError
-from motionedit.jobs import fit_pca as job
 from motionedit.jobs.batch.plan import ClipTask
+from motionedit.jobs.fit_pca import job
+from motionedit.jobs.fit_pca.database import Database, database_in
 from motionedit.jobs.normalize.normalization_file import NAME
 from motionedit.library.file_errors import file_errors
 from motionedit.library.mean_clip import mean_clip
@@ -106,12 +107,12 @@ def fit_pca(normalized: Normalized | AnyPath, spec: AnySpec | None = None, *, jo
     return Fitted(made.model, report, tuple(made.report.warnings), inputs_of(database.tasks, (*read, *files)))
 
 
-def _database(normalized: Normalized | AnyPath) -> tuple[job.Database, tuple[Path, ...]]:
+def _database(normalized: Normalized | AnyPath) -> tuple[Database, tuple[Path, ...]]:
     """Return the clips to learn from, and the files that are read beside them."""
     if isinstance(normalized, Normalized):
         meant = [clip.with_motion(clip.motion) for clip in normalized.clips]
         tasks = [ClipTask(None, clip.label, None, clip.label, clip=clip) for clip in meant]
-        return job.Database(normalized.normalization, tasks, _IN_MEMORY, _IN_MEMORY), normalized.inputs
+        return Database(normalized.normalization, tasks, _IN_MEMORY, _IN_MEMORY), normalized.inputs
     folder = path_of(normalized, wanted="what normalize returned, or its folder")
-    found = job.database_in(folder)
+    found = database_in(folder)
     return found, (folder / NAME,)

@@ -10,7 +10,7 @@ from motionedit.core.bvh import parse_clip, read_clip, resampled_bytes
 from motionedit.core.motion import Motion
 from motionedit.core.pca import streaming, vectors
 from motionedit.core.pca.model_file import read_model
-from motionedit.jobs import fit_pca
+from motionedit.jobs.fit_pca import job as fit_pca
 from studies.lab import effector_path
 
 

@@ -66,7 +66,7 @@ def test_smashes_cut_at_differing_lengths_from_one_take_make_a_database(lab):
         assert edit.record["iterations"] <= 12
 
 
-def test_a_real_serve_is_edited_sideways_and_ten_centimetres_up_are_out_of_its_data(lab):
+def test_a_real_serve_is_edited_sideways_and_ten_centimetres_up_are_said_to_be_far_from_its_data(lab):
     clips = sorted((FOLDER / "strokes" / "serve_jsgiraldo").glob("*.bvh"))
     hits = {clip.stem: 140 for clip in clips}
     for direction, edit in edits_left_out(lab, clips, hits, clips[2], DIRECTIONS):
@@ -74,7 +74,9 @@ def test_a_real_serve_is_edited_sideways_and_ten_centimetres_up_are_out_of_its_d
             assert miss(clips[2], edit, direction) < 0.01
             assert edit.record["iterations"] <= 20
         elif direction[1] > 0.0:
-            assert edit.record["status"] == "unreachable"
+            # The arm is stretched: the body has to rise, which no serve of the database does so far.
+            assert edit.record["status"] in {"far", "unreachable"}
+            assert edit.record["change"]["norm"] > 0.9 * edit.record["change"]["bound"]
 
 
 def test_a_real_golf_swings_hit_is_found(tmp_path):

@@ -55,7 +55,7 @@ class Frame:
 def reference_axes(up: FloatArray) -> FloatArray:
     """Return the rows left, up, forward of heading 0: left is +x (+y where x is up), forward is left x up."""
     left = np.array([0.0, 1.0, 0.0] if abs(up[0]) > 0.5 else [1.0, 0.0, 0.0])
-    return np.stack((left, up, np.cross(left, up)))
+    return np.stack((left, up, rot.cross(left, up)))
 
 
 def axis_vector(name: str) -> FloatArray:
@@ -85,7 +85,7 @@ def heading_frame(poses: WorldPoses, anatomy: Anatomy, *, up: FloatArray, frame:
         if np.linalg.norm(level) > _LEVEL_SHARE * np.linalg.norm(across):
             left = level / np.linalg.norm(level)
             break
-    axes = np.stack((left, up, np.cross(left, up)))
+    axes = np.stack((left, up, rot.cross(left, up)))
     origin = places[travel] - (places[travel] @ up) * up
     return Frame(frozen(np.array(up)), frozen(axes), frozen(origin))
 
@@ -106,7 +106,7 @@ def stance_frame(poses: WorldPoses, anatomy: Anatomy, *, up: FloatArray, frame: 
         return None
     left = level / length
     middle = 0.5 * (left_ankle + right_ankle)
-    axes = np.stack((left, up, np.cross(left, up)))
+    axes = np.stack((left, up, rot.cross(left, up)))
     return Frame(frozen(np.array(up)), frozen(axes), frozen(middle - (middle @ up) * up))
 
 

@@ -15,11 +15,14 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from motionedit.core.arrays import frozen
+from motionedit.core.coefficients.about_goals import components_about
+from motionedit.core.coefficients.algorithm_1 import solve_damped
 from motionedit.core.coefficients.goal_chains import columns_behind, columns_of, goal_of
 from motionedit.core.coefficients.likeliest import likeliest_change
+from motionedit.core.coefficients.methods import GaussNewton, Likeliest
 from motionedit.core.coefficients.prior import change_prior, interpolated
 from motionedit.core.coefficients.projection import Projection, with_rows
-from motionedit.core.coefficients.solver import CoefficientSolution, solve_damped, solve_goals
+from motionedit.core.coefficients.solver import CoefficientSolution, solve_goals
 from motionedit.core.timeline.interpolation import low_pass, monotone_cubic, natural_spline
 from motionedit.dataclass import dataclass
 
@@ -28,7 +31,7 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.coefficients.goal_chains import GoalRequest
-    from motionedit.core.coefficients.planted_feet import PlantedFoot
+    from motionedit.core.coefficients.methods import Damped
     from motionedit.core.motion import Motion
     from motionedit.core.pca.model import MotionModel
 
@@ -44,45 +47,6 @@ MOST_UNKNOWNS = 1500
 
 # Radians or metres: a displacement below this is rounding, and leaves its joint untouched.
 UNTOUCHED = 1e-10
-
-
-@dataclass(frozen=True, eq=False)
-class Likeliest:
-    """The default solver: the likeliest change under a prior in which components and a fading residual share.
-
-    Attributes
-    ----------
-    share : float
-        g, the share of a change's variance that may leave the components.
-    bound : float or None
-        Largest norm of the change, in the database's standard deviations.
-    feet : tuple of PlantedFoot
-        Points that stand, and are rather not moved.
-    still : tuple of int
-        Joints that the residual leaves alone.
-    """
-
-    share: float
-    bound: float | None
-    feet: tuple[PlantedFoot, ...] = ()
-    still: tuple[int, ...] = ()
-
-
-@dataclass(frozen=True)
-class GaussNewton:
-    """Components alone; `bound` is the largest Mahalanobis norm allowed, None for no bound."""
-
-    bound: float | None
-
-
-@dataclass(frozen=True)
-class Damped:
-    """[PC]'s Algorithm 1; `unit` is metres (leg length 0.85 m) of the unit of damping and tolerance."""
-
-    damping: float
-    tolerance: float
-    max_iterations: int | None
-    unit: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,6 +137,14 @@ def edit_by_coefficients(
         if together * model.space.size <= MOST_UNKNOWNS:
             columns = np.arange(model.space.size)
         columns = columns[~np.isin(columns, columns_of(projection, solver.still))]
+        if frames:
+            model = components_about(
+                model,
+                projection.places[frames],
+                believed=solver.believed,
+                heading=solver.heading,
+                position=solver.position,
+            )
     given = _Given(projection, model, rows, smoothing, columns, solver)
     changes = tuple(_solve(given, requests, group) for group in groups) or (_solve(given, requests, places),)
     displacement = _displacement(given, changes)

@@ -11,6 +11,7 @@ import numpy as np
 
 from motionedit.core.coefficients.goals import stacked_errors
 from motionedit.core.coefficients.solver import (
+    BOUND_TOLERANCE,
     ERROR_STOP,
     MOST_ITERATIONS,
     PENALISED_STALL,
@@ -140,7 +141,21 @@ def _layer(
     bounded, found = bounded_solution(
         nearest, own, norm=lambda y: float(np.linalg.norm(y)), size=len(y), bound=bound or np.inf, start=y
     )
-    return found, bounded.reason, iterations + bounded.iterations
+    return _filled(own, above, found, bound=bound or np.inf), bounded.reason, iterations + bounded.iterations
+
+
+def _filled(
+    own: Evaluate, above: Sequence[tuple[Sequence[Goal], FloatArray]], y: FloatArray, *, bound: float
+) -> FloatArray:
+    """Return y as long as its bound lets it be, where that is nearer and no layer above is in the way.
+
+    As the penalty falls |y| may jump over the bound from well below it.
+    """
+    length = float(np.linalg.norm(y))
+    if above or length == 0.0:
+        return y
+    longer = y * ((1.0 - 0.5 * BOUND_TOLERANCE) * bound / length)
+    return longer if float(np.linalg.norm(own(longer)[0])) < float(np.linalg.norm(own(y)[0])) else y
 
 
 def _penalised(own: Evaluate, y: FloatArray, *, penalty: float) -> tuple[FloatArray, float]:

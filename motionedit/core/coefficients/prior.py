@@ -28,15 +28,12 @@ if TYPE_CHECKING:
 
 # Seconds: left-out residuals of six sets of real strokes correlate in time like a Gaussian of this width.
 FADE = 0.15
-# Of the standard deviation of the travel, the share that may come and go so fast: where a body stands differs between
-# takes far more than it can step aside and back meanwhile.
-_TRAVEL_SHARE = 0.5
 # The share of a pose's variance that each column has by itself, beside how the database's poses vary together; and what
 # a column that does not vary at all has, so that the root of the whole exists.
 _ALONE, _LEAST_VARIANCE = 0.5, 1e-12
 # Metres at leg length 0.85 m: a point of a planted foot that is so far off for twice `FADE` counts as one standard
 # deviation.
-FOOT_DEVIATION = 0.08
+FOOT_DEVIATION = 0.06
 # Beside 1 on the diagonal of K: frames next to each other are nearly one.
 _JITTER = 1e-9
 
@@ -164,7 +161,7 @@ def _pose_factor(model: MotionModel, places: FloatArray, columns: IntArray) -> F
     frames = np.arange(model.timeline.frames, dtype=np.float64)
     apart = np.abs(frames[:, None] - places).min(axis=1) / model.timeline.frame_rate
     near = np.flatnonzero(apart <= max(FADE, float(apart.min())))
-    rows = model.component_rows[:, near][:, :, columns] * np.where(columns < 3, _TRAVEL_SHARE, 1.0)
+    rows = model.component_rows[:, near][:, :, columns]
     rows = (rows * np.sqrt(model.components.explained_variance / len(near))[:, None, None]).reshape(-1, len(columns))
     together = rows.T @ rows
     alone = np.diag(together)

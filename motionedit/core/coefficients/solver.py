@@ -1,6 +1,6 @@
-"""Solvers for goals in coefficient space: damped Gauss-Newton, a plausibility bound, and [PC]'s Algorithm 1.
+"""Solvers for goals in coefficient space: damped Gauss-Newton, and a plausibility bound.
 
-All solve for the change beta = alpha - alpha_0 and home to beta = 0, so that what no goal asks for stays.
+Both solve for the change beta = alpha - alpha_0 and home to beta = 0, so that what no goal asks for stays.
 """
 
 from __future__ import annotations
@@ -39,10 +39,6 @@ STALL = 1e-10
 BOUND_TOLERANCE = 1e-4
 # With a penalty, steps below this part of the solution move its norm by less than the bound's tolerance.
 PENALISED_STALL = 1e-6
-
-# Algorithm 1 without a cap ends where this many iterations in a row brought no nearer error than this share.
-_PATIENCE = 1000
-_PROGRESS = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -263,46 +259,3 @@ def penalised(
     inner = Progress([0.0])
     y, error, _ = _levenberg_marquardt(stacked, y, inner, stall=PENALISED_STALL)
     return y, float(np.linalg.norm(error[: -len(offset)]))
-
-
-def solve_damped(
-    goals: Sequence[Goal],
-    *,
-    size: int,
-    damping: float,
-    tolerance: float,
-    max_iterations: int | None,
-    unit: float,
-) -> CoefficientSolution:
-    """Run [PC]'s Algorithm 1: alpha += J^T (J J^T + xi^2 I)^-1 e, no homing, no bound.
-
-    Parameters
-    ----------
-    damping : float
-        xi, in `unit`; iterations grow as its square.
-    tolerance : float
-        Stop at |e| below this, in `unit`.
-    max_iterations : int or None
-        None lifts the cap; the run still ends where a thousand iterations bring it no nearer.
-    unit : float
-        Metres at leg length 0.85 m of the unit that the paper's numbers are in.
-    """
-    change = np.zeros(size)
-    error, jacobian = stacked_errors(goals, change)
-    progress = Progress([float(np.linalg.norm(error))])
-    floor = (damping * unit) ** 2 * np.eye(len(error))
-    best, best_at = progress.history[0], 0
-    while max_iterations is None or progress.iterations < max_iterations:
-        if progress.history[-1] < tolerance * unit:
-            progress.reason = "converged"
-            break
-        if progress.iterations - best_at > _PATIENCE:
-            progress.reason = "stalled"
-            break
-        change = change + jacobian.T @ np.linalg.lstsq(jacobian @ jacobian.T + floor, error, rcond=None)[0]
-        error, jacobian = stacked_errors(goals, change)
-        progress.history.append(float(np.linalg.norm(error)))
-        if progress.history[-1] < (1.0 - _PROGRESS) * best:
-            best, best_at = progress.history[-1], progress.iterations
-    solution = progress.finished()
-    return CoefficientSolution(change, solution.iterations, solution.history, solution.reason)

@@ -63,11 +63,16 @@ def _saturated(x: FloatArray, limit: FloatArray, width: FloatArray) -> FloatArra
 
 
 def _axes(t: FloatArray, s: FloatArray, thigh: FloatArray) -> FloatArray:
-    """Return the unit axes about which the knee bends more, shape (F, 3)."""
+    """Return the unit axes about which the knee bends more, shape (F, 3).
+
+    Where a capture has a knee a few degrees past straight it bends forward all the same: turned about the axis of such
+    a frame, it would bend backward for the while, and kick.
+    """
     normal = np.cross(t, s) / (_length(t) * _length(s))[:, None]
     local = rot.rotate(rot.conjugate(thigh), normal).sum(axis=0)
     steady = rot.rotate(thigh, np.broadcast_to(local / max(float(np.linalg.norm(local)), 1e-12), t.shape))
-    n = normal + _STRAIGHT * steady
+    along = _dot(normal, steady)
+    n = normal + (np.abs(along) - along + _STRAIGHT)[:, None] * steady
     return n / np.maximum(_length(n), 1e-12)[:, None]
 
 

@@ -11,7 +11,8 @@ from motionedit.core.body.bends import find_bends
 from motionedit.core.body.ground import axis_name
 from motionedit.core.body.steps import change_steps
 from motionedit.core.bvh import edited_bytes, resampled_bytes, unedited_bytes
-from motionedit.core.coefficients.edit import Likeliest, edit_by_coefficients
+from motionedit.core.coefficients.edit import edit_by_coefficients
+from motionedit.core.coefficients.methods import Likeliest
 from motionedit.core.coefficients.planted_feet import planted_feet
 from motionedit.core.coefficients.projection import of_another, project, project_resampled
 from motionedit.core.pca.fit import components_for

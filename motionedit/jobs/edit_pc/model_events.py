@@ -23,12 +23,17 @@ if TYPE_CHECKING:
 
 def refuse_unknown_events(loaded: LoadedSpec[EditPcSpec], model: MotionModel) -> None:
     """Raise a SpecError where a goal's time names an event that neither the spec nor the model has."""
-    known = sorted({*loaded.model.events, *(name for name, _ in model.timeline.events)})
+    known = sorted({*loaded.model.events, *events_of_model(model)})
     for i, goal in enumerate(loaded.model.goals):
         if goal.at.event is not None and goal.at.event not in known:
             listed = ", ".join(f"'{name}'" for name in known) or "none"
             message = f"no event '{goal.at.event}' in this spec or in the model; there are: {listed}"
             raise loaded.error(("goals", i, "at"), message)
+
+
+def events_of_model(model: MotionModel) -> list[str]:
+    """Return the events that a model needs in a clip: those of its timeline, and those that its clips were cut at."""
+    return [*dict(model.timeline.events), *crop_events(model.rules.get("crop", {}))]
 
 
 def events_for_model(
@@ -56,7 +61,7 @@ def events_for_model(
     place = resolve.Place(loaded, ("events",), task.label)
     rules = dict(loaded.model.events)
     database = _database_events(model, facts, task)
-    needed = [*dict(model.timeline.events), *crop_events(model.rules.get("crop", {}))]
+    needed = events_of_model(model)
     for name in needed:
         given = name in known or (name in rules and rules[name].detect is not None)
         if not given and name in database:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from motionedit.core.coefficients.edit import Damped, GaussNewton, Likeliest
+from motionedit.core.coefficients.methods import Damped, GaussNewton, Likeliest
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 # Half of what the database does not explain of its own clips may leave the components, within these limits: a database
 # that explains nearly all still needs room for its noise, and one that explains nothing still knows a style.
-_LEAST_SHARE, _MOST_SHARE = 0.05, 0.6
+_OF_LEFT_OUT, _LEAST_SHARE, _MOST_SHARE = 0.5, 0.05, 0.6
 # A model that was made before its left-out error was kept: a share between that of clean sets and that of real strokes.
 _UNKNOWN_SHARE = 0.25
 
@@ -34,7 +34,25 @@ def chosen_solver(
         )
     if spec.solver.method == "gauss-newton":
         return GaussNewton(bound)
-    return Likeliest(residual_share(spec, model), bound, feet)
+    share, align = residual_share(spec, model), model.rules["align"]
+    # Clips that all begin on both feet, side by side, are laid over each other by these, and stand there.
+    astray = align["by"] == "hips"
+    return Likeliest(
+        share,
+        bound,
+        feet,
+        believed=_believed(share),
+        heading=astray and align["heading"],
+        position=astray and align["position"],
+    )
+
+
+def _believed(share: float) -> float:
+    """Return how much of what components say far from a goal is believed: 1 - r^2, r the left-out share.
+
+    r of a motion is not what the database says; at both ends of a correlation, the goal's and the far one, r^2 is.
+    """
+    return 1.0 - min(share / _OF_LEFT_OUT, 1.0) ** 2
 
 
 def residual_share(spec: EditPcSpec, model: MotionModel) -> float:
@@ -44,7 +62,7 @@ def residual_share(spec: EditPcSpec, model: MotionModel) -> float:
     left_out = model.components.left_out
     if left_out is None:
         return _UNKNOWN_SHARE
-    return min(max(0.5 * left_out.share, _LEAST_SHARE), _MOST_SHARE)
+    return min(max(_OF_LEFT_OUT * left_out.share, _LEAST_SHARE), _MOST_SHARE)
 
 
 def plausibility_bound(spec: EditPcSpec, model: MotionModel, coefficients: FloatArray, *, asked: int) -> float | None:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from motionedit.jobs.clip.facts import ClipFacts
 
 # Metres at leg length 0.85 m, and radians: what putting the feet back may move a goal by.
-_SETTLED = 1e-5
+_SETTLED = 5e-6
 _ROUNDS = 8
 
 
@@ -51,7 +51,10 @@ def edit_standing(
     feet = standing_feet(motion, legs, foot_plants(facts.plants), fixed=fixed)
     still = _still(motion, feet)
     # Where a goal is out of reach, what the solver has come to is kept.
-    asked = [_reached(request, kinematics.forward(edit.motion)) for request in requests]
+    reached = kinematics.forward(edit.motion)
+    asked = [
+        request if edit.reasons[i] == "converged" else _reached(request, reached) for i, request in enumerate(requests)
+    ]
     tolerance = _SETTLED * facts.anatomy.leg_length / STANDARD_LEG
     current, touched, moved = edit.motion, edit.touched, edit.moved
     for _ in range(_ROUNDS):

@@ -115,11 +115,15 @@ def _normalization(content: dict[str, Any]) -> Normalization:
     up = text(content["up"])
     if up.removeprefix("-") not in ("x", "y", "z"):
         raise ValueError("no axis")
+    rules = checked_rules(content["rules"], events=placed)
+    # Events that clips are cut at lie at an end of the timeline, not on it.
+    if not rules["events"].keys() >= placed.keys():
+        raise ValueError("an event without a rule")
     return Normalization(
         Timeline(frames, positive(content["frame_rate"]), tuple(placed.items())),
         up,
-        checked_rules(content["rules"], events=placed),
-        tuple(_clip(mapping(each), events=placed) for each in items(content["clips"])),
+        rules,
+        tuple(_clip(mapping(each), events=rules["events"]) for each in items(content["clips"])),
     )
 
 
@@ -128,7 +132,7 @@ def _clip(each: dict[str, Any], *, events: Collection[str]) -> NormalizedClip:
     alignment = mapping(each["alignment"])
     found = {name: number(frame, 0, frames - 1) for name, frame in mapping(each["events"]).items()}
     if found.keys() != set(events):
-        raise ValueError("other events than the timeline")
+        raise ValueError("other events than there are rules of")
     rotation, origin = tuple(map(number, items(alignment["rotation"]))), tuple(map(number, items(alignment["origin"])))
     if (len(rotation), len(origin)) != (4, 3):
         raise ValueError("no rotation, or no origin")

@@ -6,8 +6,9 @@ from strokes import TIMELINE, database, model_of, place, stroke
 
 from motionedit.core import kinematics
 from motionedit.core import rotations as rot
-from motionedit.core.coefficients.edit import GaussNewton, edit_by_coefficients
+from motionedit.core.coefficients.edit import edit_by_coefficients
 from motionedit.core.coefficients.goal_chains import GoalRequest
+from motionedit.core.coefficients.methods import GaussNewton
 from motionedit.core.coefficients.projection import project, project_resampled, with_rows
 from motionedit.core.kinematics import Effector
 from motionedit.core.measure import Measure

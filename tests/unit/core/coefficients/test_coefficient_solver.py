@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from motionedit.core import rotations as rot
+from motionedit.core.coefficients.algorithm_1 import solve_damped
 from motionedit.core.coefficients.chain import CoefficientChain, evaluate
 from motionedit.core.coefficients.goals import Goal
-from motionedit.core.coefficients.solver import BOUND_TOLERANCE, ERROR_STOP, solve_damped, solve_goals, step_metric
+from motionedit.core.coefficients.solver import BOUND_TOLERANCE, ERROR_STOP, solve_goals, step_metric
 from motionedit.core.measure import Measure
 
 

@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 
+from motionedit.core.coefficients import solver
 from motionedit.core.coefficients.chain import CoefficientChain
 from motionedit.core.coefficients.goals import Goal
 from motionedit.core.coefficients.likeliest import likeliest_change
+from motionedit.core.coefficients.penalty_search import PenaltySearch
 
 
 def arm(target, unknowns=6, seed=0, weight=1.0):
@@ -66,3 +68,15 @@ def test_what_is_out_of_reach_is_as_near_as_can_be():
     found = likeliest_change([[arm([2.0, 0.0, 0.0])]], size=6, bound=None)
     assert found.reason != "converged"
     assert error(arm([2.0, 0.0, 0.0]), found.change) == pytest.approx(1.3, abs=1e-3)
+
+
+def test_the_bound_is_used_up_where_the_search_for_the_penalty_stops_short(monkeypatch):
+    # As if |y| jumped: the search ends with what it has, somewhat within the bound.
+    class Short(PenaltySearch):
+        def tried(self, norm, *, within):
+            super().tried(norm, within=within)
+            self.ended |= within and norm > 0.45
+
+    monkeypatch.setattr(solver, "PenaltySearch", Short)
+    found = likeliest_change([[arm([2.0, 0.0, 0.0])]], size=6, bound=0.5)
+    assert np.linalg.norm(found.change) == pytest.approx(0.5, rel=1e-4)

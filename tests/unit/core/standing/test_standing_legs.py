@@ -94,3 +94,22 @@ def test_two_bones_reach_their_target_or_stretch_towards_it():
     far = bent_to(hip, knee, ankle, 3.0 * target, thigh, soft=np.full(40, 1e-3))
     stretched = rot.rotate(far[1], knee + rot.rotate(far[0], ankle - knee))
     assert np.linalg.norm(np.cross(stretched, target), axis=1).max() < 1e-9
+
+
+def test_a_knee_that_a_capture_has_past_straight_for_a_while_bends_forward_all_along():
+    frames = 40
+    # The shank's turn about +x: forward is positive, and frames in the middle are past straight.
+    bend = np.radians(8.0) * np.cos(np.linspace(0.0, 2.0 * np.pi, frames))
+    hip = np.zeros((frames, 3))
+    knee = np.tile([0.0, -0.4, 0.0], (frames, 1))
+    ankle = knee + 0.4 * np.stack((np.zeros(frames), -np.cos(bend), -np.sin(bend)), axis=1)
+    thigh = np.tile(rot.IDENTITY, (frames, 1))
+    target = ankle + np.array([0.0, 0.02, 0.0])
+    bend[:4] = bend[-4:] = np.radians(20.0)  # where the knee's own side is plain
+    ankle = knee + 0.4 * np.stack((np.zeros(frames), -np.cos(bend), -np.sin(bend)), axis=1)
+    shank, whole = bent_to(hip, knee, ankle, target, thigh, soft=np.full(frames, 0.006))
+    place = rot.rotate(whole, knee)
+    assert place[:, 2].min() > 0.0
+    assert np.linalg.norm(np.diff(place[4:-4], axis=0), axis=1).max() < 0.01
+    reached = place + rot.rotate(whole, rot.rotate(shank, ankle - knee))
+    np.testing.assert_allclose(reached, target, atol=1e-3)

@@ -1,0 +1,54 @@
+"""The methods that an edit by coefficients can be solved by, each with its settings."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from motionedit.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from motionedit.core.coefficients.planted_feet import PlantedFoot
+
+
+@dataclass(frozen=True, eq=False)
+class Likeliest:
+    """The default solver: the likeliest change under a prior in which components and a fading residual share.
+
+    Attributes
+    ----------
+    share : float
+        g, the share of a change's variance that may leave the components.
+    bound : float or None
+        Largest norm of the change, in the database's standard deviations.
+    feet : tuple of PlantedFoot
+        Points that stand, and are rather not moved.
+    still : tuple of int
+        Joints that the residual leaves alone.
+    believed, heading, position
+        Of the components, as of `components_about`.
+    """
+
+    share: float
+    bound: float | None
+    feet: tuple[PlantedFoot, ...] = ()
+    still: tuple[int, ...] = ()
+    believed: float = 1.0
+    heading: bool = False
+    position: bool = False
+
+
+@dataclass(frozen=True)
+class GaussNewton:
+    """Components alone; `bound` is the largest Mahalanobis norm allowed, None for no bound."""
+
+    bound: float | None
+
+
+@dataclass(frozen=True)
+class Damped:
+    """[PC]'s Algorithm 1; `unit` is metres (leg length 0.85 m) of the unit of damping and tolerance."""
+
+    damping: float
+    tolerance: float
+    max_iterations: int | None
+    unit: float

@@ -1,0 +1,121 @@
+"""The job behind `motionedit fit-pca`: normalized clips in, a motion PCA model out ([PC] 4.1)."""
+
+from __future__ import annotations
+
+from itertools import chain
+from typing import TYPE_CHECKING
+
+from motionedit.core.body.anatomy import anatomy_of
+from motionedit.core.body.bones import travel_joint
+from motionedit.core.body.ground import axis_vector
+from motionedit.core.pca.database import FitSettings, build_model
+from motionedit.core.pca.fit import AllTheSameError, ComponentCount, TooFewComponentsError
+from motionedit.core.pca.model_file import model_bytes
+from motionedit.core.pca.streaming import MOST_COMPONENTS
+from motionedit.dataclass import dataclass
+from motionedit.errors import ModelError
+from motionedit.jobs.batch.files import clean_leftovers
+from motionedit.jobs.batch.one_clip import write_file
+from motionedit.jobs.batch.outputs import refuse_clashes
+from motionedit.jobs.clip import resolve
+from motionedit.jobs.clip.kept_rules import body_said, kept_body, with_body
+from motionedit.jobs.fit_pca.database import database_in, motions_of
+from motionedit.jobs.fit_pca.report import fit_report
+from motionedit.jobs.normalize.normalization_file import NAME
+from motionedit.spec.fit_pca import FitPcaSpec
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from motionedit.core.body.anatomy import GivenBody
+    from motionedit.core.pca.database import DatabaseMotion
+    from motionedit.core.pca.model import MotionModel
+    from motionedit.core.skeleton import Skeleton
+    from motionedit.errors import MotionEditError
+    from motionedit.jobs.batch.plan import RunOptions
+    from motionedit.jobs.fit_pca.database import Database
+    from motionedit.jobs.fit_pca.report import FitReport
+    from motionedit.spec.load import LoadedSpec
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A model, and what is to be said of it."""
+
+    model: MotionModel
+    report: FitReport
+
+
+def run(folder: Path, output: Path, loaded: LoadedSpec[FitPcaSpec] | None, options: RunOptions) -> FitReport:
+    """Fit a model to the clips that a folder's normalization.json lists, and write it; see `fit`."""
+    database = database_in(folder)
+    sources = [task.source for task in database.tasks]
+    written = [("the model", output), ("the report", options.report)]
+    refuse_clashes(written, [*sources, folder / NAME, *(() if loaded is None else loaded.files)])
+    made = fit(database, loaded, options=options)
+    clean_leftovers([output.parent])
+    write_file(output, model_bytes(made.model))
+    return made.report
+
+
+def fit(database: Database, loaded: LoadedSpec[FitPcaSpec] | None, *, options: RunOptions) -> Fit:
+    """Return a model of normalized clips.
+
+    Raises
+    ------
+    ModelError
+        There is nothing to learn from them.
+    ClipError, MotionEditErrors
+        Clips that cannot be used.
+    SpecError
+        The spec names joints or a number of components that are not there.
+    """
+    spec = FitPcaSpec() if loaded is None else loaded.model
+    normalization, count = database.normalization, len(database.tasks)
+    if count < 2:
+        raise ModelError(f"lists {count} clip; a PCA needs two or more", file=database.list_label)
+    motions = motions_of(database, options)
+    first = next(motions)
+    try:
+        fitted = build_model(
+            chain((first,), motions),
+            count,
+            timeline=normalization.timeline,
+            travel=travel_joint(first.motion),
+            up=axis_vector(normalization.up),
+            leg_length=anatomy_of(first.motion, given=_body(loaded, database, first.motion.skeleton)).leg_length,
+            settings=FitSettings(
+                representation="centred" if spec.rotation == "centred" else "exponential",
+                root_weight=spec.root_weight,
+                excluded=_excluded(loaded, first, database.label),
+                components=ComponentCount(spec.components, spec.explained_variance),
+            ),
+            rules=with_body(normalization.rules, spec.body),
+        )
+    except TooFewComponentsError as error:
+        raise _too_few(loaded, spec, count, error.available) from None
+    except AllTheSameError as error:
+        raise ModelError(f"{error}: there is nothing to learn; give clips that differ", file=database.label) from error
+    return Fit(fitted.model, fit_report(fitted, spec))
+
+
+def _body(loaded: LoadedSpec[FitPcaSpec] | None, database: Database, skeleton: Skeleton) -> GivenBody:
+    """Return what the spec says that joints are, and of what it does not say what the normalization's rules say."""
+    rules, where = database.normalization.rules, {"label": database.list_label, "clip": database.label}
+    if loaded is None:
+        return kept_body(rules, skeleton, **where)
+    return body_said(loaded, rules, skeleton, **where)
+
+
+def _excluded(loaded: LoadedSpec[FitPcaSpec] | None, first: DatabaseMotion, folder: str) -> frozenset[int]:
+    if loaded is None:
+        return frozenset()
+    place = resolve.Place(loaded, ("exclude_joints",), folder)
+    return frozenset(resolve.joints(loaded.model.exclude_joints, first.motion.skeleton, place))
+
+
+def _too_few(loaded: LoadedSpec[FitPcaSpec] | None, spec: FitPcaSpec, clips: int, available: int) -> MotionEditError:
+    message = f"{clips} clips have {available} components, not {spec.components}"
+    if available == MOST_COMPONENTS:
+        message = f"of {clips} clips at most {available} components are kept, not {spec.components}"
+    return ModelError(message) if loaded is None else loaded.error(("components",), message)
