@@ -1,4 +1,4 @@
-"""Feet held, put on a floor and taken along a bent path, over all clips of a folder, measured in the written files.
+"""Feet held, put on a floor, taken along a bent path and a turned one: all clips of a folder, as they are written.
 
 Run: python -m studies.feet FOLDER
 """
@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import motionedit
+from motionedit.core import rotations as rot
 from motionedit.core.body.contacts import sole_tracks
 from motionedit.core.body.quality import jerk_rms
 from motionedit.core.feet.measures import foot_measures
@@ -22,24 +23,41 @@ from motionedit.core.units import STANDARD_LEG
 from motionedit.jobs.clip.facts import ClipFacts, facts_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
+    from motionedit.core.arrays import FloatArray
+
+BENDS = 7  # frames at which a turned path is told
 FEET = {"name": "feet", "type": "footplants", "priority": 10}
 HEADINGS = ("clip", "plants", "drift mm", "drift mm", "slide %", "slide %", "under %", "under %", "jerk x")
 COLUMNS = (*HEADINGS, "body cm", "median", "frames/s")
 
 
 def specs(facts: ClipFacts) -> dict[str, list[dict[str, Any]]]:
-    """Return the constraints of each edit: feet held, on a floor, along a path bent by 20 cm in mid-clip."""
-    root = facts.clip.motion.skeleton.names[facts.travel]
+    """Return the constraints of each edit: feet held, on a floor, on a path bent by 20 cm or turned by 30 degrees."""
     aside = np.zeros(3)
     aside[int(np.argmin(np.abs(facts.up)))] = 0.2 / STANDARD_LEG * facts.anatomy.leg_length
-    way = [{"at": facts.first}, {"at": "50%", "shift": aside.tolist()}, {"at": "100%"}]
+    bent = {facts.first: np.zeros(3), (facts.first + facts.last) // 2: aside, facts.last: np.zeros(3)}
+    way = facts.poses.positions[:, facts.travel]
+    turned = {}
+    for frame, angle in zip(
+        np.linspace(facts.first, facts.last, BENDS), np.radians(np.linspace(0, 30, BENDS)), strict=True
+    ):
+        from_start = way[round(frame)] - way[facts.first]
+        turned[round(frame)] = rot.rotate(rot.exp(angle * facts.up), from_start) - from_start
     return {
         "feet": [FEET],
         "floor": [{**FEET, "height": 0}, {"name": "floor", "type": "floor", "priority": 9}],
-        "path": [{**FEET, "at": "path"}, {"type": "position", "effector": root, "priority": 5, "points": way}],
+        "bent": [{**FEET, "at": "path"}, along(facts, bent)],
+        "turned": [{**FEET, "at": "path"}, along(facts, turned)],
     }
+
+
+def along(facts: ClipFacts, shifts: Mapping[int, FloatArray]) -> dict[str, Any]:
+    """Return the constraint that shifts the root's path at frames."""
+    points = [{"at": frame, "shift": shift.tolist()} for frame, shift in shifts.items()]
+    root = facts.clip.motion.skeleton.names[facts.travel]
+    return {"type": "position", "effector": root, "priority": 5, "points": points}
 
 
 def measured(before: ClipFacts, after: ClipFacts, seconds: float) -> list[float]:
@@ -95,7 +113,7 @@ def main(arguments: Sequence[str]) -> int:
         return 2
     clips = sorted(Path(arguments[0]).rglob("*.bvh"))
     with tempfile.TemporaryDirectory() as folder:
-        for which in ("feet", "floor", "path"):
+        for which in ("feet", "floor", "bent", "turned"):
             print(f"\n{which}\n" + f"{COLUMNS[0]:<30}" + "".join(f"{word:>10}" for word in COLUMNS[1:]))
             found = list(rows(clips, which, Path(folder)))
             for name, plants, values in found:

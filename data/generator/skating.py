@@ -11,7 +11,8 @@ import numpy as np
 
 from motionedit.core.body.anatomy import anatomy_of
 from motionedit.core.body.bends import find_bends
-from motionedit.core.feet.legs import legs_onto
+from motionedit.core.feet.knees import knee_of
+from motionedit.core.feet.legs import LegGoal, legs_onto
 from motionedit.core.kinematics import forward
 
 if TYPE_CHECKING:
@@ -33,5 +34,6 @@ def skating(walk: Motion) -> Motion:
         for axis, waves in zip((0, 2), _WAYS, strict=True):
             for size, rate, turn in waves:
                 places[:, axis] += size * np.sin(2.0 * np.pi * (rate * times + turn + _LATER * number))
-        goals.append((leg, bends[leg.knee], places, poses.rotations[:, leg.ankle]))
+        knee = knee_of(walk.skeleton, poses, leg, bends[leg.knee])
+        goals.append(LegGoal(leg, knee, places, poses.rotations[:, leg.ankle]))
     return legs_onto(walk, poses, goals)

@@ -16,10 +16,8 @@ if TYPE_CHECKING:
 BENDS = 0.02
 # the correction itself so much: it fades to nothing within `BENDS` / _FADES^(1/6), half of it in 0.1 s.
 _FADES = 0.01
-_STIFF = 100.0
 # Seconds from what is known after which it has faded away.
 _FADED = 1.2
-_ORDER = 3  # of the difference: so many known frames in a row part what is before them from what is after
 
 
 def eased(
@@ -28,7 +26,7 @@ def eased(
     frame_time: float,
     *,
     bends: float = BENDS,
-    stiff: FloatArray | None = None,
+    order: int = 3,
 ) -> FloatArray:
     """Return a correction at all frames, shape (F, k), from its values at those that are `known`, shape (F,).
 
@@ -39,29 +37,26 @@ def eased(
     ----------
     bends : float
         tau, seconds.
-    stiff : shape (F,), optional
-        0 to 1: where the correction shall fade at once, weighing `_STIFF` times as much.
+    order : int
+        Of the difference: 2 goes on less far in what it was about.
     """
     found = np.where(known[:, None], values, 0.0)
     frames = np.flatnonzero(known)
     if not len(frames):
         return found
-    reach = max(_ORDER, round(_FADED / frame_time))
-    weight = (bends / frame_time) ** (2 * _ORDER)
-    for start, stop in _stretches(known, reach):
+    reach = max(order, round(_FADED / frame_time))
+    weight = (bends / frame_time) ** (2 * order)
+    for start, stop in _stretches(known, reach, order):
         mask = known[start:stop]
-        if stiff is None or not stiff[start:stop][~mask].any():
-            extension = _extension(mask.tobytes(), weight)
-        else:
-            extension = _extended(mask, weight, _FADES * (1.0 + _STIFF * stiff[start:stop]))
+        extension = _extension(mask.tobytes(), weight, order)
         found[start:stop][~mask] = extension @ found[start:stop][mask]
     return found
 
 
-def _stretches(known: BoolArray, reach: int) -> list[tuple[int, int]]:
+def _stretches(known: BoolArray, reach: int, order: int) -> list[tuple[int, int]]:
     """Return (start, stop) of the stretches that are solved by themselves: each with something known and something not.
 
-    They end within runs of at least `_ORDER` known frames, or where the correction has faded away.
+    They end within runs of at least `order` known frames, or where the correction has faded away.
     """
     fixed = known.copy()
     at = np.flatnonzero(known)
@@ -75,8 +70,8 @@ def _stretches(known: BoolArray, reach: int) -> list[tuple[int, int]]:
     edges = np.flatnonzero(np.diff(np.concatenate(([0], (~fixed).astype(np.int8), [0]))))
     found: list[tuple[int, int, int]] = []
     for first, stop in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
-        begin, end = max(first - _ORDER, 0), min(stop + _ORDER, len(known))
-        if found and first - found[-1][2] < _ORDER:
+        begin, end = max(first - order, 0), min(stop + order, len(known))
+        if found and first - found[-1][2] < order:
             found[-1] = (found[-1][0], end, stop)
         else:
             found.append((begin, end, stop))
@@ -84,14 +79,9 @@ def _stretches(known: BoolArray, reach: int) -> list[tuple[int, int]]:
 
 
 @lru_cache(maxsize=512)
-def _extension(mask: bytes, weight: float) -> FloatArray:
-    """Return `_extended` of a mask of bytes, which many stretches share."""
+def _extension(mask: bytes, weight: float, order: int) -> FloatArray:
+    """Return the matrix that makes the unknown frames of a stretch from its known ones; many stretches share it."""
     known = np.frombuffer(mask, dtype=np.bool_)
-    return frozen(_extended(known, weight, np.full(len(known), _FADES)))
-
-
-def _extended(known: BoolArray, weight: float, fades: FloatArray) -> FloatArray:
-    """Return the matrix that makes the unknown frames of a stretch from its known ones, shape (n,)."""
-    difference = np.diff(np.eye(len(known)), n=_ORDER, axis=0)
-    normal = weight * difference.T @ difference + np.diag(fades)
-    return np.asarray(np.linalg.solve(normal[np.ix_(~known, ~known)], -normal[np.ix_(~known, known)]), dtype=np.float64)
+    difference = np.diff(np.eye(len(known)), n=order, axis=0)
+    normal = weight * difference.T @ difference + _FADES * np.eye(len(known))
+    return frozen(np.asarray(np.linalg.solve(normal[np.ix_(~known, ~known)], -normal[np.ix_(~known, known)])))

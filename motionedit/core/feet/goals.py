@@ -8,18 +8,19 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.feet.correction import eased
+from motionedit.core.feet.knees import eased_ways
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray
+    from motionedit.core.feet.knees import Knee
     from motionedit.core.feet.stance import Foot, FootPath, Stance
 
 _NO_WAY = 1e-12  # a length: a foot without a toe has no arm
 # Seconds: how slowly an ankle's correction bends, from the first where it is a small share of a leg to the second where
 # it is a large one: far ways take their time.
 _SLOWLY, _SMALL_TO_LARGE = (0.02, 0.05), (0.05, 0.1)
-_GAP = 0.3  # s
-_ROLLS = 4  # times that a foot which rolls on is eased anew
+_LIFTS = 4  # times that a foot which is too deep is eased anew
 _DEEP = 1e-9  # of a foot's height: a foot that is so much too deep is no deeper than it may be
 
 
@@ -38,12 +39,16 @@ class Ground:
 
 @dataclass(frozen=True, eq=False)
 class FootGoal:
-    """Where a foot shall be: its ankle's places (F, 3) and turns (F, 4), and the frames at which it is `down` (F,)."""
+    """Where a foot shall be: its ankle's places (F, 3) and turns (F, 4), and the frames at which it is `down` (F,).
+
+    `back` says at which its knee is bent back, shape (F,).
+    """
 
     foot: Foot
     places: FloatArray
     turns: FloatArray
     down: BoolArray
+    back: BoolArray
 
 
 def foot_goal(
@@ -53,38 +58,39 @@ def foot_goal(
     frame_time: float,
     *,
     hip: FloatArray,
-    reach: FloatArray,
-    stiff: FloatArray,
+    knee: Knee | None,
     ground: Ground,
 ) -> FootGoal:
-    """Return where a foot shall be at every frame, from where it goes and where it stands.
+    """Return where a foot shall be at every frame, from where it goes and where it stands, and from its hip (F, 3).
 
-    A foot on its toe rolls on over it as far as the hip (F, 3) and the leg's reach (F,) ask.
+    In the air, and on its toe, over which it rolls, it is where a knee that is nearly straight eases.
     """
     flat, down = stance.flat, stance.down
     on_toe = stance.toe & ~stance.heel
     turn = np.where((np.sum(stance.turn * path.turn, axis=1) < 0.0)[:, None], -stance.turn, stance.turn)
     twist = rot.log(rot.multiply(turn, rot.conjugate(path.turn)))
-    known, gap = flat, round(_GAP / frame_time)
-    for _ in range(_ROLLS):
-        turns = rot.multiply(rot.exp(eased(twist, known, frame_time)), path.turn)
-        angle, axis = _roll_onto_reach(stance.toe_place, rot.rotate(turns, -path.toe), hip, reach)
-        # A leg at its reach stays there over short gaps: to leave it and come back would shake the knee.
-        far = on_toe & _closed(on_toe & ((angle > 0.0) | (known & ~flat)), gap)
-        if not (far & ~known).any():
-            break
-        rolled = rot.log(rot.multiply(rot.multiply(rot.exp(angle[:, None] * axis), turns), rot.conjugate(path.turn)))
-        twist, known = np.where(far[:, None], rolled, twist), known | far
-    turns = rot.multiply(rot.exp(eased(twist, known, frame_time)), path.turn)
+    turns = rot.multiply(rot.exp(eased(twist, flat, frame_time)), path.turn)
+    places = _standing(stance, path, turns)
+    back = np.zeros(len(down), dtype=np.bool_)
+    if knee is not None and on_toe.any():
+        ways, back = eased_ways(knee, hip, path.ankle, places, known=stance.heel, back=back, frame_time=frame_time)
+        back &= on_toe
+        roll = _roll_onto(stance.toe_place, rot.rotate(turns, -path.toe), hip, ways, ground)
+        rolled = rot.multiply(rot.exp(np.where(on_toe[:, None], roll, 0.0)), turns)
+        twist = rot.log(rot.multiply(rolled, rot.conjugate(path.turn)))
+        turns = rot.multiply(rot.exp(eased(twist, down, frame_time)), path.turn)
     turns[flat] = stance.turn[flat]
-    over_toe = stance.toe_place - rot.rotate(turns, path.toe)
-    places = np.where(stance.heel[:, None], stance.heel_place, over_toe)
+    places = _standing(stance, path, turns)
     moved = places - path.ankle
     least = _least_heights(path, places, turns, down, ground)
     held = down
     bends = _bends(moved[down], ground.leg)
-    for _ in range(_ROLLS):
-        free = path.ankle + eased(moved, held, frame_time, bends=bends, stiff=stiff)
+    for _ in range(_LIFTS):
+        free, behind = path.ankle + eased(moved, held, frame_time, bends=bends), back
+        if knee is not None:
+            ways, bent_back = eased_ways(knee, hip, path.ankle, free, known=held, back=back, frame_time=frame_time)
+            free = np.where(held[:, None], free, _at_ways(free, hip, ways))
+            behind = np.where(held, back, bent_back)
         lift = np.where(down, 0.0, least - _lowest(free, turns, path, ground.up))
         deep = lift > _DEEP * float(np.abs(least).max())
         if not deep.any():
@@ -93,7 +99,20 @@ def foot_goal(
         held = held | deep
     if ground.height is not None:
         free = free + np.maximum(lift, 0.0)[:, None] * ground.up
-    return FootGoal(foot, np.where(down[:, None], places, free), turns, down)
+    return FootGoal(foot, np.where(down[:, None], places, free), turns, down, behind)
+
+
+def _standing(stance: Stance, path: FootPath, turns: FloatArray) -> FloatArray:
+    """Return where the ankle is as the foot stands, shape (F, 3): its heel's place, or over its toe."""
+    return np.where(stance.heel[:, None], stance.heel_place, stance.toe_place - rot.rotate(turns, path.toe))
+
+
+def _at_ways(ankle: FloatArray, hip: FloatArray, ways: FloatArray) -> FloatArray:
+    """Return ankles (F, 3) brought to a way (F,) from their hips, in the direction that they have."""
+    way = ankle - hip
+    share = ways / np.maximum(np.linalg.norm(way, axis=1), np.finfo(float).tiny)
+    brought: FloatArray = hip + share[:, None] * way
+    return brought
 
 
 def _bends(corrections: FloatArray, leg: float) -> float:
@@ -123,29 +142,22 @@ def _least_heights(
     return own if ground.height is None else np.maximum(own, ground.height)
 
 
-def _closed(there: BoolArray, gap: int) -> BoolArray:
-    """Return frames, shape (F,), with gaps of up to so many frames closed."""
-    at = np.flatnonzero(there)
-    steps = np.diff(at)
-    closed = there.copy()
-    for start, step in zip(at[:-1], steps, strict=True):
-        closed[start : start + step] |= step <= gap + 1
-    return closed
+def _roll_onto(toe: FloatArray, arm: FloatArray, hip: FloatArray, ways: FloatArray, ground: Ground) -> FloatArray:
+    """Return rotation vectors (F, 3) about toes that bring the ankles, at toe + arm, to ways (F,) from the hips.
 
-
-def _roll_onto_reach(
-    toe: FloatArray, arm: FloatArray, hip: FloatArray, reach: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Return the angles (F,) and unit axes (F, 3) about toes that bring the ankles, at toe + arm, just to their reach.
-
-    An angle above 0 brings one nearer to its hip, that is beyond its reach as it is.
+    But no ankle goes below the floor, where there is one.
     """
     way = hip - toe
     long, short = np.linalg.norm(way, axis=1), np.linalg.norm(arm, axis=1)
     scale = np.maximum(long * short, _NO_WAY * np.maximum(long, 1.0))
-    widest = np.arccos(np.clip((long**2 + short**2 - reach**2) / (2.0 * scale), -1.0, 1.0))
+    wanted = np.arccos(np.clip((long**2 + short**2 - ways**2) / (2.0 * scale), -1.0, 1.0))
     now = np.arccos(np.clip(np.sum(way * arm, axis=1) / scale, -1.0, 1.0))
     axis = rot.cross(arm, way)
-    unit: FloatArray = axis / np.maximum(np.linalg.norm(axis, axis=1, keepdims=True), np.finfo(float).tiny)
-    angle: FloatArray = now - widest
-    return angle, unit
+    unit = axis / np.maximum(np.linalg.norm(axis, axis=1, keepdims=True), np.finfo(float).tiny)
+    roll: FloatArray = (now - wanted)[:, None] * unit
+    if ground.height is None:
+        return roll
+    height, rolled, floor = arm @ ground.up, rot.rotate(rot.exp(roll), arm) @ ground.up, ground.height - toe @ ground.up
+    deep = rolled < np.minimum(height, floor)
+    share = np.where(deep, np.maximum(height - floor, 0.0) / np.where(deep, height - rolled, 1.0), 1.0)
+    return share[:, None] * roll

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,9 +10,10 @@ from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
 from motionedit.core.body.bends import find_bends
 from motionedit.core.feet.goals import FootGoal, Ground, foot_goal
-from motionedit.core.feet.legs import legs_onto, turns_freely
+from motionedit.core.feet.knees import knee_of
+from motionedit.core.feet.legs import LegGoal, legs_onto, turns_freely
 from motionedit.core.feet.pelvis import drop_needed, smooth_cover
-from motionedit.core.feet.reach import reach_of, released, stretch
+from motionedit.core.feet.reach import reach_of, released
 from motionedit.core.feet.stance import feet_of, foot_path, stance_of
 from motionedit.core.kinematics import WorldPoses, forward
 from motionedit.core.motion import Motion
@@ -28,10 +28,8 @@ if TYPE_CHECKING:
     from motionedit.core.feet.stance import Foot, Stance
 
 
-# In the air a leg may stretch to this share of its length, or as far as it is already.
-_STRAIGHT = 0.998
-# Between these shares of its length corrections of a leg in the air fade.
-_NEAR = 0.975, 0.995
+# Of a leg: a heel comes up where the pelvis would have to come down by more.
+_LOWERED = 0.02
 _GIVE = 0.006  # of a leg: 5 mm
 
 
@@ -102,18 +100,25 @@ def onto_stances(
 
     Where there is a `floor`, a height along up, no foot in the air goes below it.
     """
+    low = _LOWERED * anatomy.leg_length * up
     stances = [
-        (foot, released(stance, poses.positions[:, foot.leg.thigh], reach_of(poses, foot))) for foot, stance in stances
+        (foot, released(stance, poses.positions[:, foot.leg.thigh] - low, reach_of(poses, foot)))
+        for foot, stance in stances
     ]
     lowered = np.zeros(len(motion))
     if not any(stance.down.any() for _, stance in stances):
         return Kept(motion, (), lowered)
     ground = Ground(up, floor, _GIVE * anatomy.leg_length, anatomy.leg_length)
     bends = {bend.joint: bend for bend in find_bends(motion.skeleton, poses, anatomy, first=first)}
+    knees = {
+        foot.side: knee_of(motion.skeleton, poses, foot.leg, bends[foot.leg.knee])
+        for foot, _ in stances
+        if foot.leg.knee in bends
+    }
     if motion.skeleton.position_axes[travel]:
         # Heels that stand say how low the pelvis is; a foot on its toe rolls on instead.
         for foot, stance in stances:
-            hip, reach = poses.positions[:, foot.leg.thigh], reach_of(poses, foot)
+            hip, reach = poses.positions[:, foot.leg.thigh], reach_of(poses, foot, knees.get(foot.side))
             lowered = np.maximum(lowered, np.where(stance.heel, drop_needed(hip, stance.heel_place, reach, up), 0.0))
         lowered[:first] = 0.0
         lowered[first:] = smooth_cover(lowered[first:], motion.frame_time)
@@ -125,43 +130,21 @@ def onto_stances(
             stance,
             motion.frame_time,
             hip=poses.positions[:, foot.leg.thigh] + shift,
-            reach=reach_of(poses, foot),
-            stiff=_stiff(poses, foot),
+            knee=knees.get(foot.side),
             ground=ground,
         )
         for foot, stance in stances
     )
-    solved = [g for g in goals if turns_freely(motion.skeleton, g.foot.leg) and g.foot.leg.knee in bends]
-    wanted = []
-    final = {goal.foot.side: goal for goal in goals}
-    for goal in solved:
-        places = _within_reach(
-            goal, poses.positions[:, goal.foot.leg.thigh] + shift, reach_of(poses, goal.foot, _STRAIGHT)
-        )
-        wanted.append((goal.foot.leg, bends[goal.foot.leg.knee], places, goal.turns))
-        final[goal.foot.side] = replace(goal, places=places)
+    wanted = [
+        LegGoal(goal.foot.leg, knees[goal.foot.side], goal.places, goal.turns, goal.back)
+        for goal in goals
+        if turns_freely(motion.skeleton, goal.foot.leg) and goal.foot.side in knees
+    ]
     stood = legs_onto(motion, poses, wanted, shift=shift)
     done = shifted(stood, shift, poses, travel) if lowered.any() else stood
     rotations = done.rotations.copy()
     rotations[:first] = motion.rotations[:first]
-    return Kept(
-        Motion(done.skeleton, frozen(rotations), done.translations, done.frame_time), tuple(final.values()), lowered
-    )
-
-
-def _stiff(poses: WorldPoses, foot: Foot) -> FloatArray:
-    """Return how near to its reach a leg is, shape (F,): from 0 to 1 over `_NEAR`, smoothly."""
-    way, length = stretch(poses, foot)
-    near = np.clip((way / np.maximum(length, np.finfo(float).tiny) - _NEAR[0]) / (_NEAR[1] - _NEAR[0]), 0.0, 1.0)
-    return near * near * (3.0 - 2.0 * near)
-
-
-def _within_reach(goal: FootGoal, hip: FloatArray, reach: FloatArray) -> FloatArray:
-    """Return a foot's places, those in the air brought within reach: no leg straightens for a correction's end."""
-    way = goal.places - hip
-    far = np.linalg.norm(way, axis=1)
-    share = np.where(goal.down, 1.0, np.minimum(1.0, reach / np.maximum(far, np.finfo(float).tiny)))
-    return hip + share[:, None] * way
+    return Kept(Motion(done.skeleton, frozen(rotations), done.translations, done.frame_time), goals, lowered)
 
 
 def shifted(motion: Motion, shift: FloatArray, poses: WorldPoses, travel: int) -> Motion:

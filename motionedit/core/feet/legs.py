@@ -8,18 +8,30 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.motion import Motion
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from motionedit.core.arrays import FloatArray
+    from motionedit.core.arrays import BoolArray, FloatArray
     from motionedit.core.body.anatomy import Leg
-    from motionedit.core.body.bends import Bend
+    from motionedit.core.feet.knees import Knee
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.skeleton import Skeleton
 
-# A knee that is bent back goes on doing so up to so many times as far; then it bends forward.
-_BACK = 1.25
+
+@dataclass(frozen=True, eq=False)
+class LegGoal:
+    """A leg, its knee in the motion, its ankle's places (F, 3) and turns (F, 4) in the world.
+
+    `back` says where the knee is bent back, shape (F,); None: nowhere.
+    """
+
+    leg: Leg
+    knee: Knee
+    places: FloatArray
+    turns: FloatArray
+    back: BoolArray | None = None
 
 
 def turns_freely(skeleton: Skeleton, leg: Leg) -> bool:
@@ -30,7 +42,7 @@ def turns_freely(skeleton: Skeleton, leg: Leg) -> bool:
 def legs_onto(
     motion: Motion,
     poses: WorldPoses,
-    goals: Sequence[tuple[Leg, Bend, FloatArray, FloatArray]],
+    goals: Sequence[LegGoal],
     *,
     shift: FloatArray | None = None,
 ) -> Motion:
@@ -43,19 +55,22 @@ def legs_onto(
     ----------
     motion, poses
         The motion, and its world transforms.
-    goals
-        Leg, its knee's bend, the ankle's places (F, 3) and turns (F, 4) in the world.
+    goals : sequence of LegGoal
     shift : shape (F, 3), optional
         How far the hips were shifted since `poses` were taken.
     """
     rotations = motion.rotations.copy()
     parents = motion.skeleton.parents
-    for leg, bend, places, turns in goals:
-        hip, knee, ankle = (poses.positions[:, j] for j in (leg.thigh, leg.knee, leg.ankle))
-        wanted = places - hip - (0.0 if shift is None else shift)
-        upper, lower = knee - hip, ankle - knee
-        axis = rot.rotate(poses.rotations[:, parents[leg.knee]], np.broadcast_to(bend.axis, upper.shape))
-        flexion = _axis_turn(axis, _flexion(upper, lower, axis, np.linalg.norm(wanted, axis=1)))
+    for goal in goals:
+        leg, turns = goal.leg, goal.turns
+        hip, middle, ankle = (poses.positions[:, j] for j in (leg.thigh, leg.knee, leg.ankle))
+        wanted = goal.places - hip - (0.0 if shift is None else shift)
+        upper, lower = middle - hip, ankle - middle
+        knee = goal.knee
+        angle = knee.bent(np.linalg.norm(wanted, axis=1))
+        flexion = _axis_turn(
+            knee.axis, (angle if goal.back is None else np.where(goal.back, -angle, angle)) - knee.angle
+        )
         swing = _smallest_turn(upper + rot.rotate(flexion, lower), wanted)
         above = {j: poses.rotations[:, parents[j]] for j in (leg.thigh, leg.knee, leg.ankle)}
         world = rot.multiply(swing, poses.rotations[:, leg.thigh])
@@ -65,24 +80,6 @@ def legs_onto(
         below = rot.multiply(rot.multiply(swing, flexion), above[leg.ankle])
         rotations[:, leg.ankle] = rot.multiply(rot.conjugate(below), turns)
     return Motion(motion.skeleton, rotations, motion.translations, motion.frame_time)
-
-
-def _flexion(upper: FloatArray, lower: FloatArray, axis: FloatArray, length: FloatArray) -> FloatArray:
-    """Return the angle about a knee's axis that makes |upper + turned lower| a length, shape (F,), rad.
-
-    u . R v = (u . a)(v . a) + C cos x + S sin x, so that x = atan2(S, C) +- acos((k - (u . a)(v . a)) / |C, S|). It
-    bends forward; one that is bent back stays so as far as it is. Beyond the leg's length it is straight.
-    """
-    along = np.sum(upper * axis, axis=1) * np.sum(lower * axis, axis=1)
-    dot = np.sum(upper * lower, axis=1)
-    cosine, sine = dot - along, np.sum(upper * rot.cross(axis, lower), axis=1)
-    squares = np.sum(upper**2, axis=1) + np.sum(lower**2, axis=1)
-    wanted = 0.5 * (length**2 - squares) - along
-    share = np.clip(wanted / np.maximum(np.hypot(cosine, sine), np.finfo(float).tiny), -1.0, 1.0)
-    straight = np.arctan2(sine, cosine)
-    bend = np.arccos(share)
-    angle: FloatArray = straight + np.where(bend < _BACK * straight, -1.0, 1.0) * bend
-    return angle
 
 
 def _axis_turn(axis: FloatArray, angle: FloatArray) -> FloatArray:

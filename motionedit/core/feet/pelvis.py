@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
 
 # Seconds before and after for which the pelvis stays low, and eases down and up.
-_EASE = 0.2
+EASE = 0.2
 # The pelvis goes down no farther than this share of a leg.
 _DEEPEST = 0.1
 
@@ -28,14 +28,14 @@ def drop_needed(hip: FloatArray, ankle: FloatArray, reach: FloatArray, up: Float
     return np.where(np.sum(way**2, axis=1) <= reach**2, 0.0, needed)
 
 
-def smooth_cover(needed: FloatArray, frame_time: float) -> FloatArray:
+def smooth_cover(needed: FloatArray, frame_time: float, *, ease: float = EASE) -> FloatArray:
     """Return a smooth curve that is nowhere below what is needed, shape (F,).
 
-    The largest within 0.2 s on both sides, averaged over as long by a quadratic B-spline.
+    The largest within `ease` seconds on both sides, averaged over as long by a quadratic B-spline.
     """
     if not needed.any():
         return needed
-    third = max(1, round(_EASE / (3.0 * frame_time)))
+    third = max(1, round(ease / (3.0 * frame_time)))
     half = 3 * third
     padded = np.pad(needed, 2 * half, mode="edge")
     windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * half + 1)

@@ -11,12 +11,14 @@ from motionedit.core.feet.stance import runs
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
+    from motionedit.core.feet.knees import Knee
     from motionedit.core.feet.stance import Foot, Stance
     from motionedit.core.kinematics import WorldPoses
 
 # A leg is stretched to this share of its length, or as far as it is already: nearer to straight, a millimetre at the
 # ankle is a centimetre at the knee.
 REACH = 0.994
+_LEAST = float(np.radians(5.0))  # rad
 _ROUNDING = 1e-9
 
 
@@ -27,10 +29,14 @@ def stretch(poses: WorldPoses, foot: Foot) -> tuple[FloatArray, FloatArray]:
     return np.linalg.norm(ankle - hip, axis=1), length
 
 
-def reach_of(poses: WorldPoses, foot: Foot, share: float = REACH) -> FloatArray:
-    """Return how far from its hip an ankle may be, shape (F,): a share of the leg, or as far as it is already."""
+def reach_of(poses: WorldPoses, foot: Foot, knee: Knee | None = None) -> FloatArray:
+    """Return how far from its hip an ankle may be, shape (F,): a share of the leg, or as far as it is already.
+
+    But no farther than leaves a knee 5 degrees: closer to straight it would shake, or bend back.
+    """
     way, length = stretch(poses, foot)
-    return np.maximum(share * length, way)
+    reach: FloatArray = np.maximum(REACH * length, way)
+    return reach if knee is None else np.minimum(reach, knee.way(np.full(len(way), _LEAST)))
 
 
 def released(stance: Stance, hip: FloatArray, reach: FloatArray) -> Stance:

@@ -1,5 +1,6 @@
 """Feet kept on the walk that skates: every plant in one place, by the legs alone, near to the truth."""
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -11,7 +12,8 @@ from motionedit.core.body.bends import find_bends
 from motionedit.core.body.contacts import sole_tracks
 from motionedit.core.body.quality import jerk_rms
 from motionedit.core.feet.keep import keep_feet
-from motionedit.core.feet.legs import legs_onto
+from motionedit.core.feet.knees import eased_ways, knee_of
+from motionedit.core.feet.legs import LegGoal, legs_onto
 from motionedit.core.feet.pelvis import drop_needed, smooth_cover
 from motionedit.core.kinematics import forward
 from motionedit.jobs.clip.facts import facts_of
@@ -82,13 +84,14 @@ def test_legs_go_where_they_are_told_and_a_far_place_straightens_them():
     motion, poses = clip.clip.motion, clip.poses
     bends = {bend.joint: bend for bend in find_bends(motion.skeleton, poses, clip.anatomy, first=0)}
     leg = clip.anatomy.legs[0]
+    knee = knee_of(motion.skeleton, poses, leg, bends[leg.knee])
     near = 0.9 * poses.positions[:, leg.ankle] + 0.1 * poses.positions[:, leg.thigh]
     turns = poses.rotations[:, leg.knee]
-    after = forward(legs_onto(motion, poses, [(leg, bends[leg.knee], near, turns)]))
+    after = forward(legs_onto(motion, poses, [LegGoal(leg, knee, near, turns)]))
     assert after.positions[:, leg.ankle] == pytest.approx(near, abs=1e-9)
     assert np.abs(np.sum(after.rotations[:, leg.ankle] * turns, axis=1)) == pytest.approx(1.0)
     far = poses.positions[:, leg.thigh] - [0.0, 500.0, 0.0]
-    after = forward(legs_onto(motion, poses, [(leg, bends[leg.knee], far, turns)]))
+    after = forward(legs_onto(motion, poses, [LegGoal(leg, knee, far, turns)]))
     hip, knee, ankle = (after.positions[:, j] for j in (leg.thigh, leg.knee, leg.ankle))
     bones = np.linalg.norm(knee - hip, axis=1) + np.linalg.norm(ankle - knee, axis=1)
     assert np.linalg.norm(ankle - hip, axis=1) == pytest.approx(bones, rel=1e-6)
@@ -105,3 +108,27 @@ def test_a_pelvis_comes_down_as_far_as_a_leg_asks_and_smoothly():
     assert (cover >= needed - 1e-12).all()
     assert np.abs(np.diff(cover)).max() < 0.15 * needed[30]
     assert cover[0] == cover[-1] == 0.0
+
+
+def test_a_knee_that_is_nearly_straight_eases_off_its_plant_without_a_shake_or_a_flip():
+    clip = facts("walk.bvh")
+    motion, poses = clip.clip.motion, clip.poses
+    bends = {bend.joint: bend for bend in find_bends(motion.skeleton, poses, clip.anatomy, first=0)}
+    leg = clip.anatomy.legs[0]
+    own = knee_of(motion.skeleton, poses, leg, bends[leg.knee])
+    # A leg that comes through straight, bent back by up to 4 degrees, and stands bent by 8 at first.
+    angle = np.radians(np.linspace(12.0, -4.0, len(motion)))
+    knee = replace(
+        own, angle=angle, fixed=np.full_like(angle, own.fixed[0]), turning=np.full_like(angle, own.turning[0])
+    )
+    known = np.arange(len(motion)) < 20
+    down = np.array([[0.0, -1.0, 0.0]])
+    hip = np.zeros((len(motion), 3))
+    before = down * knee.way(angle)[:, None]
+    ankle = np.where(known[:, None], down * knee.way(np.full_like(angle, np.radians(8.0)))[:, None], before)
+    back = np.zeros(len(motion), dtype=bool)
+    ways, bent_back = eased_ways(knee, hip, before, ankle, known=known, back=back, frame_time=motion.frame_time)
+    found = np.degrees(np.where(bent_back, -1.0, 1.0) * knee.bent(ways))
+    assert found[:20] == pytest.approx(8.0, abs=1e-6)
+    assert found[-1] == pytest.approx(-4.0, abs=0.01)
+    assert np.abs(np.diff(found)).max() < 1.0

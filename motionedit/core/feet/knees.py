@@ -1,0 +1,126 @@
+"""A knee's angle and the way from hip to ankle, each from the other: nearly straight, the angle is what eases."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core import rotations as rot
+from motionedit.core.feet.correction import eased
+from motionedit.core.feet.pelvis import smooth_cover
+from motionedit.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from motionedit.core.arrays import BoolArray, FloatArray
+    from motionedit.core.body.anatomy import Leg
+    from motionedit.core.body.bends import Bend
+    from motionedit.core.kinematics import WorldPoses
+    from motionedit.core.skeleton import Skeleton
+
+# Rad: below the first angle a knee is nearly straight, a millimetre at the ankle being a centimetre there; above the
+# second it is bent.
+_STRAIGHT_TO_BENT = np.radians(15.0), np.radians(40.0)
+# Rad: over which a knee that comes down onto a lowered pelvis passes from bent back to bent forward.
+_ROUND = np.radians(1.0)
+_TURNS = 0.05  # s before and after for which a leg counts as nearly straight
+# Rad: a knee comes no nearer to straight than its own angle, rounded off over this: it is the angle's logarithm that
+# eases, so that no knee is bent back by what it does not need.
+_SLACK = np.radians(2.0)
+_ORDER = 2  # the third difference would go on too far in what a knee at its straightest was about
+_BENDS = 0.016  # s: how slowly the correction of a knee bends
+
+
+@dataclass(frozen=True, eq=False)
+class Knee:
+    """A knee that turns about its own axis.
+
+    |upper + turned lower|^2 = fixed + turning * cos(angle), the angle being 0 where the leg is longest.
+
+    Attributes
+    ----------
+    axis : shape (F, 3)
+        Unit axis in the world about which the knee bends further.
+    angle : shape (F,), rad
+        How far it is bent in the motion; below 0 it is bent back.
+    fixed, turning : shape (F,)
+        Squares of a length.
+    """
+
+    axis: FloatArray
+    angle: FloatArray
+    fixed: FloatArray
+    turning: FloatArray
+
+    def way(self, angle: FloatArray) -> FloatArray:
+        """Return the way from hip to ankle at an angle, shape (F,)."""
+        return np.sqrt(np.maximum(self.fixed + self.turning * np.cos(angle), 0.0))
+
+    def bent(self, way: FloatArray) -> FloatArray:
+        """Return the angle, 0 to pi, at a way from hip to ankle, shape (F,); 0 where it is longer than the leg."""
+        cosine = (way**2 - self.fixed) / np.maximum(self.turning, np.finfo(float).tiny)
+        return np.arccos(np.clip(cosine, -1.0, 1.0))
+
+    def lowered(self, way: FloatArray) -> FloatArray:
+        """Return the angle at a way that a lowered pelvis has made shorter, shape (F,); its own where it has not.
+
+        A leg that is bent back comes forward by as much as one bent forward as far would; exact for the latter.
+        """
+        own, bent = self.angle, self.bent(way)
+        return own + np.hypot(bent, _ROUND) - np.hypot(own, _ROUND)
+
+
+def knee_of(skeleton: Skeleton, poses: WorldPoses, leg: Leg, bend: Bend) -> Knee:
+    """Return a leg's knee in a motion.
+
+    u . R v = (u . a)(v . a) + C cos x + S sin x, with u, v the bones, a the axis; it is longest at x = atan2(S, C).
+    """
+    hip, knee, ankle = (poses.positions[:, j] for j in (leg.thigh, leg.knee, leg.ankle))
+    upper, lower = knee - hip, ankle - knee
+    axis = rot.rotate(poses.rotations[:, skeleton.parents[leg.knee]], np.broadcast_to(bend.axis, upper.shape))
+    along = np.sum(upper * axis, axis=1) * np.sum(lower * axis, axis=1)
+    cosine = np.sum(upper * lower, axis=1) - along
+    sine = np.sum(upper * rot.cross(axis, lower), axis=1)
+    squares = np.sum(upper**2, axis=1) + np.sum(lower**2, axis=1)
+    return Knee(axis, -np.arctan2(sine, cosine), squares + 2.0 * along, 2.0 * np.hypot(cosine, sine))
+
+
+def eased_ways(
+    knee: Knee,
+    hip: FloatArray,
+    before: FloatArray,
+    ankle: FloatArray,
+    *,
+    known: BoolArray,
+    back: BoolArray,
+    frame_time: float,
+) -> tuple[FloatArray, BoolArray]:
+    """Return how far ankles shall be from hips, shape (F,), and whether the knee is bent back then, shape (F,).
+
+    A bent leg's as they are; one that is nearly straight has its knee's angle eased from where it is `known`.
+
+    Parameters
+    ----------
+    hip, before, ankle : shape (F, 3)
+        The hips, the ankles before they were corrected, and where they are now.
+    known, back : shape (F,)
+        Where the ankle stays where it is, and where its knee is bent back there.
+    """
+    ways = np.linalg.norm(ankle - hip, axis=1)
+    own, now = knee.lowered(np.linalg.norm(before - hip, axis=1)), np.where(back, -1.0, 1.0) * knee.bent(ways)
+    slack = 0.5 * (own + np.hypot(own, _SLACK))
+    change = np.maximum(now - own, -0.999 * slack)
+    change = np.where(change < 0.0, slack * np.log1p(np.minimum(change, 0.0) / slack), change)
+    change = eased(change[:, None], known, frame_time, bends=_BENDS, order=_ORDER)[:, 0]
+    angle = own + np.where(change < 0.0, slack * np.expm1(np.minimum(change, 0.0) / slack), change)
+    straight = 1.0 - (1.0 - straightness(own)) * (1.0 - straightness(now))
+    share = np.where(known, 0.0, smooth_cover(straight, frame_time, ease=_TURNS))
+    return ways + share * (knee.way(angle) - ways), (share > 0.5) & (angle < 0.0)
+
+
+def straightness(angle: FloatArray) -> FloatArray:
+    """Return how nearly straight a knee is, shape (F,): 1 below 15 degrees, 0 above 40, smoothly."""
+    share = (np.abs(angle) - _STRAIGHT_TO_BENT[0]) / (_STRAIGHT_TO_BENT[1] - _STRAIGHT_TO_BENT[0])
+    bent = np.clip(share, 0.0, 1.0)
+    straight: FloatArray = 1.0 - bent * bent * (3.0 - 2.0 * bent)
+    return straight
