@@ -17,6 +17,7 @@ from motionedit.errors import (
     ClipError,
     MotionEditError,
 )
+from motionedit.jobs.batch.arrivals import Arrivals
 from motionedit.jobs.batch.files import clean_leftovers
 from motionedit.jobs.batch.one_clip import Done, Outcome, RunOne, RunOwn
 from motionedit.jobs.batch.plan import no_progress
@@ -85,7 +86,7 @@ def run_batch(
     tasks = [task for task in tasks if not task.elsewhere]
     waiting = [task for task in tasks if not task.current]
     run_one = RunOne(replace(options, progress=no_progress), work)
-    return _run(tasks, run_one, [_placed(task, options) for task in waiting], options, verdicts)
+    return _run(tasks, run_one, waiting, options, verdicts)
 
 
 def run_each(
@@ -98,7 +99,7 @@ def run_each(
     `verdicts` know of it; what becomes of the others they are told.
     """
     run_one = RunOwn(replace(options, progress=no_progress))
-    items = [(_placed(task, options), work) for task, work in pairs if not task.current]
+    items = [(task, work) for task, work in pairs if not task.current]
     return _run([task for task, _ in pairs], run_one, items, options, verdicts)
 
 
@@ -120,6 +121,7 @@ def _run(
     waiting = [task for task in tasks if not task.current]
     folders = [task.output.parent for task in waiting if task.output is not None]
     done: list[Done] = []
+    arrivals = None if options.scheduler is None else Arrivals()
     try:
         if not options.dry_run:
             clean_leftovers(folders)
@@ -129,6 +131,7 @@ def _run(
         with closing(results), options.progress(len(waiting)) as advance:
             for result in results:
                 one = result if isinstance(result, Done) else Done(errors=(result,))
+                one = one if arrivals is None else arrivals.checked(waiting[len(done)], one)
                 if verdicts is not None:
                     _keep(verdicts, waiting[len(done)], one)
                 done.append(one)
@@ -216,18 +219,6 @@ class _Guarded:
 
 def _has_failed(result: Done | MotionEditError) -> bool:
     return not isinstance(result, Done) or bool(result.errors)
-
-
-def _placed(task: ClipTask, options: RunOptions) -> ClipTask:
-    """Return the task with paths that hold in a cluster worker's own folder, where the run is on a cluster."""
-    if not options.scheduler:
-        return task
-    return replace(
-        task,
-        source=None if task.source is None else task.source.absolute(),
-        output=None if task.output is None else task.output.absolute(),
-        page=None if task.page is None else task.page.absolute(),
-    )
 
 
 def _collect(pairs: Sequence[tuple[ClipTask, Done]], options: RunOptions, *, total: int, current: int) -> BatchResult:
