@@ -28,7 +28,7 @@ install: $(STAMP)  ## set up a virtual environment in .venv with everything that
 $(STAMP): pyproject.toml $(CSRC)
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade pip
-	$(BIN)/python -m pip install --quiet --editable '.[plot,dev]'
+	$(BIN)/python -m pip install --quiet --editable '.[plot,cluster,dev]'
 	@$(BIN)/motionedit --version
 	@touch $@
 

@@ -12,6 +12,7 @@ import click
 from motionedit.cli.boundary import complain, warn
 from motionedit.cli.words import printable, to_stdout
 from motionedit.errors import EXIT_DONE, MISSED, MotionEditError, SpecError
+from motionedit.jobs.batch.no_result import ClusterLostError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -85,7 +86,7 @@ def _worth_a_count(result: BatchResult, options: RunOptions) -> bool:
 
 
 def show_failures(failures: Sequence[MotionEditError]) -> None:
-    """Say each failure on a line; a fault of the spec that many clips share is said once, with their number."""
+    """Say each failure on a line; a fault that many clips share is said once, with their number."""
     places = Counter(_place(error) for error in failures)
     said: set[tuple[object, ...]] = set()
     for error in failures:
@@ -126,4 +127,7 @@ def _show_plan(result: BatchResult, *, err: bool) -> None:
 
 
 def _place(error: MotionEditError) -> tuple[object, ...] | None:
+    """Return what is the same for clips that fail by one fault; None where each has its own."""
+    if isinstance(error, ClusterLostError):
+        return (error.message,)
     return (error.file, error.line, error.key) if isinstance(error, SpecError) else None

@@ -7,18 +7,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from motionedit.cli.options import (
-    jobs_option,
-    output_option,
-    overwrite_option,
-    report_option,
-    set_option,
-    spec_option,
-)
-from motionedit.cli.progress import progress_on_terminal
-from motionedit.cli.verbosity import verbosity_of, verbosity_options
+from motionedit.cli.options import fit_options, output_option, set_option, spec_option
 
 if TYPE_CHECKING:
+    from motionedit.jobs.batch.plan import RunOptions
     from motionedit.jobs.fit_pca.report import FitReport
 
 
@@ -32,21 +24,8 @@ if TYPE_CHECKING:
 @output_option("MODEL.npz", "The model's file.")
 @spec_option(required=False)
 @set_option
-@jobs_option
-@overwrite_option
-@report_option
-@verbosity_options
-@click.pass_context
-def command(
-    ctx: click.Context,
-    folder: Path,
-    output: str,
-    spec_path: Path | None,
-    overrides: tuple[str, ...],
-    jobs: int,
-    overwrite: bool,  # noqa: FBT001  click passes its options by name
-    report: Path | None,
-) -> int:
+@fit_options
+def command(folder: Path, output: str, spec_path: Path | None, overrides: tuple[str, ...], options: RunOptions) -> int:
     """Fit a motion PCA model to normalized clips.
 
     DIR is the folder that normalize wrote; the clips that its normalization.json lists are read, and no others.
@@ -58,29 +37,21 @@ def command(
         raise click.UsageError("--set overrides a key of a spec: give -s too")
     from motionedit.cli.finish import write_report
     from motionedit.jobs.batch.outputs import refuse_existing
-    from motionedit.jobs.batch.plan import RunOptions
     from motionedit.jobs.fit_pca import job
     from motionedit.report.record import report_bytes
     from motionedit.spec.load import load_spec
 
-    if not overwrite:
+    if not options.overwrite:
         refuse_existing([Path(output)])
     loaded = None if spec_path is None else load_spec(spec_path, "fit-pca", overrides=overrides)
-    options = RunOptions(
-        jobs=jobs,
-        overwrite=overwrite,
-        report=report,
-        verbosity=verbosity_of(ctx),
-        progress=progress_on_terminal,
-    )
     fit = job.run(folder, Path(output), loaded, options)
     if options.verbosity >= 0:
         _show(fit)
-    if str(report) != "-":
+    if str(options.report) != "-":
         click.echo(output)
-    if report is not None:
+    if options.report is not None:
         spec = None if loaded is None else loaded.data
-        write_report(report_bytes("fit-pca", [], spec=spec, more=fit.record), report)
+        write_report(report_bytes("fit-pca", [], spec=spec, more=fit.record), options.report)
     return 0
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -104,6 +104,12 @@ jobs_option = click.option(
     callback=not_negative,
     help="Clips in parallel; 0 means all cores. The files are the same for any N.",
 )
+scheduler_option = click.option(
+    "--scheduler",
+    metavar="ADDRESS",
+    callback=not_empty,
+    help="Run on a Dask cluster instead (pip install 'motionedit[cluster]').",
+)
 shard_option = click.option(
     "--shard",
     metavar="K/N",
@@ -125,9 +131,7 @@ preview_option = click.option(
 
 _BEFORE = (
     jobs_option,
-    click.option(
-        "--scheduler", metavar="ADDRESS", help="Run on a Dask cluster instead (pip install 'motionedit[cluster]')."
-    ),
+    scheduler_option,
     click.option(
         "--update",
         is_flag=True,
@@ -178,6 +182,17 @@ def run_options(*, keep_going: bool) -> Decorator:
     keep_going : bool
         What the command does at a clip that fails, where the user does not say.
     """
+    keep_going_option = click.option(
+        "--keep-going/--fail-fast",
+        default=keep_going,
+        show_default=True,
+        help="Go on past a clip that fails, or stop at it.",
+    )
+    return _collecting((*_BEFORE, keep_going_option, *_AFTER))
+
+
+def _collecting(options: Sequence[Decorator]) -> Decorator:
+    """Return a decorator that gives a command some options of a run as one RunOptions."""
 
     def decorate(function: Function) -> Function:
         @functools.wraps(function)
@@ -187,25 +202,23 @@ def run_options(*, keep_going: bool) -> Decorator:
             if str(values["report"]) == str(values.get("output")) == "-":
                 raise click.UsageError("-o - and --report - cannot both have standard output")
             names = RunOptions.__dataclass_fields__.keys() & values.keys()
-            options = RunOptions(
+            given = RunOptions(
                 **{name: values.pop(name) for name in names},
                 verbosity=verbosity_of(click.get_current_context()),
                 progress=progress_on_terminal,
             )
-            return function(options=options, **values)
+            return function(options=given, **values)
 
-        keep_going_option = click.option(
-            "--keep-going/--fail-fast",
-            default=keep_going,
-            show_default=True,
-            help="Go on past a clip that fails, or stop at it.",
-        )
         command: Function = collected
-        for option in reversed((*_BEFORE, keep_going_option, *_AFTER)):
+        for option in reversed(options):
             command = option(command)
         return command
 
     return decorate
+
+
+# Of a run that reads clips and writes one file.
+fit_options = _collecting((jobs_option, scheduler_option, overwrite_option, report_option, verbosity_options))
 
 
 def no_shards(reason: str) -> Decorator:

@@ -157,9 +157,9 @@ def _constraints_apart(constraints: tuple[ConstraintItem, ...], info: Validation
     return taken_apart([item.with_defaults(defaults) for item in constraints], "constraints")
 
 
-def _reference(value: object, context: Context) -> str:
+def _reference(value: object, context: Context) -> Path:
     path = Path(scalars.name(value, what="a clip or a folder"))
-    return str(path if context.folder is None else context.folder / path)
+    return path if context.folder is None else context.folder / path
 
 
 REFERENCE = Kind(_reference, "a clip or a folder", {"type": "string", "minLength": 1})
@@ -201,7 +201,7 @@ class EditPrioritizedSpec(Document):
         description="Parameter of the trajectory S: time, or the paper's index with piecewise-linear T(t).",
     )
     solver: LayeredSolver = Field(default=LayeredSolver(), description="Settings of the solver.")
-    reference: Annotated[str | None, REFERENCE] = Field(
+    reference: Annotated[Path | None, REFERENCE] = Field(
         default=None,
         description="Another version of the clip, or a folder with clips of the same relative names: footplants take "
         "plants and places from it, and constraints that say follow: reference their paths.",

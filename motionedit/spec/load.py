@@ -150,7 +150,7 @@ def load_spec(spec: Spec, command: str, **changes: Unpack[Overrides]) -> LoadedS
 
 def with_reference(loaded: LoadedSpec[EditPrioritizedSpec], reference: str) -> LoadedSpec[EditPrioritizedSpec]:
     """Return a spec with another reference, a path as the command line has it; reports tell it, too."""
-    model = loaded.model.model_copy(update={"reference": reference})
+    model = loaded.model.model_copy(update={"reference": Path(reference)})
     return replace(loaded, model=model, data={**loaded.data, "reference": reference})
 
 

@@ -11,9 +11,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from motionedit.jobs.batch import run as batch
-from motionedit.jobs.batch.plan import ClipTask, RunOptions
-
 ROOT = Path(__file__).resolve().parents[2]
 WALK = ROOT / "data" / "walk.bvh"
 REACH = ROOT / "configs" / "reach.yaml"
@@ -248,12 +245,6 @@ def test_update_makes_a_page_anew_that_is_older_than_the_spec(run, clip, spec, t
     older = spec.stat().st_mtime_ns - 10**9
     os.utime(tmp_path / "out" / "walk.html", ns=(older, older))
     assert len(run(*arguments).stdout.splitlines()) == 2
-
-
-def test_a_worker_elsewhere_gets_the_page_s_whole_path():
-    task = ClipTask(Path("a.bvh"), "a.bvh", Path("out/a.bvh"), "a.bvh", page=Path("out/a.html"))
-    placed = batch._placed(task, RunOptions(scheduler="tcp://127.0.0.1:1"))
-    assert all(path.is_absolute() for path in placed.outputs)
 
 
 def test_clips_that_would_share_a_page_are_refused(run, clip, spec):

@@ -15,8 +15,9 @@ import pytest
 
 from motionedit.errors import UsageError
 from motionedit.jobs.batch import processes
+from motionedit.jobs.batch.no_result import WorkerDiedError
 from motionedit.jobs.batch.plan import RunOptions
-from motionedit.jobs.batch.pool import WorkerDiedError, results_in_order
+from motionedit.jobs.batch.pool import results_in_order
 
 
 def slow_first(item):

@@ -200,11 +200,14 @@ def plan(
     ------
     UsageError
         As `find_clips`; several clips for one output; an output that is an input; an output that exists where
-        `overwrite` is off; `update` or `shard` with standard input or output; `preview` with standard output.
+        `overwrite` is off; `update` or `shard` with standard input or output; `scheduler` with standard input;
+        `preview` with standard output.
     """
     found = find_clips(clips, leave_out=None if output == "-" else Path(output))
     if options.update and (output == "-" or any(task.source is None for task in found)):
         raise UsageError("--update compares the times of files: it does not go with '-'")
+    if options.scheduler is not None and any(task.source is None for task in found):
+        raise UsageError("--scheduler gives files to workers elsewhere: it does not go with '-'")
     if options.preview and output == "-":
         raise UsageError("--preview writes a page next to each clip: it does not go with -o -")
     if options.shard is not None and output == "-":

@@ -17,7 +17,7 @@ from collections import deque
 from multiprocessing.connection import wait
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from motionedit.jobs.batch.worker_died import WorkerDiedError
+from motionedit.jobs.batch.no_result import Raised, WorkerDiedError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterator, Sequence
@@ -59,7 +59,7 @@ def in_processes(
                 break
             value = results.pop(taken)
             taken += 1
-            if isinstance(value, _Raised):
+            if isinstance(value, Raised):
                 raise value.error
             yield value
             if is_last(value):
@@ -67,13 +67,6 @@ def in_processes(
     finally:
         # At the end they are idle; after Ctrl-C or an error, or where nobody listens, what they do is not wanted.
         crew.end()
-
-
-class _Raised:
-    """An exception of the function, on its way to the parent."""
-
-    def __init__(self, error: BaseException) -> None:
-        self.error = error
 
 
 class _Worker:
@@ -169,7 +162,7 @@ def _work(function: Callable[[Any], Any], pipe: Connection[Any, Any]) -> None:
         try:
             result: Any = function(item)
         except Exception as error:  # noqa: BLE001  it is raised where the results are taken
-            result = _Raised(error)
+            result = Raised(error)
         pipe.send(result)
 
 

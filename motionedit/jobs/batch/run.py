@@ -17,6 +17,7 @@ from motionedit.errors import (
     ClipError,
     MotionEditError,
 )
+from motionedit.jobs.batch.arrivals import Arrivals
 from motionedit.jobs.batch.files import clean_leftovers
 from motionedit.jobs.batch.one_clip import Done, Outcome, RunOne, RunOwn
 from motionedit.jobs.batch.plan import no_progress
@@ -86,7 +87,7 @@ def run_batch(
     tasks = [task for task in tasks if not task.elsewhere]
     waiting = [task for task in tasks if not task.current]
     run_one = RunOne(_for_workers(options, clips=len(tasks)), work)
-    return _run(tasks, run_one, [_placed(task, options) for task in waiting], options, verdicts)
+    return _run(tasks, run_one, waiting, options, verdicts)
 
 
 def run_each(
@@ -99,7 +100,7 @@ def run_each(
     `verdicts` know of it; what becomes of the others they are told.
     """
     run_one = RunOwn(_for_workers(options, clips=len(pairs)))
-    items = [(_placed(task, options), work) for task, work in pairs if not task.current]
+    items = [(task, work) for task, work in pairs if not task.current]
     return _run([task for task, _ in pairs], run_one, items, options, verdicts)
 
 
@@ -122,6 +123,7 @@ def _run(
     folders = [task.output.parent for task in waiting if task.output is not None]
     done: list[Done] = []
     records = Records()
+    arrivals = None if options.scheduler is None else Arrivals()
     try:
         if not options.dry_run:
             clean_leftovers(folders)
@@ -132,6 +134,7 @@ def _run(
             for result in results:
                 one = result if isinstance(result, Done) else Done(errors=(result,))
                 task = waiting[len(done)]
+                one = one if arrivals is None else arrivals.checked(task, one)
                 record = _record(task, one)
                 if verdicts is not None and one.digest is not None and task.output is not None:
                     verdicts.keep(task.output, one.digest, Verdict(record, one.outcome.warnings))
@@ -222,18 +225,6 @@ def _for_workers(options: RunOptions, *, clips: int) -> RunOptions:
     """Return the options as workers get them: nothing that cannot be pickled, and nothing left to be told by."""
     frames = clips == 1 if options.report_frames is None else options.report_frames
     return replace(options, progress=no_progress, report_frames=frames)
-
-
-def _placed(task: ClipTask, options: RunOptions) -> ClipTask:
-    """Return the task with paths that hold in a cluster worker's own folder, where the run is on a cluster."""
-    if not options.scheduler:
-        return task
-    return replace(
-        task,
-        source=None if task.source is None else task.source.absolute(),
-        output=None if task.output is None else task.output.absolute(),
-        page=None if task.page is None else task.page.absolute(),
-    )
 
 
 def _collect(

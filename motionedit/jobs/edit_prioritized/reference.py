@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from motionedit.core.skeleton import same_skeleton
@@ -13,6 +12,8 @@ from motionedit.jobs.batch.plan import ClipTask, folder_clips
 from motionedit.jobs.clip.facts import facts_of
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from motionedit.core.body.anatomy import GivenBody
     from motionedit.core.bvh import Clip
     from motionedit.jobs.clip.facts import ClipFacts
@@ -20,22 +21,23 @@ if TYPE_CHECKING:
 _SAME_TIME = 1e-6  # s
 
 
-def refuse_missing_reference(reference: str | None) -> None:
+def refuse_missing_reference(reference: Path | None) -> None:
     """Raise a UsageError where what is given is not there."""
-    if reference is not None and not Path(reference).exists():
-        raise UsageError("no such clip or folder to be the reference", file=reference)
+    if reference is not None and not reference.exists():
+        raise UsageError("no such clip or folder to be the reference", file=str(reference))
 
 
-def reference_files(reference: str | None) -> list[Path]:
+def reference_files(reference: Path | None) -> list[Path]:
     """Return the files of a reference: none of them is ever overwritten, and outputs depend on them."""
     if reference is None:
         return []
-    path = Path(reference)
-    return [clip.source for clip in folder_clips(path) if clip.source] if path.is_dir() else [path]
+    if not reference.is_dir():
+        return [reference]
+    return [clip.source for clip in folder_clips(reference) if clip.source]
 
 
 def reference_facts(
-    reference: str, clip: Clip, task: ClipTask, *, up: str, given: GivenBody, lenient: bool = False
+    reference: Path, clip: Clip, task: ClipTask, *, up: str, given: GivenBody, lenient: bool = False
 ) -> ClipFacts:
     """Return the facts of a clip's reference: the file itself, or the clip of the same relative name in a folder.
 
@@ -44,8 +46,7 @@ def reference_facts(
     ClipError
         It is not there, cannot be read, or is no version of the clip: another skeleton, frame count or rate.
     """
-    path = Path(reference)
-    path = path / task.relative if path.is_dir() else path
+    path = reference / task.relative if reference.is_dir() else reference
     if not path.is_file():
         raise ClipError(f"has no reference: there is no {path}", file=task.label)
     other = read_task(ClipTask(path, str(path), None, task.relative), lenient=lenient)
