@@ -35,7 +35,7 @@ HOMES = {
     "yaml": ("spec/",),
     "pydantic": ("spec/",),
     "bvhio": ("core/bvh/",),
-    "distributed": ("jobs/batch/pool.py",),
+    "distributed": ("jobs/batch/cluster.py",),
     "matplotlib": ("report/",),
     "scipy": (),
     "bvh": (),
