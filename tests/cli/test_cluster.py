@@ -62,7 +62,7 @@ def idle(monkeypatch):
         pytest.fail(f"{task.label} (lenient: {lenient}) is read here, not by a worker")
 
     # The first last: the others take theirs from it as they are loaded.
-    for module in ("fit_pca", "normalize.measures", "edit_prioritized.reference", "batch.one_clip"):
+    for module in ("fit_pca.database", "normalize.measures", "edit_prioritized.reference", "batch.one_clip"):
         monkeypatch.setattr(f"motionedit.jobs.{module}.read_task", refuse)
 
 
