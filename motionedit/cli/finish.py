@@ -68,14 +68,15 @@ def _say(result: BatchResult, options: RunOptions) -> None:
 
 
 def _show_missed(result: BatchResult, options: RunOptions) -> list[str]:
-    """Name the clips whose goals were not met, and why, where no warning has: those of an earlier run, and with -q.
+    """Name the clips whose goals were not met, and why, where no warning has: those of an earlier run.
 
-    As errors where they are counted as such. Returns the status of every clip.
+    With -q only where they count, as errors. Returns the status of every clip.
     """
     say, statuses = complain if options.strict else warn, []
     for record, time in zip(result.records, result.seconds, strict=True):
         statuses.append(record["status"])
-        if record["status"] in MISSED and (time is None or options.verbosity < 0) and (options.strict or time is None):
+        warned = time is not None and options.verbosity >= 0
+        if record["status"] in MISSED and not warned and (options.strict or options.verbosity >= 0):
             say(f"{record['clip']}: {record['status'].replace('_', ' ')}: {record['message']}")
     return statuses
 

@@ -33,6 +33,12 @@ def test_a_skipped_clip_keeps_its_place_in_the_report_and_its_exit_code(edit):
     assert json.loads(Path("second.json").read_text()) == json.loads(Path("first.json").read_text())
 
 
+def test_quietly_what_was_missed_before_is_told_where_it_counts(edit):
+    edit()
+    assert edit("-q", "--update").stderr == ""
+    assert "in/b.bvh: unreachable: far:" in edit("-q", "--update", "--strict").stderr
+
+
 def test_with_strict_an_output_that_missed_is_older_than_its_clip_so_that_make_makes_it_again(edit):
     assert edit("--strict").exit_code == 3
     assert Path("out/a.bvh").stat().st_mtime < Path("in/a.bvh").stat().st_mtime
