@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from motionedit.cli.program import main
 from motionedit.core.bvh import parse_clip, read_clip, unedited_bytes
 from motionedit.errors import BvhError
 from motionedit.jobs.batch.plan import RunOptions
@@ -126,3 +127,18 @@ def test_every_real_file_is_read_and_written_back_byte_for_byte_or_refused_for_a
         assert len(clip.motion) == 3070
         return
     assert unedited_bytes(clip) == path.read_bytes()
+
+
+def test_a_reach_out_of_the_range_of_joints_in_some_frames_is_as_smooth_as_elsewhere(tmp_path):
+    clip, edited, report = FOLDER / "strokes/smash_mrios/mrios_Remate_03.bvh", tmp_path / "e.bvh", tmp_path / "r.json"
+    hand = {"name": "hand", "type": "position", "effector": "LeftWrist", "priority": 5}
+    hand["points"] = [{"hold": [78, 102], "shift": [-12.4, 13.8, 11.0]}]
+    feet = {"name": "feet", "type": "position", "effector": ["LeftAnkle", "RightAnkle"], "priority": 10}
+    com = {"name": "com", "type": "com", "relative_to": "world", "priority": 2}
+    spec = tmp_path / "near.yaml"
+    spec.write_text(json.dumps({"schema": "motionedit/edit-prioritized/v1", "constraints": [feet, hand, com]}))
+    edit = ["edit-prioritized", str(clip), "-s", str(spec), "-o", str(edited), "--report", str(report), "-q"]
+    with pytest.raises(SystemExit):
+        main(edit)
+    metrics = json.loads(report.read_text())["clips"][0]["metrics"]
+    assert metrics["after"]["jerk_rms"] < 4.0 * metrics["before"]["jerk_rms"]
