@@ -20,7 +20,6 @@ from benchmarks.results import machine, table
 from data.generator.golf import make_swing
 from data.generator.players import random_swings
 from motionedit.core.bvh import new_bytes, read_clip
-from motionedit.core.motion import Motion
 from studies.lab import print_table
 
 if TYPE_CHECKING:
@@ -167,9 +166,7 @@ def _tiled(path: Path, frames: int) -> Path:
     motion = read_clip(WALK).motion
     there_and_back = np.concatenate((np.arange(len(motion)), np.arange(len(motion) - 2, 0, -1)))
     at = there_and_back[np.arange(frames) % len(there_and_back)]
-    path.write_bytes(
-        new_bytes(Motion(motion.skeleton, motion.rotations[at], motion.translations[at], motion.frame_time))
-    )
+    path.write_bytes(new_bytes(motion.at(at)))
     return path
 
 

@@ -12,7 +12,6 @@ import motionedit
 from motionedit.core import kinematics
 from motionedit.core.bvh import Clip, read_clip, resampled_bytes
 from motionedit.core.kinematics import Effector
-from motionedit.core.motion import Motion
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -68,7 +67,7 @@ class Lab:
         """Return a file with frames start to stop (both in) of a clip."""
         rows = slice(start, stop + 1)
         motion = clip.motion
-        part = Motion(motion.skeleton, motion.rotations[rows], motion.translations[rows], motion.frame_time)
+        part = motion.at(rows)
         path = self.place() / name
         path.write_bytes(resampled_bytes(clip, part))
         return path

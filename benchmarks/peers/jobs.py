@@ -168,7 +168,7 @@ def _job(motion: Motion, body: Body, constraints: Sequence[Constraint]) -> Job:
 def _given(job: Job, frames: IntArray, targets: FloatArray) -> Job:
     """Return the job at some frames, every target given frame by frame as an instant of its own."""
     motion = job.motion
-    part = Motion(motion.skeleton, motion.rotations[frames], motion.translations[frames], motion.frame_time)
+    part = motion.at(frames)
     here, active = targets[frames], job.active[frames]
     constraints = []
     for i, c in enumerate(job.constraints):

@@ -13,7 +13,9 @@ from motionedit.core.arrays import frozen
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from motionedit.core.arrays import FloatArray, IntArray
+    from collections.abc import Sequence
+
+    from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.skeleton import Skeleton
 
 
@@ -45,6 +47,10 @@ class Motion:
     def __repr__(self) -> str:
         # Not its arrays, which would fill a screen.
         return f"<Motion: {len(self)} frames, {len(self.skeleton)} joints, {self.frame_rate:.4g} Hz>"
+
+    def at(self, frames: slice | IntArray | BoolArray | Sequence[int]) -> Motion:
+        """Return the motion at some of its frames; of a slice its arrays are views."""
+        return Motion(self.skeleton, self.rotations[frames], self.translations[frames], self.frame_time)
 
     @property
     def is_fixed(self) -> bool:

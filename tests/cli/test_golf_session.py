@@ -291,7 +291,7 @@ def test_events_come_from_a_table_and_a_clip_that_has_none_is_named(run, data, t
 def test_a_clip_that_is_not_in_the_database_gets_its_event_by_the_models_rule(run, golf, data, tmp_path):
     late = read_clip(data / "swing01.bvh")
     motion = late.motion
-    part = Motion(motion.skeleton, motion.rotations[6:], motion.translations[6:], motion.frame_time)
+    part = motion.at(slice(6, None))
     (tmp_path / "late.bvh").write_bytes(resampled_bytes(late, part))
     spec = edit_spec(tmp_path / "e.yaml")
     result = run("edit-pc", "late.bvh", "-m", golf.model, "-s", spec, "-o", "e.bvh", "--report", "r.json")

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from motionedit.core.motion import Motion
 from motionedit.core.priorities.frames import run_of, solve_frames
 from motionedit.core.priorities.targets import errors_of
 from motionedit.dataclass import dataclass
@@ -75,7 +74,7 @@ def _is_rival(asked: Asked, other: int, i: int) -> bool:
 def _at(asked: Asked, frame: int) -> Asked:
     """Return what is asked of a motion that is one of its frames alone."""
     motion, rows = asked.motion, slice(frame, frame + 1)
-    still = Motion(motion.skeleton, motion.rotations[rows], motion.translations[rows], motion.frame_time)
+    still = motion.at(rows)
     targets = tuple(_targets_at(each, frame) for each in asked.targets)
     return replace(asked, motion=still, targets=targets, arcs=(None,) * len(targets), ramps=((),) * len(targets))
 

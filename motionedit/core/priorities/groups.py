@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motionedit.core.motion import Motion
 from motionedit.core.priorities.continuity import NO_DISPLACEMENT
 from motionedit.core.priorities.kinds.constraint import Stage
 from motionedit.core.priorities.points import Columns
@@ -22,10 +21,12 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.body.hinges import Hinge
+    from motionedit.core.motion import Motion
     from motionedit.core.priorities.kinds.constraint import Constraint, Targets
     from motionedit.core.priorities.problem import Task
     from motionedit.core.priorities.recruiting import Recruits
     from motionedit.core.priorities.settings import Body, LayeredSettings
+    from motionedit.core.priorities.sight import Sight
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,6 +66,20 @@ class Asked:
     softness: tuple[FloatArray | None, ...]
     arcs: tuple[FloatArray | None, ...]
     ramps: tuple[tuple[Ramp, ...], ...]
+
+    @classmethod
+    def of(
+        cls,
+        motion: Motion,
+        constraints: Sequence[Constraint],
+        recruits: Sequence[Recruits],
+        targets: Sequence[Targets],
+        body: Body,
+        settings: LayeredSettings,
+    ) -> Asked:
+        """Return what is asked where nothing gives way, turns far or is led."""
+        none, no_ramps = (None,) * len(targets), ((),) * len(targets)
+        return cls(motion, tuple(constraints), tuple(recruits), tuple(targets), body, settings, none, none, no_ramps)
 
     def softness_at(self, i: int, frames: IntArray) -> FloatArray:
         """Return lambda^2 of a constraint at frames, shape (N,): 0 where it does not give way."""
@@ -115,6 +130,12 @@ class Group:
         return self.prepared.problem
 
 
+def seen_by(constraints: Sequence[Constraint], motion: Motion, body: Body) -> Sight:
+    """Return what some constraints look at in a motion."""
+    joints = frozenset().union(*(each.looked_at() for each in constraints))
+    return sight_of(motion, joints, body.masses if any(each.weighs for each in constraints) else None)
+
+
 def groups_of(asked: Asked) -> tuple[Group, ...]:
     """Return the frames at which anything is active, together where the same constraints are."""
     active = np.zeros((len(asked.motion), len(asked.constraints)), dtype=np.int8)
@@ -143,11 +164,11 @@ def _nothing_is_wanted(asked: Asked) -> BoolArray:
     if not first:
         return ~wanted
     whole = asked.motion
-    rest = Motion(whole.skeleton, whole.rotations[:first], whole.translations[:first], whole.frame_time)
+    rest = whole.at(slice(first))
     for constraint, targets in zip(asked.constraints, asked.targets, strict=True):
         if targets.first >= first:
             continue
-        seen = sight_of(rest, constraint.looked_at(), asked.body.masses if constraint.weighs else None)
+        seen = seen_by([constraint], rest, asked.body)
         errors = constraint.errors(
             targets.within(slice(targets.first, min(targets.last + 1, first))), seen, reference=rest
         )

@@ -13,7 +13,6 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.kinematics import WorldPoses, forward
-from motionedit.core.motion import Motion
 from motionedit.core.priorities.cones import Cones, are_beyond
 from motionedit.core.priorities.constants import (
     ANNEALED_ITERATIONS,
@@ -40,6 +39,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
+    from motionedit.core.motion import Motion
     from motionedit.core.priorities.points import Columns
     from motionedit.core.priorities.problem import LayeredSolution, Problem, WeightedTask
 
@@ -52,7 +52,7 @@ def solve(
 ) -> None:
     """Solve those `frames` of a motion that are not converged from where they are, as `solve_layers`."""
     whole = solution.motion
-    part = Motion(whole.skeleton, whole.rotations[frames], whole.translations[frames], whole.frame_time)
+    part = whole.at(frames)
     root = None if reference.root is None else reference.root[frames]
     _solve(problem, replace(solution, motion=part), Reference(reference.rotations[frames], root), in_order=in_order)
     whole.rotations[frames], whole.translations[frames] = part.rotations, part.translations
@@ -119,13 +119,13 @@ class _Pose:
 
     @classmethod
     def of(cls, state: Motion, frames: IntArray) -> _Pose:
-        motion = Motion(state.skeleton, state.rotations[frames], state.translations[frames], state.frame_time)
+        motion = state.at(frames)
         return cls(frames, motion, forward(motion))
 
     def at(self, these: BoolArray) -> _Pose:
         """Return some of the frames."""
         motion, world = self.motion, self.world
-        part = Motion(motion.skeleton, motion.rotations[these], motion.translations[these], motion.frame_time)
+        part = motion.at(these)
         return _Pose(self.frames[these], part, WorldPoses(world.positions[these], world.rotations[these]))
 
 

@@ -1,7 +1,7 @@
 """Ramps: where constraints ease in and out, and where the edit has their tasks just outside of them.
 
 Passes smooth over a ramp's end: what begins casts its shadow before it. A ramp that came from the input all the same
-would begin with a jump of some millimetres, so in every pass ramps are led to where the smoothed edit has them.
+would begin with a jump of some millimetres, so in the last pass ramps are led to where the smoothed edit has them.
 """
 
 from __future__ import annotations
@@ -11,16 +11,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motionedit.core.motion import Motion
 from motionedit.core.priorities.continuity import NO_DISPLACEMENT
-from motionedit.core.priorities.groups import Ramp
+from motionedit.core.priorities.groups import Ramp, seen_by
 from motionedit.core.priorities.kinds.constraint import Targets, moved
-from motionedit.core.priorities.sight import sight_of
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
     from motionedit.core.arrays import BoolArray
+    from motionedit.core.motion import Motion
     from motionedit.core.priorities.groups import Asked
     from motionedit.core.priorities.sight import Sight
 
@@ -53,10 +52,8 @@ def task_at(asked: Asked, i: int, motion: Motion, frame: int) -> Targets:
 
 def _seen(asked: Asked, which: Collection[int], motion: Motion, frames: Sequence[int]) -> Sight:
     """Return what some constraints see of frames of a motion."""
-    part = Motion(motion.skeleton, motion.rotations[frames], motion.translations[frames], motion.frame_time)
-    constraints = [asked.constraints[i] for i in which]
-    joints = frozenset().union(*(each.looked_at() for each in constraints))
-    return sight_of(part, joints, asked.body.masses if any(each.weighs for each in constraints) else None)
+    part = motion.at(frames)
+    return seen_by([asked.constraints[i] for i in which], part, asked.body)
 
 
 def _task(asked: Asked, i: int, seen: Sight, frame: int) -> Targets:

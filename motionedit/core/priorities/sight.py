@@ -8,7 +8,6 @@ import numpy as np
 
 from motionedit.core.body.center_of_mass import Masses, center_of_mass
 from motionedit.core.kinematics import WorldPoses, forward
-from motionedit.core.motion import Motion
 from motionedit.core.trace import frame_blocks
 from motionedit.dataclass import dataclass
 
@@ -16,6 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection
 
     from motionedit.core.arrays import FloatArray
+    from motionedit.core.motion import Motion
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +42,7 @@ def sight_of(motion: Motion, joints: Collection[int], masses: Masses | None) -> 
     rotations = np.zeros((count, frames, 4)).transpose(1, 0, 2)
     center = np.zeros((frames, 3))
     for block in frame_blocks(frames):
-        part = Motion(motion.skeleton, motion.rotations[block], motion.translations[block], motion.frame_time)
+        part = motion.at(block)
         poses = forward(part)
         positions[block, seen] = poses.positions[:, seen]
         rotations[block, seen] = poses.rotations[:, seen]

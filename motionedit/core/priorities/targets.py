@@ -2,26 +2,27 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motionedit.core.motion import Motion
 from motionedit.core.priorities.far_turns import arcs_of
 from motionedit.core.priorities.frames import run_of, solve_from_input
-from motionedit.core.priorities.groups import Asked
+from motionedit.core.priorities.groups import Asked, seen_by
 from motionedit.core.priorities.kinds.constraint import Scene, Targets
-from motionedit.core.priorities.sight import Sight, sight_of
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from motionedit.core.arrays import FloatArray
+    from motionedit.core.motion import Motion
     from motionedit.core.priorities.kinds.constraint import Constraint, ConstraintErrors
     from motionedit.core.priorities.recruiting import Recruits
     from motionedit.core.priorities.settings import Body, LayeredSettings
+    from motionedit.core.priorities.sight import Sight
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,8 +46,8 @@ def with_targets(
     follows: Follows = NOBODY,
 ) -> Asked:
     """Return all that is asked of a motion, with the targets of every constraint, which `follows` others' paths."""
-    before = _seen(follows.input or motion, constraints, body)
-    theirs = before if follows.reference is None else _seen(follows.reference, constraints, body)
+    before = seen_by(constraints, follows.input or motion, body)
+    theirs = before if follows.reference is None else seen_by(constraints, follows.reference, body)
     seen = [theirs if each.follow == "reference" else before for each in constraints]
     free = [i for i, each in enumerate(constraints) if not each.waits_for_others]
     found = {i: constraints[i].targets(Scene(seen[i], settings.curve, {}, lambda: before)) for i in free}
@@ -56,11 +57,9 @@ def with_targets(
         """Return what is seen of the motion that those which do not wait ask for, solved once."""
         if not free:
             return before
-        own = tuple(constraints[i] for i in free), tuple(recruits[i] for i in free), tuple(found[i] for i in free)
-        none, no_ramps = (None,) * len(free), ((),) * len(free)
-        alone = Asked(motion, *own, body, settings, softness=none, arcs=none, ramps=no_ramps)
-        solved = solve_from_input(run_of(alone))
-        return _seen(solved.motion, constraints, body)
+        own = [constraints[i] for i in free], [recruits[i] for i in free], [found[i] for i in free]
+        solved = solve_from_input(run_of(Asked.of(motion, *own, body, settings)))
+        return seen_by(constraints, solved.motion, body)
 
     goals = _goals(constraints, found, len(motion))
     targets = tuple(
@@ -68,13 +67,12 @@ def with_targets(
         for i, each in enumerate(constraints)
     )
     arcs = tuple(arcs_of(there, each.reached(there, before)) for each, there in zip(constraints, targets, strict=True))
-    none, no_ramps = (None,) * len(targets), ((),) * len(targets)
-    return Asked(motion, tuple(constraints), tuple(recruits), targets, body, settings, none, arcs, no_ramps)
+    return replace(Asked.of(motion, constraints, recruits, targets, body, settings), arcs=arcs)
 
 
 def errors_of(asked: Asked, motion: Motion) -> tuple[ConstraintErrors, ...]:
     """Return what an edited motion leaves of every constraint, by forward kinematics."""
-    after = _seen(motion, asked.constraints, asked.body)
+    after = seen_by(asked.constraints, motion, asked.body)
     return tuple(
         each.errors(targets, after, reference=asked.motion)
         for each, targets in zip(asked.constraints, asked.targets, strict=True)
@@ -95,21 +93,15 @@ def lefts_of(asked: Asked, motion: Motion) -> list[FloatArray]:
 def reached(asked: Asked, i: int, motion: Motion) -> Targets:
     """Return where a motion has a constraint's task."""
     constraint = asked.constraints[i]
-    return constraint.reached(asked.targets[i], _seen(motion, [constraint], asked.body))
+    return constraint.reached(asked.targets[i], seen_by([constraint], motion, asked.body))
 
 
 def reached_within(asked: Asked, i: int, motion: Motion, frames: slice) -> Targets | None:
     """Return where a motion has a constraint's task at some frames; None where that is no place to go back to."""
     constraint, here = asked.constraints[i], asked.targets[i].within(frames).since(frames.start)
-    part = Motion(motion.skeleton, motion.rotations[frames], motion.translations[frames], motion.frame_time)
-    there = constraint.reached(here, _seen(part, [constraint], asked.body))
+    part = motion.at(frames)
+    there = constraint.reached(here, seen_by([constraint], part, asked.body))
     return None if there is here else there.since(-frames.start)
-
-
-def _seen(motion: Motion, constraints: Sequence[Constraint], body: Body) -> Sight:
-    """Return what the constraints look at in a motion."""
-    joints = frozenset().union(*(each.looked_at() for each in constraints))
-    return sight_of(motion, joints, body.masses if any(each.weighs for each in constraints) else None)
 
 
 def _goals(constraints: Sequence[Constraint], found: dict[int, Targets], frames: int) -> dict[int, FloatArray]:

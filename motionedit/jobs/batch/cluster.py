@@ -23,6 +23,7 @@ from motionedit.core.compiled import solver_name
 from motionedit.dataclass import dataclass
 from motionedit.errors import MotionEditError, UsageError
 from motionedit.jobs.batch.no_result import ClusterLostError, Raised, WorkerDiedError
+from motionedit.jobs.batch.processes import AHEAD, IN_HAND
 from motionedit.version import __version__
 
 if TYPE_CHECKING:
@@ -35,9 +36,6 @@ Result = TypeVar("Result")
 SECONDS_TO_CONNECT = 10.0
 SECONDS_WITHOUT_WORKERS = 15.0
 _SECONDS_BETWEEN_LOOKS = 0.5
-# As for processes: items that a thread of a worker has at once, and those begun for it before earlier ones are taken.
-_IN_HAND = 2
-_AHEAD = 16
 
 
 def load_dask() -> Any:  # noqa: ANN401  by name: checked with and without the extra, of which only one has types
@@ -131,7 +129,7 @@ class _Cluster:
         """Give the cluster as many items as it can work on; where it is lost, they are lost, one by one."""
         if self._lost and not self._in_hand and waiting:
             self.results[waiting.popleft()] = self._loss()
-        while waiting and waiting[0] < taken + _AHEAD * self._threads and len(self._in_hand) < _IN_HAND * self._threads:
+        while waiting and waiting[0] < taken + AHEAD * self._threads and len(self._in_hand) < IN_HAND * self._threads:
             place = waiting.popleft()
             # What is waited for first is done first: otherwise workers take them in any order.
             future = self._client.submit(operator.call, self._work, packed(items[place]), pure=False, priority=-place)

@@ -31,7 +31,7 @@ Result = TypeVar("Result")
 # Items that are begun, for each worker, before the results of those before are taken: results that wait take memory.
 AHEAD = 16
 # Items that a worker has at once: the one it works on, and the next, so that it need not wait for its parent.
-_IN_HAND = 2
+IN_HAND = 2
 # Windows answers Ctrl-C only between waits.
 SECONDS_WITHOUT_CTRL_C = 0.2
 _SECONDS_TO_END = 5.0
@@ -106,7 +106,7 @@ class _Crew:
             if len(self._workers) < self._count:
                 self._workers.append(_Worker(self._context, self._function))
             worker = min(self._workers, key=lambda one: len(one.in_hand))
-            if len(worker.in_hand) >= _IN_HAND:
+            if len(worker.in_hand) >= IN_HAND:
                 return
             place = waiting.popleft()
             worker.in_hand.append(place)

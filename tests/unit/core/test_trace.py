@@ -12,7 +12,6 @@ from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.center_of_mass import center_of_mass, find_masses
 from motionedit.core.body.quality import jerk_rms
 from motionedit.core.kinematics import Effector, forward
-from motionedit.core.motion import Motion
 from motionedit.core.trace import blocks_of, forward_blocks, frame_blocks, trace_of
 
 HAND = skeleton_of().names.index("LeftHand")
@@ -33,10 +32,7 @@ def test_a_trace_by_blocks_is_that_of_the_whole_motion(moving, monkeypatch, size
     monkeypatch.setattr(trace, "BLOCK_FRAMES", size)
     poses = forward(moving)
     masses = find_masses(moving.skeleton, find_anatomy(moving.skeleton))
-    parts = (
-        Motion(moving.skeleton, moving.rotations[block], moving.translations[block], moving.frame_time)
-        for block in frame_blocks(len(moving))
-    )
+    parts = (moving.at(block) for block in frame_blocks(len(moving)))
     for blocks in (blocks_of(poses), forward_blocks(parts)):
         found = trace_of(blocks, POINTS, frame_time=moving.frame_time, first=first, masses=masses)
         tracks = [poses.positions[:, p.joint] + rot.rotate(poses.rotations[:, p.joint], p.offset) for p in POINTS]

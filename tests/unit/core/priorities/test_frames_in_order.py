@@ -5,7 +5,6 @@ import pytest
 from human import standing, with_rotation
 from person import BODY, SKELETON, end, joint, path, swaying
 
-from motionedit.core.motion import Motion
 from motionedit.core.priorities.edit import edit_by_priorities
 from motionedit.core.priorities.kinds import Position
 from motionedit.core.priorities.recruiting import RecruitRule
@@ -53,7 +52,7 @@ def test_the_first_frame_of_a_constraint_starts_from_the_input(first):
     motion = swaying(FRAMES)
     for frame in range(FRAMES):
         motion = with_rotation(motion, "LeftArm", frame, (0.05 * frame, 0.0, 0.1))
-    alone = Motion(motion.skeleton, motion.rotations[first:], motion.translations[first:], motion.frame_time)
+    alone = motion.at(slice(first, None))
     whole = edit_by_priorities(motion, [moved(first, FRAMES - 1, ARM)], BODY, IN_ORDER).motion
     cut = edit_by_priorities(alone, [moved(0, FRAMES - 1 - first, ARM)], BODY, IN_ORDER).motion
     np.testing.assert_allclose(whole.rotations[first:], cut.rotations, atol=1e-12)

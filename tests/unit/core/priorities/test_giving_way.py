@@ -157,7 +157,7 @@ def test_a_soft_layer_makes_the_error_and_the_change_least_together(softness):
     frames = np.arange(35, 51)
     columns = group.problem.columns
     poses = forward(motion).at(slice(35, 51))
-    part = Motion(motion.skeleton, motion.rotations[frames], motion.translations[frames], motion.frame_time)
+    part = motion.at(frames)
     z = attraction(columns, Reference(MOTION.rotations[frames], None), poses, part, np.arange(len(frames)))
     (layer,) = group.problem.layers
     e, J = layer[0].task.evaluate(poses, part.rotations, frames - group.frames[0])
