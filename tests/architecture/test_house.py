@@ -43,6 +43,11 @@ def test_the_compiled_part_is_reached_from_one_file():
     assert reach == ["core/compiled.py"]
 
 
+def test_the_environment_is_asked_for_in_two_files_and_changes_no_result():
+    ask = [place_of(path) for path in FILES if re.search(r"\b(?:environ|getenv)\b", path.read_text(encoding="utf-8"))]
+    assert ask == ["cli/program.py", "core/compiled.py"]
+
+
 def test_a_kind_of_constraint_is_one_file_one_model_and_a_line_in_the_registry():
     assert list(KINDS) == list(TYPES)
     files = {path.stem for path in (PRIORITIES / "kinds").glob("*.py")} - {"__init__", "constraint", "effector"}

@@ -22,11 +22,6 @@ if TYPE_CHECKING:
     from motionedit.core.priorities.settings import Passes
 
 
-import os
-
-ROUNDS = int(os.environ.get("RND", "1"))
-
-
 def eased_from_others(asked: Asked, smoothing: Passes) -> Run:
     """Return what is asked, with ramps from and to where the other constraints alone have each one's task.
 
