@@ -14,12 +14,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.priorities.frames import Known, run_of, solve_from_input
-from motionedit.core.priorities.kinds.constraint import between
 from motionedit.core.priorities.ramps import ending_in
 from motionedit.core.priorities.shares import shares_of
 from motionedit.core.priorities.smoothing import in_passes, steps_at
 from motionedit.core.priorities.straight import bent_where_missed
-from motionedit.core.priorities.targets import lefts_of, reached_within
+from motionedit.core.priorities.targets import lefts_of, toward
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -40,8 +39,10 @@ _SOFTNESS = 0.12**2
 _KEPT = 0.01
 # Seconds over which it begins to give way, and ceases to.
 _RAMP = 0.3
-# Its path is smoother than an edit is, by so much of the passes' sigma.
+# Its path is smoother than an edit is, by so much of the passes' sigma,
 _SMOOTHER = 1.5
+# and where an edit still steps by so much, one after the other.
+_SMOOTHER_STILL = (1.5, 3.0, 6.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,21 +85,53 @@ def without_steps(found: Reached, smoothing: Passes) -> Solved:
     """Return a solution in which constraints that yield do so where meeting them makes the motion step.
 
     Layer by layer from the top: what steps with a layer, and does not without it, that layer is to blame for. The most
-    important one yields to nothing. What is below a layer has no say here either.
+    important one yields to nothing. What is below a layer has no say here either. Where it still steps, that is done
+    again, along smoother paths; the solution whose largest step is the smallest is returned.
     """
-    run, asked = found.run, found.run.asked
-    before = np.zeros(len(run.motion), dtype=np.bool_)
+    best = found.state
+    smallest = _largest_step(found.run, best)
+    for smoother in _SMOOTHER_STILL:
+        asked = _yielding(found, smoothing, smoother)
+        if asked is found.run.asked or not smallest:
+            break
+        found = _with_asked(asked, smoothing)
+        largest = _largest_step(found.run, found.state)
+        if largest < smallest:
+            best, smallest = found.state, largest
+    return best
+
+
+def _with_asked(asked: Asked, smoothing: Passes) -> Reached:
+    run = run_of(asked)
+    return Reached(run, _solved(run, smoothing))
+
+
+def _largest_step(run: Run, state: Solved) -> float:
+    return float(steps_at(run, state.motion).max(initial=0.0))
+
+
+def _yielding(found: Reached, smoothing: Passes, smoother: float) -> Asked:
+    """Return what is asked with paths for what yields, or is missed anyway, where it makes the motion step."""
+    asked = found.run.asked
+    before = np.zeros(len(found.run.motion), dtype=np.bool_)
     for level in asked.levels:
         here = _down_to(level, asked)
         above = asked.only(here)
-        unchanged = asked is run.asked and level == asked.levels[-1]
-        steps = steps_at(run, (found.state if unchanged else _solved(run_of(above), smoothing)).motion) > 0.0
+        unchanged = asked is found.run.asked and level == asked.levels[-1]
+        state = found.state if unchanged else _solved(run_of(above), smoothing)
+        steps = steps_at(found.run, state.motion) > 0.0
         new, before = steps & ~before, steps
-        members = [k for k in _members(level, above) if above.constraints[k].yields and level != asked.levels[0]]
-        stepping = {k: _within(new, above.targets[k]) for k in members}
+        if level == asked.levels[0]:
+            continue
+        stepping = {}
+        for k in _members(level, above):
+            soft, there = above.softness[k], _within(new, above.targets[k])
+            if not above.constraints[k].yields:
+                there &= False if soft is None else soft > 0.0
+            stepping[k] = there
         if any(frames.any() for frames in stepping.values()):
-            asked = _with_paths(asked, _given_way(above, stepping, smoothing), here)
-    return found.state if asked is run.asked else _solved(run_of(asked), smoothing)
+            asked = _with_paths(asked, _given_way(above, stepping, smoothing, smoother), here)
+    return asked
 
 
 def _down_to(level: int, asked: Asked) -> list[int]:
@@ -128,7 +161,7 @@ def _missed(asked: Asked, which: list[int], motion: Motion) -> BoolArray:
     return missed
 
 
-def _given_way(above: Asked, missed: Mapping[int, BoolArray], smoothing: Passes) -> Asked:
+def _given_way(above: Asked, missed: Mapping[int, BoolArray], smoothing: Passes, smoother: float = _SMOOTHER) -> Asked:
     """Return what is asked of a motion with paths that can be reached for constraints that are missed at frames (F,).
 
     These are the last of its layers.
@@ -139,15 +172,14 @@ def _given_way(above: Asked, missed: Mapping[int, BoolArray], smoothing: Passes)
     soft = _unled(_softened(above, shares, _SOFTNESS), shares)
 
     def aimed(smooth: Motion) -> Run:
-        return run.aimed_at(_toward(soft, original, shares, smooth))
+        return run.aimed_at(toward(soft, original, shares, smooth))
 
     run = run_of(soft)
     state = solve_from_input(run)
-    smoother = replace(smoothing, sigma=_SMOOTHER * smoothing.sigma)
-    state = in_passes(run, state, smoother, aimed=aimed)
+    state = in_passes(run, state, replace(smoothing, sigma=smoother * smoothing.sigma), aimed=aimed)
     everywhere = {k: np.ceil(share) for k, share in shares.items()}
     led = ending_in(above, state.ends, shares)
-    targets = _toward(soft, led.targets, everywhere, state.motion)
+    targets = toward(soft, led.targets, everywhere, state.motion)
     without = {k: share for k, share in shares.items() if targets[k] is led.targets[k]}
     kept = _softened(replace(led, targets=targets), shares, _KEPT * _SOFTNESS)
     return _softened(kept, without, _SOFTNESS)
@@ -168,23 +200,6 @@ def _unled(asked: Asked, shares: Mapping[int, FloatArray]) -> Asked:
     for k, share in shares.items():
         ramps[k] = tuple(replace(ramp, left=ramp.left * (1.0 - share)) for ramp in ramps[k])
     return replace(asked, ramps=tuple(ramps))
-
-
-def _toward(
-    asked: Asked, original: tuple[Targets, ...], shares: Mapping[int, FloatArray], motion: Motion
-) -> tuple[Targets, ...]:
-    """Return targets on the way from the original ones to where a motion has them, so much of it each, shape (F,)."""
-    found = list(original)
-    for k, share in shares.items():
-        span = original[k].span
-        inside = np.flatnonzero(share[span])
-        if not len(inside):
-            continue
-        frames = slice(int(span.start + inside[0]), int(span.start + inside[-1] + 1))
-        there = reached_within(asked, k, motion, frames)
-        if there is not None:
-            found[k] = original[k].with_part(between(original[k].within(frames), there, share[frames]))
-    return tuple(found)
 
 
 def _changes(above: Asked, k: int) -> list[int]:

@@ -12,7 +12,9 @@ from motionedit.core.priorities.continuity import smoothed_displacement
 from motionedit.core.priorities.frames import Known, known_after, solve_frames
 from motionedit.core.priorities.ramps import ends_in, led_frames, led_to
 from motionedit.core.priorities.shares import shares_of
+from motionedit.core.priorities.targets import toward
 from motionedit.core.trace import frame_blocks
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -60,7 +62,7 @@ def in_passes(run: Run, state: Solved, smoothing: Passes, *, aimed: Callable[[Mo
         smooth = smoothed_displacement(motion, state.motion, sigma=smoothing.sigma, first=first, hinges=hinges)
         smooth = _between(state.motion, smooth, share)
         known = Known(share == 0.0, state.ranks)
-        state = _led(run if aimed is None else aimed(smooth), smooth, known, state.ends)
+        state = _led(run if aimed is None else aimed(smooth), smooth, known, _Before(state.ends, state.motion, share))
     return state
 
 
@@ -68,22 +70,40 @@ def _solved(run: Run, smooth: Motion, known: Known | None) -> Solved:
     return solve_frames(run, smooth, reference=smooth, pull_root=True, known=known)
 
 
-def _led(run: Run, smooth: Motion, known: Known | None, before: Ends | None = None) -> Solved:
+@dataclass(frozen=True, eq=False)
+class _Before:
+    """What is solved on in some frames: where its ramps ended, its motion, and how much of each frame is solved on."""
+
+    ends: Ends | None
+    motion: Motion
+    share: FloatArray
+
+    def eased(self, run: Run) -> Run:
+        """Return an edit whose soft goals are where the motion has them as far as the share, shape (F,), is not 1.
+
+        Each solve goes on toward soft goals: a frame solved once more would be off one beside it that is not.
+        """
+        softness = enumerate(run.asked.softness)
+        shares = {k: (1.0 - self.share) * (soft > 0.0) for k, soft in softness if soft is not None}
+        return run.aimed_at(toward(run.asked, run.asked.targets, shares, self.motion))
+
+
+def _led(run: Run, smooth: Motion, known: Known | None, before: _Before | None = None) -> Solved:
     """Return a smoothed solution solved again, the frames outside of ramps first, and ramps led to them.
 
     Frames that are known need something all the same where ramps do not end where they did `before`.
     """
-    asked, ends = run.asked, None
+    asked, ends, led = run.asked, None, run
     outside = sorted({ramp.outside for ramps in asked.ramps for ramp in ramps})
     alone = Known(np.ones(len(smooth), dtype=np.bool_), np.zeros((len(smooth), len(asked.levels)), dtype=np.intp))
     alone.done[outside] = False
     # Where one begins within the ramp of another, that is led first.
     for _ in range(2 if _are_chained(asked, outside) else min(len(outside), 1)):
-        ends = ends_in(asked, _solved(run, smooth, alone).motion)
-        run = run.aimed_at(led_to(asked, ends))
-    if known is not None and ends is not None and before is not None:
-        known = Known(known.done & ~led_frames(asked, before, ends), known.ranks)
-    state = _solved(run, smooth, known)
+        ends = ends_in(asked, _solved(led if before is None else before.eased(led), smooth, alone).motion)
+        led = run.aimed_at(led_to(asked, ends))
+    if before is not None and before.ends is not None and known is not None and ends is not None:
+        known = Known(known.done & ~led_frames(asked, before.ends, ends), known.ranks)
+    state = _solved(led if before is None else before.eased(led), smooth, known)
     state.ends = ends
     return state
 
