@@ -7,6 +7,7 @@ more and along smoother paths.
 
 from __future__ import annotations
 
+import operator
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +19,8 @@ from motionedit.core.priorities.straight import bent_where_missed
 from motionedit.core.priorities.visible import is_seen_at, unrest
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from motionedit.core.arrays import BoolArray
     from motionedit.core.priorities.frames import Run, Solved
     from motionedit.core.priorities.groups import Asked
@@ -29,12 +32,13 @@ _FURTHER = (1.0, 2.0, 4.0)
 
 def calmed(found: Reached, smoothing: Passes) -> Solved:
     """Return the calmest of an edit's solutions, in which what need not be met gives way where a viewer sees it."""
-    best = found.state
+    best, looks = found.state, _Looks(smoothing)
     least = unrest(found.run, best.motion)
     for further in _FURTHER:
         if not any(least):
             break
-        asked = _yielding(found, smoothing, further)
+        looks.add(found)
+        asked = _yielding(found.run.asked, looks, further)
         if asked is found.run.asked:
             break
         run = run_of(asked)
@@ -45,22 +49,45 @@ def calmed(found: Reached, smoothing: Passes) -> Solved:
     return best
 
 
-def _yielding(found: Reached, smoothing: Passes, further: float) -> Asked:
+class _Looks:
+    """At which frames a viewer sees the solutions of what was asked, each of which is found and looked at once."""
+
+    def __init__(self, smoothing: Passes) -> None:
+        self.smoothing = smoothing
+        self._seen: list[tuple[Asked, BoolArray]] = []
+
+    def add(self, found: Reached) -> BoolArray:
+        """Look at a solution, shape (F,)."""
+        seen = is_seen_at(found.run, found.state.motion)
+        self._seen.append((found.run.asked, seen))
+        return seen
+
+    def at(self, asked: Asked) -> BoolArray:
+        """Return the frames at which something is seen of what is asked, shape (F,)."""
+        for known, seen in self._seen:
+            if _is_same(known.targets, asked.targets) and _is_same(known.softness, asked.softness):
+                return seen
+        run = run_of(asked)
+        return self.add(Reached(run, _solved(run, self.smoothing)))
+
+
+def _is_same(one: Sequence[object], other: Sequence[object]) -> bool:
+    return len(one) == len(other) and all(map(operator.is_, one, other))
+
+
+def _yielding(asked: Asked, looks: _Looks, further: float) -> Asked:
     """Return what is asked with paths where it is to blame, for what yields and for what is missed anyway."""
-    asked = found.run.asked
-    before = np.zeros(len(found.run.motion), dtype=np.bool_)
+    before = np.zeros(len(asked.motion), dtype=np.bool_)
     for level in asked.levels:
         here = down_to(level, asked)
         above = asked.only(here)
-        unchanged = asked is found.run.asked and level == asked.levels[-1]
-        state = found.state if unchanged else _solved(run_of(above), smoothing)
-        seen = is_seen_at(found.run, state.motion)
+        seen = looks.at(above)
         new, before = seen & ~before, seen
         if level == asked.levels[0]:
             continue
         yielding = {k: new & _may_yield(above, k) for k in members_of(level, above)}
         if any(frames.any() for frames in yielding.values()):
-            asked = with_paths(asked, given_way(above, yielding, smoothing, further=further), here)
+            asked = with_paths(asked, given_way(above, yielding, looks.smoothing, further=further), here)
     return asked
 
 

@@ -43,7 +43,8 @@ def solve_in_passes(run: Run, smoothing: Passes) -> Passed:
     """Return the motion solved, smoothed and solved again."""
     state = bent_where_missed(run, solve_from_input(run))
     iterations = state.iterations.copy()
-    return Passed(calmed(within_reach(run, state, smoothing), smoothing), iterations)
+    found = within_reach(run, state, smoothing)
+    return Passed(calmed(found, smoothing) if smoothing.count else found.state, iterations)
 
 
 def solve_as_the_paper(run: Run, smoothing: PaperFilter) -> Passed:
