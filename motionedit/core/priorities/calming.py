@@ -19,7 +19,7 @@ from motionedit.core.priorities.visible import Seen, seen_of
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from motionedit.core.arrays import BoolArray
+    from motionedit.core.arrays import BoolArray, FloatArray
     from motionedit.core.priorities.frames import Solved
     from motionedit.core.priorities.giving_way import Reached
     from motionedit.core.priorities.groups import Asked
@@ -27,15 +27,17 @@ if TYPE_CHECKING:
 
 # How far what yields gives way: one after the other, while a viewer would see something.
 _FURTHER = (1.0, 2.0, 4.0)
+# Times what was seen before that a layer is to blame for, and of the least that is seen that is seen plainly.
+_MORE, _PLAINLY = 1.1, 1.2
 
 
 def calmed(found: Reached, smoothing: Passes) -> Solved:
     """Return an edit's solution in which what need not be met gives way where a viewer would see something."""
     seen = seen_of(found.run, found.state.motion)
-    if not seen.anything:
+    if not seen.much.any():
         return found.state
     last, asked = _Layers(found.run.asked, found.state, seen), found.run.asked
-    before = np.zeros(len(asked.motion), dtype=np.bool_)
+    before = np.zeros(len(asked.motion))
     for level in asked.levels:
         here = down_to(level, asked)
         above = asked.only(here)
@@ -45,7 +47,7 @@ def calmed(found: Reached, smoothing: Passes) -> Solved:
             calm = _calmest(layers, members_of(level, above), before, smoothing)
             asked = asked if calm is layers else with_paths(asked, calm.asked, here)
             layers = calm
-        before |= layers.seen.frames
+        before = np.maximum(before, layers.seen.much)
     return layers.state
 
 
@@ -57,21 +59,27 @@ class _Layers:
     state: Solved
     seen: Seen
 
+    def beyond(self, before: FloatArray) -> FloatArray:
+        """Return how much is seen that was not before, shape (F,)."""
+        much = self.seen.much
+        return np.where(much > _MORE * before, much, 0.0)
 
-def _calmest(layers: _Layers, members: list[int], before: BoolArray, smoothing: Passes) -> _Layers:
+
+def _calmest(layers: _Layers, members: list[int], before: FloatArray, smoothing: Passes) -> _Layers:
     """Return the calmest of some layers whose last one's `members` give way where it is to blame.
 
-    It is not for what is seen of those above it at the frames `before`, shape (F,).
+    It is not for how much was seen before, without it, shape (F,).
     """
-    calmest = layers
-    for further in _FURTHER:
-        new = layers.seen.frames & ~before
-        yielding = {k: new & _may_yield(layers.asked, k) for k in members}
-        if not any(frames.any() for frames in yielding.values()):
+    calmest, least = layers, np.inf
+    for further in (*_FURTHER, None):
+        new = layers.beyond(before)
+        unrest = float(new @ new)
+        if unrest < least:
+            calmest, least = layers, unrest
+        yielding = {k: _yielding(layers.asked, k, new) for k in members}
+        if further is None or not any(frames.any() for frames in yielding.values()):
             break
         layers = _solved(given_way(layers.asked, yielding, smoothing, further=further), smoothing)
-        if layers.seen.most(~before) < calmest.seen.most(~before):
-            calmest = layers
     return calmest
 
 
@@ -81,12 +89,14 @@ def _solved(asked: Asked, smoothing: Passes) -> _Layers:
     return _Layers(asked, state, seen_of(run, state.motion))
 
 
-def _may_yield(asked: Asked, k: int) -> BoolArray:
-    """Return the frames at which a constraint need not be met: nobody counts on it, or it has given way, shape (F,)."""
-    frames, soft = np.zeros(len(asked.motion), dtype=np.bool_), asked.softness[k]
-    span = asked.targets[k].span
+def _yielding(asked: Asked, k: int, much: FloatArray) -> BoolArray:
+    """Return the frames at which a constraint is not insisted on where so much is seen, shape (F,).
+
+    Nobody counts on it, and that is seen plainly; or it has given way.
+    """
+    frames, soft, span = np.zeros(len(much), dtype=np.bool_), asked.softness[k], asked.targets[k].span
     if asked.constraints[k].yields:
-        frames[span] = True
-    elif soft is not None:
-        frames[span] = soft[span] > 0.0
+        frames[span] = much[span] > _PLAINLY
+    if soft is not None:
+        frames[span] |= (much[span] > 0.0) & (soft[span] > 0.0)
     return frames

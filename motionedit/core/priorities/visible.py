@@ -12,14 +12,12 @@ from motionedit.core.trace import frame_blocks
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from motionedit.core.arrays import BoolArray, FloatArray
+    from motionedit.core.arrays import FloatArray
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.frames import Run
 
-# Radians a frame at 60 frames a second: a viewer sees 10 degrees. What is larger than this is smoothed,
+# Radians a frame at 60 frames a second: a viewer sees 10 degrees.
 _STEP, _RATE = float(np.radians(8.0)), 60.0
-# and than this calmed.
-_SEEN_STEP = float(np.radians(9.5))
 # Times the input's jerk that a viewer sees in one frame,
 _JERK = 10.0
 # and what that counts as at the least, m / s^3: a clip that stands still has none to be compared with.
@@ -30,33 +28,23 @@ _OWN_JERK = 2.0
 
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """What a viewer sees of an edited motion: how far joints step, rad, and how much it jerks at frames, shape (F,)."""
+    """What a viewer sees of an edited motion at each frame: how far joints step, and how much it jerks, shape (F,).
+
+    Both are multiples of the least that is seen, and 0 where that is not reached.
+    """
 
     steps: FloatArray
     jerks: FloatArray
 
     @property
-    def frames(self) -> BoolArray:
-        """Where anything is seen, shape (F,)."""
-        seen: BoolArray = (self.steps > 0.0) | (self.jerks > 0.0)
-        return seen
-
-    @property
-    def anything(self) -> bool:
-        """Whether anything is seen."""
-        return bool(self.frames.any())
-
-    def most(self, frames: BoolArray) -> tuple[float, float]:
-        """Return the largest step and the largest jerk at some frames, shape (F,)."""
-        return float(self.steps[frames].max(initial=0.0)), float(self.jerks[frames].max(initial=0.0))
+    def much(self) -> FloatArray:
+        """How much is seen, the larger of both, shape (F,)."""
+        return np.maximum(self.steps, self.jerks)
 
 
 def seen_of(run: Run, after: Motion) -> Seen:
     """Return what a viewer sees of an edited motion."""
-    steps = steps_at(run, after)
-    if steps.max(initial=0.0) <= _SEEN_STEP * run.motion.frame_time * _RATE:
-        steps = np.zeros(len(steps))
-    return Seen(steps, jerks_at(run, after))
+    return Seen(steps_at(run, after) / (_STEP * run.motion.frame_time * _RATE), jerks_at(run, after))
 
 
 def steps_at(run: Run, after: Motion, *, within: FloatArray | None = None) -> FloatArray:

@@ -19,7 +19,7 @@ from motionedit.core.priorities.settings import LayeredSettings, Passes
 from motionedit.core.priorities.smoothing import PassedBefore
 from motionedit.core.priorities.targets import lefts_of
 from motionedit.core.priorities.trajectories import ControlPoint
-from motionedit.core.priorities.visible import jerks_at, steps_at, unrest
+from motionedit.core.priorities.visible import Seen, seen_of
 
 FRAMES = 90
 MOTION = swaying(FRAMES)
@@ -47,62 +47,74 @@ def turned(degrees, frames, name="Spine"):
 
 def test_a_viewer_sees_a_joint_that_steps_and_a_body_that_jerks_where_they_do():
     run = prepared()
-    assert unrest(run, MOTION) == (0.0, 0.0)
-    after = turned(30.0, [40])
-    steps, jerks = steps_at(run, after), jerks_at(run, after)
-    assert list(np.flatnonzero(steps)) == [39, 40, 41]
-    assert np.degrees(steps.max()) == pytest.approx(30.0)
-    assert {39, 40, 41} <= set(np.flatnonzero(jerks)) <= {38, 39, 40, 41, 42}
-    assert unrest(run, after) == (steps.max(), jerks.max())
+    assert not seen_of(run, MOTION).much.any()
+    seen = seen_of(run, turned(30.0, [40]))
+    assert list(np.flatnonzero(seen.steps)) == [39, 40, 41]
+    assert 8.0 * 0.6 * seen.steps.max() == pytest.approx(30.0)
+    assert {39, 40, 41} <= set(np.flatnonzero(seen.jerks)) <= {38, 39, 40, 41, 42}
+    assert list(np.flatnonzero(seen.much)) == list(np.flatnonzero(seen.steps + seen.jerks))
 
 
 def test_a_body_that_jerks_without_a_step_is_seen():
-    step, jerk = unrest(prepared(), turned(4.0, slice(40, 60, 2), "Hips"))
-    assert step == 0.0
-    assert jerk > 1.0
+    seen = seen_of(prepared(), turned(4.0, slice(40, 60, 2), "Hips"))
+    assert not seen.steps.any()
+    assert seen.jerks.max() > 1.0
 
 
 def test_a_clip_of_few_frames_jerks_nowhere():
     short = MOTION.at(slice(0, 3))
     run = prepare(short, held_feet(3), BODY, SMOOTH)[0]
-    assert unrest(run, short) == (0.0, 0.0)
+    assert not seen_of(run, short).much.any()
 
 
-@pytest.mark.parametrize(("seen", "best"), [([5, 3, 4, 2], 3), ([5, 3, 4, 6], 1), ([5, 6, 7, 8], 0), ([5, 0, 9, 9], 1)])
+def looking_so(monkeypatch, *found):
+    """Let each look at a solution find what is seen at all frames, one after the other."""
+    looks = iter(found)
+    monkeypatch.setattr(calming, "seen_of", lambda *_: Seen(np.full(FRAMES, float(next(looks))), np.zeros(FRAMES)))
+
+
+def of_two_layers(monkeypatch, *found, shift=FAR):
+    """Return an edit's hand where looks at the whole, at the feet, and at the hand, tried again, find so much."""
+    run = prepared(reaching(shift))
+    before = within_reach(run, solve_frames(run, MOTION, reference=MOTION, pull_root=False), Passes())
+    tried = []
+    solved = calming._solved
+    monkeypatch.setattr(calming, "_solved", lambda *asked: tried.append(solved(*asked)) or tried[-1])
+    looking_so(monkeypatch, *found)
+    return before, calmed(before, Passes()), tried
+
+
+@pytest.mark.parametrize(("seen", "best"), [([5, 3, 4, 2], 3), ([5, 3, 4, 6], 1), ([5, 6, 7, 8], 0), ([5, 0], 1)])
 def test_the_calmest_solution_is_kept(seen, best, monkeypatch):
-    run = prepared()
-    first, *others = [solve_frames(run, MOTION, reference=MOTION, pull_root=False) for _ in seen]
-    solutions, looks = iter(others), iter(seen)
-    monkeypatch.setattr(calming, "unrest", lambda *_: (float(next(looks)), 0.0))
-    monkeypatch.setattr(calming, "_yielding", lambda found, *_: replace(found.run.asked))
-    monkeypatch.setattr(calming, "_solved", lambda *_: next(solutions))
-    found = calming.Reached(run, first)
-    assert calmed(found, Passes()) is [first, *others][best]
+    before, after, tried = of_two_layers(monkeypatch, seen[0], 0, *seen[1:])
+    _feet, *others = [layers.state for layers in tried]
+    assert after is [before.state, *others][best]
+
+
+def test_a_layer_is_not_to_blame_for_what_is_seen_without_it(monkeypatch):
+    before, after, tried = of_two_layers(monkeypatch, 5, 5)
+    assert after is before.state
+    assert len(tried) == 1
+
+
+@pytest.mark.parametrize(("shift", "tries"), [(FAR, 4), ((0.0, 0.05, 0.1), 1)])
+def test_of_goals_that_count_only_a_missed_one_gives_way_further(shift, tries, monkeypatch):
+    edit = edited(MOTION, [*held_feet(FRAMES), reaching(shift)], SMOOTH)
+    assert (np.max(lefts_of(edit.asked, edit.motion)[-1]) > 1e-4) == (tries > 1)
+    _before, _after, tried = of_two_layers(monkeypatch, 5, 0, 4, 3, 2, shift=shift)
+    assert len(tried) == tries
 
 
 def test_whether_a_layer_is_to_blame_is_judged_without_what_is_below(monkeypatch):
     run = prepared(reaching(FAR), CenterOfMass(name="com", priority=2))
     seen = []
-    monkeypatch.setattr(calming, "unrest", lambda *_: (0.0, 0.0))
-    alone = solve_in_passes(run_of(run.asked.only(range(len(held_feet(FRAMES)) + 1))), Passes())
-    monkeypatch.setattr(calming, "unrest", lambda *_: (1.0, 0.0))
-    monkeypatch.setattr(calming, "is_seen_at", lambda _, motion: seen.append(motion) or np.zeros(FRAMES, dtype=bool))
+    monkeypatch.setattr(calming, "_calmest", lambda layers, *_: seen.append(layers) or layers)
+    alone = solve_in_passes(run_of(run.asked.only(range(len(held_feet(FRAMES)) + 1))), Passes()).state.motion
+    seen.clear()
+    looking_so(monkeypatch, 5, 5, 5)
     solve_in_passes(run, Passes())
-    _, hand, _ = seen
-    assert rot.angle_between(hand.rotations, alone.state.motion.rotations).max() < 1e-6
-
-
-@pytest.mark.parametrize(("shift", "gives_way"), [(FAR, True), ((0.0, 0.05, 0.1), False)])
-def test_of_goals_that_count_only_a_missed_one_gives_way_further(shift, gives_way, monkeypatch):
-    edit = edited(MOTION, [*held_feet(FRAMES), reaching(shift)], SMOOTH)
-    assert (np.max(lefts_of(edit.asked, edit.motion)[-1]) > 1e-4) == gives_way
-    run = prepared(reaching(shift))
-    before = within_reach(run, solve_frames(run, MOTION, reference=MOTION, pull_root=False), Passes())
-    monkeypatch.setattr(calming, "unrest", lambda *_: (1.0, 0.0))
-    levels = iter([False, True] * 3)
-    monkeypatch.setattr(calming, "is_seen_at", lambda *_: np.full(FRAMES, next(levels)))
-    after = calming._yielding(before, Passes(), 4.0)
-    assert (after is not before.run.asked) == gives_way
+    hand, _com = seen
+    assert rot.angle_between(hand.state.motion.rotations, alone.rotations).max() < 1e-6
 
 
 def test_frames_that_are_not_solved_on_leave_those_beside_them_where_they_are():
