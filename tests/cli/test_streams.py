@@ -106,6 +106,16 @@ def test_what_cannot_be_written_is_named(clip, copy_spec, tmp_path, arguments, r
     assert (done.returncode, done.stderr) == (1, f"motionedit: error: {message}\n")
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no full device")
+@pytest.mark.parametrize("name", ["p.html", "p.svg", "p.png"])
+def test_a_picture_that_the_disk_has_no_room_for_is_named(run, clip, name):
+    pytest.importorskip("matplotlib")
+    Path(name).symlink_to("/dev/full")
+    result = run("preview", clip(), "-o", name)
+    said = f"motionedit: error: {name}: cannot be written: No space left on device\n"
+    assert (result.exit_code, result.stderr) == (1, said)
+
+
 def test_a_closed_standard_input_is_said(run, copy_spec, monkeypatch):
     monkeypatch.setattr(one_clip, "sys", SimpleNamespace(stdin=None))
     result = run("edit-prioritized", "-", "-s", copy_spec, "-o", "o.bvh")
