@@ -110,7 +110,7 @@ class FeetInClip:
                     message = f"'{name}' has {count} plants of its {part}, more than {place.clip} has frames"
                     self.faults.add(place.error(message))
                     break
-        return dict(found)
+        return found
 
     def _joint(self, name: str, place: Place) -> int | None:
         return resolve.joint_if_there(name, self.facts.clip.motion.skeleton, place, self.faults)
