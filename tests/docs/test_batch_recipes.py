@@ -48,7 +48,7 @@ def test_make_and_a_slurm_array_write_what_one_run_writes(text, shell, tmp_path)
 @pytest.mark.compiled
 @pytest.mark.skipif(shutil.which("snakemake") is None, reason="no snakemake on this machine")
 def test_snakemake_writes_what_one_run_writes_and_takes_up_what_is_left(text, shell, tmp_path):
-    (tmp_path / "golf.smk").write_text(block(text, "python", "golf.smk"), encoding="utf-8")
+    (tmp_path / "golf.smk").write_text(block(text, "snakemake", "golf.smk"), encoding="utf-8")
     snakemake = "snakemake -s golf.smk --cores 2"
     code, printed = shell(snakemake)
     assert code == 0, printed
@@ -66,7 +66,7 @@ def test_snakemake_writes_what_one_run_writes_and_takes_up_what_is_left(text, sh
 
 def test_the_rules_of_snakemake_run_the_lines_of_make(text):
     """Where there is no snakemake: the same commands, on the same files."""
-    rules, make = block(text, "python", "golf.smk"), block(text, "make", "golf.mk")
+    rules, make = block(text, "snakemake", "golf.smk"), block(text, "make", "golf.mk")
     lines = [" ".join(re.sub(r'" *\n *"', "", part).split()) for part in (rules, make)]
     rules, make = (line.replace("$(MODEL)", "{MODEL}").replace("$@", "{output}") for line in lines)
     for command in (r"edit-pc .*? --update", r"normalize .*? -q", r"fit-pca .*? -q"):

@@ -97,9 +97,7 @@ class FeetInClip:
                     found.setdefault(joint, []).extend((part, row.first, row.last) for part in parts)
         return self._no_more_than_frames({joint: tuple(plants) for joint, plants in found.items()}, place)
 
-    def _no_more_than_frames(
-        self, found: Mapping[int, Sequence[tuple[str, int, int]]], place: Place
-    ) -> dict[int, GivenPlants]:
+    def _no_more_than_frames(self, found: dict[int, GivenPlants], place: Place) -> dict[int, GivenPlants]:
         """Return plants by ankle, of which a clip has no more than frames: others lie over each other."""
         motion = self.facts.clip.motion
         for joint, plants in found.items():
