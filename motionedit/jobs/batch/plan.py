@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from motionedit.dataclass import dataclass
 from motionedit.errors import UsageError
-from motionedit.jobs.batch.current import with_verdicts
+from motionedit.jobs.batch.current import nothing_is_newer, stamp_of
 from motionedit.jobs.batch.files import identity
 from motionedit.jobs.batch.outputs import refuse_clashes, refuse_existing, refuse_paths
 
@@ -232,7 +232,10 @@ def plan(
     refuse_clashes([("the report", options.report), *writes, *kept, *outputs], [*inputs, *depends])
     # Only now: whether two clips go to one file, every shard says.
     tasks = shared_out(tasks, options.shard)
-    tasks = with_verdicts(tasks, depends, options=options, verdicts=verdicts)
+    if verdicts is not None:
+        tasks = [replace(task, stamp=stamp_of(task.source)) for task in tasks]
+    if options.update:
+        tasks = [_recalled(task, depends, options, verdicts, clips=len(tasks)) for task in tasks]
     if not options.overwrite:
         refuse_existing([path for task in tasks if not (task.current or task.elsewhere) for path in task.outputs])
     return tasks
@@ -289,3 +292,18 @@ def _with_outputs(tasks: list[ClipTask], output: str) -> list[ClipTask]:
     if any(task.source is None for task in tasks):
         raise UsageError("a clip from standard input has no name: give -o FILE.bvh or -o -")
     return [replace(task, output=target / task.relative) for task in tasks]
+
+
+def _recalled(
+    task: ClipTask, depends: Sequence[Path], options: RunOptions, verdicts: Verdicts | None, *, clips: int
+) -> ClipTask:
+    """Return a task; current where nothing is newer than its output, and all is known that this run is to say of it."""
+    if task.elsewhere or task.output is None or task.source is None:
+        return task
+    if not nothing_is_newer(task.outputs, [task.source, *depends]):
+        return task
+    if verdicts is None:
+        return replace(task, current=True)
+    frames = None if options.report is None else options.tells_frames(clips)
+    verdict = verdicts.recall(task.output, stamp=task.stamp, frames=frames, verify=options.verify)
+    return replace(task, current=verdict is not None, verdict=verdict)

@@ -138,9 +138,9 @@ def _run(
                 task = waiting[len(done)]
                 one = one if arrivals is None else arrivals.checked(task, one)
                 record = _record(task, one)
-                if verdicts is not None and one.digest is not None:
-                    frames = bool(options.report_frames)
-                    verdicts.keep(task, one.digest, Verdict(record, one.outcome.warnings, frames))
+                if verdicts is not None and one.digest is not None and task.output is not None:
+                    verdict = Verdict(record, one.outcome.warnings, bool(options.report_frames))
+                    verdicts.keep(task.output, one.digest, verdict, stamp=task.stamp)
                 records.append(record)
                 done.append(replace(one, outcome=replace(one.outcome, record={})))
                 advance()

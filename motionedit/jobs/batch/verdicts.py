@@ -28,8 +28,6 @@ except ImportError:  # Windows, which keeps two writers of one line apart by its
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from motionedit.jobs.batch.plan import ClipTask
-
 NAME = ".motionedit-verdicts.jsonl"
 # What an entry of the report has of its run, not of the work: with other names for the same files it is another.
 OF_THE_TASK = ("clip", "output")
@@ -92,19 +90,19 @@ class Verdicts:
         self._known: dict[str, bytes] | None = None
         self._added = 0
 
-    def recall(self, task: ClipTask, *, frames: bool | None, verify: bool) -> Verdict | None:
-        """Return the verdict on a task's output; None where there is none on these very files, as wanted now.
+    def recall(
+        self, output: Path, *, stamp: tuple[int, int] | None, frames: bool | None, verify: bool
+    ) -> Verdict | None:
+        """Return the verdict on an output; None where there is none on these very files, as wanted now.
 
-        With `frames` it has what is told frame by frame, without it not; None: nobody asks. With `verify` it says how
-        bvhio read the output.
+        `stamp` tells the clip's file from others. With `frames` it has what is told frame by frame, without it not;
+        None: nobody asks. With `verify` it says how bvhio read the output.
         """
-        if task.output is None:
-            return None
         if self._known is None:
             self._known = dict(self._lines())
         try:
-            said = mapping(json_of(self._known[self._name(task.output)]))
-            now = (self._key, [*(task.stamp or ())], hashlib.sha256(read_file(task.output)).hexdigest())
+            said = mapping(json_of(self._known[self._name(output)]))
+            now = (self._key, [*(stamp or ())], hashlib.sha256(read_file(output)).hexdigest())
             record = mapping(said["record"])
             text(record["status"])
             lacks = (frames and not said["by_frame"]) or (verify and "verify" not in record)
@@ -115,14 +113,12 @@ class Verdicts:
         except (OSError, KeyError, ValueError):
             return None
 
-    def keep(self, task: ClipTask, digest: str, verdict: Verdict) -> None:
+    def keep(self, output: Path, digest: str, verdict: Verdict, *, stamp: tuple[int, int] | None) -> None:
         """Add the verdict on an output that was written just now; `digest` is the SHA-256 of what was written."""
-        if task.output is None:
-            return
         said = {
-            "output": self._name(task.output),
+            "output": self._name(output),
             "sha256": digest,
-            "clip": task.stamp,
+            "clip": stamp,
             "key": self._key,
             "by_frame": verdict.frames,
             "record": plain({key: value for key, value in verdict.record.items() if key not in OF_THE_TASK}),
