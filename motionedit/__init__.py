@@ -20,21 +20,22 @@ of these names do. Nothing is printed. What a user can cause is raised as `Motio
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING
 
-from motionedit.errors import (
-    BvhError,
-    ClipError,
-    ModelError,
-    MotionEditError,
-    MotionEditErrors,
-    SpecError,
-    UsageError,
-)
 from motionedit.version import __version__
 
+# Not typing's: Python loads this file before the program can answer Ctrl-C, so that it loads next to nothing.
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from motionedit.core.bvh import Clip
+    from motionedit.errors import (
+        BvhError,
+        ClipError,
+        ModelError,
+        MotionEditError,
+        MotionEditErrors,
+        SpecError,
+        UsageError,
+    )
     from motionedit.library.edit_pc import edit_pc
     from motionedit.library.edit_prioritized import edit_prioritized
     from motionedit.library.edited import Edited
@@ -66,10 +67,17 @@ __all__ = [
 
 # Where each name is found when it is first asked for: the import alone loads no numpy.
 _HOMES = {
+    "BvhError": "errors",
     "Clip": "core.bvh",
+    "ClipError": "errors",
     "Edited": "library.edited",
     "Fitted": "library.fit_pca",
+    "ModelError": "errors",
+    "MotionEditError": "errors",
+    "MotionEditErrors": "errors",
     "Normalized": "library.normalize",
+    "SpecError": "errors",
+    "UsageError": "errors",
     "edit_pc": "library.edit_pc",
     "edit_prioritized": "library.edit_prioritized",
     "fit_pca": "library.fit_pca",

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import os
 import signal
-from typing import TYPE_CHECKING
 
+TYPE_CHECKING = False  # typing's takes longer to load than all that stands here
 if TYPE_CHECKING:
     from types import FrameType
 

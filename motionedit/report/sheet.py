@@ -234,7 +234,8 @@ def _draw_names(axes: Axes, row: list[Body], colors: list[str]) -> None:
     start = 12.0
     for body, color in zip(row, colors, strict=True):
         name = axes.annotate(
-            body.label.encode(errors="replace").decode(),  # a file's name need not be text
+            # A file's name need not be text, and XML takes no escapes.
+            "".join(letter if letter.isprintable() else "?" for letter in body.label),
             corner,
             (start, -8.0),
             textcoords="offset points",

@@ -63,6 +63,8 @@ def _label(context: Context, file: str) -> str:
 
 
 _FRAME = {"type": "integer", "minimum": 0}
+# Each rule looks at a whole clip, and rules wait for others.
+MOST_EVENTS = 1000
 FRAMES = Kind(
     _event_frames,
     FRAMES_WORDS,
@@ -191,16 +193,20 @@ def event_faults(events: object) -> Iterator[Fault]:
     """Yield what is wrong with the names of events, and rules that wait for one another in a ring."""
     if not isinstance(events, dict):
         return
+    if len(events) > MOST_EVENTS:
+        yield Fault(f"are {len(events)}; one spec has {MOST_EVENTS} at most: they are asked for together")
+        return
     for name in events:
         try:
             kinds.EVENT_NAME.parse(name, Context())
         except FaultyValueError as error:
             yield from (fault.under(name) for fault in error.faults)
-    waits = {name: _events_of_rule(event) & set(events) for name, event in events.items()}
+    waits = {name: _events_of_rule(event) & events.keys() for name, event in events.items()}
+    order = {name: place for place, name in enumerate(events)}
     for name in events:
         ring = _ring(name, waits)
         # Each ring is reported once, at its first event in the file.
-        if ring and name == min(ring, key=list(events).index):
+        if ring and name == min(ring, key=order.__getitem__):
             yield Fault(f"waits for itself: {' -> '.join([*ring, name])}; let one rule name no event", (name,))
 
 

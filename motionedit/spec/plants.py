@@ -50,7 +50,7 @@ def _plants(value: object, context: Context) -> PlantsSpec:
         return PlantsSpec(rows=rows, file=path)
     if not isinstance(value, dict) or not value:
         raise faulty(f"must be {PLANTS_WORDS}; not {show(value)}")
-    found: dict[str, tuple[Interval, ...]] = {}
+    found: dict[str, list[Interval]] = {}
     faults: list[Fault] = []
     for foot, intervals in value.items():
         if not isinstance(intervals, list) or not intervals:
@@ -58,12 +58,12 @@ def _plants(value: object, context: Context) -> PlantsSpec:
             continue
         for i, interval in enumerate(intervals):
             try:
-                found[foot] = (*found.get(foot, ()), parse_interval(interval))
+                found.setdefault(foot, []).append(parse_interval(interval))
             except FaultyValueError as error:
                 faults += [fault.under(i).under(foot) for fault in error.faults]
     if faults:
         raise FaultyValueError(faults)
-    return PlantsSpec(by_foot=found)
+    return PlantsSpec(by_foot={foot: tuple(intervals) for foot, intervals in found.items()})
 
 
 def read_plant_table(path: Path, *, label: str) -> tuple[PlantRow, ...]:

@@ -187,3 +187,12 @@ def test_check_holds_clips_against_a_spec(run, tmp_path):
     assert "s.yaml:2: constraints.0.effector" in done.stdout
     (tmp_path / "bad.bvh").write_text("HIERARCHY\n")
     assert run("check", WALK, "bad.bvh").exit_code == 1
+
+
+def test_more_plants_than_frames_are_refused_at_once(run, tmp_path):
+    plants = ", ".join(["[2, 3]"] * 3000)
+    feet = f"{{type: footplants, plants: {{LeftFoot: [{plants}]}}}}"
+    (tmp_path / "s.yaml").write_text(f"schema: motionedit/edit-prioritized/v1\nconstraints: [{feet}]\n")
+    result = run("edit-prioritized", DATA / "walk.bvh", "-s", "s.yaml", "-o", "out.bvh")
+    assert result.exit_code == 2
+    assert "constraints.0.plants: 'LeftFoot' has 3000 plants of its heel, more than" in result.stderr

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+import motionedit
+
 # The program, whose work on b.bvh says that it has begun and does not end.
 STUCK = """
 import sys, time
@@ -89,3 +91,13 @@ main()
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=20, check=False)
     assert (done.returncode, done.stdout, done.stderr) == (130, "", "motionedit: error: interrupted\n")
+
+
+def test_next_to_nothing_is_loaded_before_ctrl_c_can_be_answered():
+    root = Path(motionedit.__file__).parents[1]
+    code = f"import sys\nsys.path.insert(0, {str(root)!r})\nbefore = set(sys.modules)\nimport motionedit.__main__\n"
+    code += "print(*set(sys.modules) - before)"
+    # Without what packages of the environment load at its start.
+    done = subprocess.run([sys.executable, "-S", "-c", code], capture_output=True, text=True, check=True)
+    named = {name.partition(".")[0] for name in done.stdout.split()}
+    assert named <= {"motionedit", "importlib", "warnings", "__future__"}

@@ -7,6 +7,7 @@ import pytest
 
 from motionedit.errors import UsageError
 from motionedit.jobs.batch.plan import RunOptions, find_clips, plan
+from motionedit.jobs.batch.verdicts import verdicts_in
 
 OPTIONS = RunOptions()
 
@@ -22,10 +23,10 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
-def outputs(*clips, output, options=OPTIONS, depends=()):
+def outputs(*clips, output, options=OPTIONS, **more):
     return [
         task.output and task.output.as_posix()
-        for task in plan([Path(clip) for clip in clips], output, options=options, depends=depends)
+        for task in plan([Path(clip) for clip in clips], output, options=options, **more)
     ]
 
 
@@ -105,11 +106,25 @@ def test_what_cannot_be_is_refused(clips, output, message):
 
 
 @pytest.mark.parametrize(
-    ("report", "message"), [("takes/a.bvh", "is an input"), ("out/a.bvh", "the report and takes/a.bvh")]
+    ("report", "message"),
+    [
+        ("takes/a.bvh", "is an input"),
+        ("out/a.bvh", "the report and takes/a.bvh"),
+        ("out/.motionedit-verdicts.jsonl", "the report and what --update remembers"),
+        ("out", "out: would be a file and the folder of other outputs"),
+    ],
 )
 def test_the_report_is_neither_input_nor_output(report, message):
+    verdicts = verdicts_in("out", "", update=False, dry_run=False)
     with pytest.raises(UsageError, match=message):
-        outputs("takes/a.bvh", output="out", options=RunOptions(report=Path(report)))
+        outputs("takes/a.bvh", output="out", options=RunOptions(report=Path(report)), verdicts=verdicts)
+
+
+def test_a_clip_is_not_written_where_another_has_its_folder():
+    Path("other/a.bvh").mkdir(parents=True)
+    Path("other/a.bvh/b.bvh").write_bytes(b"")
+    with pytest.raises(UsageError, match=r"out/a\.bvh: would be a file and the folder of other outputs"):
+        outputs("takes", "other", output="out")
 
 
 def test_no_overwrite_refuses_an_output_that_exists():

@@ -70,6 +70,18 @@ def test_update_knows_what_shards_made_and_reports_it_all(edit):
     assert sorted(entry["clip"] for entry in parts) == [f"in/{name}" for name in sorted(NAMES)]
 
 
+def test_a_shard_of_one_clip_reports_as_little_of_it_as_the_whole_run(edit):
+    ride = "{type: position, effector: LeftForeArm, points: [{at: 4, shift: [0, 1, 0]}]}"
+    Path("ride.yaml").write_text(f"schema: motionedit/edit-prioritized/v1\nconstraints: [{ride}]\n")
+    alone = shard_by_hand("two/d.bvh", 99)
+    assert [name for name in NAMES if shard_by_hand(name, 99) == alone] == ["two/d.bvh"]
+    edit("--report", "whole.json", spec="ride.yaml")
+    Path("out/two/d.bvh").unlink()
+    edit("--shard", f"{alone}/99", spec="ride.yaml")
+    assert edit("--update", "--report", "all.json", spec="ride.yaml").stdout == ""
+    assert Path("all.json").read_bytes() == Path("whole.json").read_bytes()
+
+
 def test_another_clip_moves_none(edit, clip):
     def planned():
         lines = edit("--shard", f"2/{COUNT}", "--dry-run").stdout.splitlines()

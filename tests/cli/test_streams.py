@@ -9,6 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 from types import SimpleNamespace
+from xml.etree import ElementTree as ET
 
 import pytest
 
@@ -63,6 +64,7 @@ def test_a_reader_that_stops_reading_is_no_error_on_windows_either(monkeypatch, 
     assert (sys.stdout is None) == silent
 
 
+REPORTED = "preview in out --report r.json -o q.html"
 ODD = {"escape": b"\x1b[31mred.bvh", "dash": b"-v.bvh", "bytes": b"\xff\xfe.bvh", "dollar": b"$x$.bvh"}
 
 
@@ -75,11 +77,12 @@ def test_a_clip_of_any_name_is_worked_on_and_its_name_steers_no_terminal(run, cl
     assert result.exit_code == 0, result.stderr
     assert os.fsencode("out/" + odd) in result.stdout_bytes
     assert "\x1b" not in result.stderr
-    for more in ("info in", "diff in out", "preview in -o p.html", "preview in -o p.svg"):
+    for more in ("info in", "diff in out", "preview in -o p.html", "preview in -o p.svg", REPORTED):
         again = run(*more.split())
         assert again.exit_code == 0, again.stderr
         assert "\x1b" not in again.output
     json.loads(Path("r.json").read_text("utf-8"))
+    ET.parse("p.svg")  # noqa: S314  our own file
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="the system takes no such name")
@@ -104,6 +107,16 @@ def test_what_cannot_be_written_is_named(clip, copy_spec, tmp_path, arguments, r
     line = f"{shlex.join(words)} -q {redirect}"
     done = subprocess.run(["sh", "-c", line], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (1, f"motionedit: error: {message}\n")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no full device")
+@pytest.mark.parametrize("name", ["p.html", "p.svg", "p.png"])
+def test_a_picture_that_the_disk_has_no_room_for_is_named(run, clip, name):
+    pytest.importorskip("matplotlib")
+    Path(name).symlink_to("/dev/full")
+    result = run("preview", clip(), "-o", name)
+    said = f"motionedit: error: {name}: cannot be written: No space left on device\n"
+    assert (result.exit_code, result.stderr) == (1, said)
 
 
 def test_a_closed_standard_input_is_said(run, copy_spec, monkeypatch):

@@ -1,6 +1,7 @@
 """--update passes over what is done, and knows what was said of it."""
 
 import json
+import os
 from pathlib import Path
 
 import pytest
@@ -88,3 +89,33 @@ def test_normalize_makes_all_anew_where_the_list_of_clips_is_another(run):
     fewer = run("normalize", *swings[:2], "-s", spec, "-o", "n", "--update")
     assert fewer.stdout == "n/swing01.bvh\nn/swing02.bvh\n"
     assert len(json.loads(Path("n/normalization.json").read_text())["clips"]) == 2
+
+
+def test_a_clip_in_whose_place_an_older_one_was_put_is_edited_again(edit, clip):
+    edit()
+    old = clip("old.bvh", seed=7)
+    os.utime(old, (1, 1))
+    old.replace("in/a.bvh")
+    assert edit("--update").stdout == "out/a.bvh\n"
+    assert edit("--update").stdout == ""
+
+
+def test_a_report_has_frames_of_skipped_clips_where_it_has_those_of_others(edit):
+    edit()
+    both = "out/a.bvh\nout/b.bvh\n"
+    assert edit("--update", "--report-frames").stdout == ""  # nobody is told
+    assert edit("--update", "--report-frames", "--report", "with.json").stdout == both
+    Path("out/b.bvh").unlink()
+    assert edit("--update", "--report", "without.json").stdout == "out/b.bvh\n"
+    frames = [
+        ["frames" in clip["constraints"][0] for clip in json.loads(Path(name).read_text())["clips"]]
+        for name in ("with.json", "without.json")
+    ]
+    assert frames == [[True, True], [False, False]]
+
+
+def test_what_was_not_verified_is_made_again_where_it_is_to_be(edit):
+    edit()
+    assert edit("--update", "--verify").stdout == "out/a.bvh\nout/b.bvh\n"
+    assert edit("--update", "--verify").stdout == ""
+    assert edit("--update").stdout == ""

@@ -95,3 +95,10 @@ def test_a_table_beside_a_spec_in_another_folder_is_named_from_here(tmp_path, mo
         load_spec((folder / "golf.yaml").relative_to(tmp_path), "normalize")
     (error,) = caught.value.errors
     assert str(error) == "configs/hits.csv:2: frame must be a whole number of at least 0, not 'x'"
+
+
+def test_more_events_than_a_clip_can_be_asked_for_are_refused(messages):
+    events = ", ".join(f"e{i}: {i}" for i in range(1001))
+    assert messages(f"events: {{{events}}}", "normalize") == [
+        "spec.yaml:2: events: are 1001; one spec has 1000 at most: they are asked for together"
+    ]

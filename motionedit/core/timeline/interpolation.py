@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 # A Gaussian is cut at this many standard deviations.
 KERNEL_RADIUS = 3.0
+# Frames: a narrower one weighs the frames beside the middle by less than a number's last digit, or by nothing at all.
+NARROWEST = 0.1
 
 
 def monotone_cubic(x: FloatArray, y: FloatArray, at: FloatArray) -> FloatArray:
@@ -105,7 +107,7 @@ def gaussian(sigma: float, frames: int) -> FloatArray:
 
     `sigma` is in frames; the radius leaves a reflection of `frames` rows something to reflect.
     """
-    radius = max(min(int(np.ceil(KERNEL_RADIUS * sigma)), frames - 1), 0)
+    radius = max(min(int(np.ceil(KERNEL_RADIUS * sigma)), frames - 1), 0) if sigma > NARROWEST else 0
     if radius < 1:
         return np.ones(1)
     weights = np.exp(-0.5 * (np.arange(radius + 1) / sigma) ** 2)

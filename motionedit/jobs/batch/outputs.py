@@ -35,13 +35,16 @@ def refuse_clashes(outputs: Iterable[tuple[str, Path | None]], inputs: Iterable[
         [path for _, path in files if identity(path) in taken],
         "is an input of this run, and an input is never overwritten; write to another file or folder",
     )
-    first: dict[str, str] = {}
+    first: dict[str, tuple[str, Path]] = {}
     for what, path in files:
         if path.exists() and not path.is_file():
             continue  # a device takes any number of outputs; a folder is refused where it is written
-        other = first.setdefault(place(path), what)
+        other, _ = first.setdefault(place(path), (what, path))
         if other is not what:
             raise UsageError(f"{other} and {what} would both be written to {path}")
+    folders = {one for folder in {path.parent for _, path in files} for one in (folder, *folder.parents)}
+    both = [first[one][1] for one in map(place, sorted(folders)) if one in first]
+    refuse_paths(both, "would be a file and the folder of other outputs; write to another file or folder")
 
 
 def refuse_paths(paths: Sequence[Path], reason: str) -> None:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from motionedit.dataclass import dataclass
 from motionedit.errors import UsageError
+from motionedit.jobs.batch.current import nothing_is_newer, stamp_of
 from motionedit.jobs.batch.files import identity
 from motionedit.jobs.batch.outputs import refuse_clashes, refuse_existing, refuse_paths
 
@@ -88,6 +89,10 @@ class RunOptions:
     report_frames: bool | None = None
     progress: Callable[[int], AbstractContextManager[Callable[[], None]]] = no_progress
 
+    def tells_frames(self, clips: int) -> bool:
+        """Tell whether the report of so many clips, those of all shards, has what is told frame by frame."""
+        return clips == 1 if self.report_frames is None else self.report_frames
+
 
 @dataclass(frozen=True)
 class ClipTask:
@@ -111,6 +116,8 @@ class ClipTask:
         With `preview`: the page next to the output.
     verdict : Verdict or None
         Of a current output, where verdicts are kept: what the run that made it had to say of it.
+    stamp : tuple of int, or None
+        Where verdicts are kept: size and time (ns) of the clip's file, before anything was read.
     clip : Clip or None
         The clip itself, where it is in memory already: then nothing is read.
     """
@@ -123,6 +130,7 @@ class ClipTask:
     elsewhere: bool = False
     page: Path | None = None
     verdict: Verdict | None = None
+    stamp: tuple[int, int] | None = None
     clip: Clip | None = None
 
     @property
@@ -220,11 +228,14 @@ def plan(
         tasks = [replace(task, page=task.output and task.output.with_suffix(".html")) for task in tasks]
     outputs = [(task.label, path) for task in tasks for path in task.outputs]
     inputs = [task.source for task in tasks]
-    refuse_clashes([("the report", options.report), *writes, *outputs], [*inputs, *depends])
+    kept = [] if verdicts is None else [("what --update remembers", verdicts.path)]
+    refuse_clashes([("the report", options.report), *writes, *kept, *outputs], [*inputs, *depends])
     # Only now: whether two clips go to one file, every shard says.
     tasks = shared_out(tasks, options.shard)
+    if verdicts is not None:
+        tasks = [replace(task, stamp=stamp_of(task.source)) for task in tasks]
     if options.update:
-        tasks = [_recalled(task, verdicts) if _is_current(task, depends) else task for task in tasks]
+        tasks = [_recalled(task, depends, options, verdicts, clips=len(tasks)) for task in tasks]
     if not options.overwrite:
         refuse_existing([path for task in tasks if not (task.current or task.elsewhere) for path in task.outputs])
     return tasks
@@ -283,15 +294,16 @@ def _with_outputs(tasks: list[ClipTask], output: str) -> list[ClipTask]:
     return [replace(task, output=target / task.relative) for task in tasks]
 
 
-def _recalled(task: ClipTask, verdicts: Verdicts | None) -> ClipTask:
-    """Return a task whose output is newer than all it is made from; current where its verdict is known, too."""
-    verdict = None if verdicts is None or task.output is None else verdicts.recall(task.output)
-    return replace(task, current=verdicts is None or verdict is not None, verdict=verdict)
-
-
-def _is_current(task: ClipTask, depends: Sequence[Path]) -> bool:
-    """Tell, by make's rule, whether no file that the output is made from is newer than it."""
-    if task.elsewhere or task.output is None or task.source is None or not all(path.exists() for path in task.outputs):
-        return False
-    made = min(path.stat().st_mtime_ns for path in task.outputs)
-    return all(made >= path.stat().st_mtime_ns for path in (task.source, *depends) if path.exists())
+def _recalled(
+    task: ClipTask, depends: Sequence[Path], options: RunOptions, verdicts: Verdicts | None, *, clips: int
+) -> ClipTask:
+    """Return a task; current where nothing is newer than its output, and all is known that this run is to say of it."""
+    if task.elsewhere or task.output is None or task.source is None:
+        return task
+    if not nothing_is_newer(task.outputs, [task.source, *depends]):
+        return task
+    if verdicts is None:
+        return replace(task, current=True)
+    frames = None if options.report is None else options.tells_frames(clips)
+    verdict = verdicts.recall(task.output, stamp=task.stamp, frames=frames, verify=options.verify)
+    return replace(task, current=verdict is not None, verdict=verdict)

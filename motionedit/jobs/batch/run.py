@@ -84,9 +84,10 @@ def run_batch(
     tasks: Sequence[ClipTask], work: Work, options: RunOptions, *, verdicts: Verdicts | None = None
 ) -> BatchResult:
     """Do the same work on every clip but those that are elsewhere; see `run_each`."""
+    options = replace(options, report_frames=options.tells_frames(len(tasks)))
+    run_one = RunOne(_for_workers(options), work)
     tasks = [task for task in tasks if not task.elsewhere]
     waiting = [task for task in tasks if not task.current]
-    run_one = RunOne(_for_workers(options, clips=len(tasks)), work)
     return _run(tasks, run_one, waiting, options, verdicts)
 
 
@@ -99,7 +100,8 @@ def run_each(
     by a fault of the spec, the exit code is that of a spec error. A clip that is current stands in the result with what
     `verdicts` know of it; what becomes of the others they are told.
     """
-    run_one = RunOwn(_for_workers(options, clips=len(pairs)))
+    options = replace(options, report_frames=options.tells_frames(len(pairs)))
+    run_one = RunOwn(_for_workers(options))
     items = [(task, work) for task, work in pairs if not task.current]
     return _run([task for task, _ in pairs], run_one, items, options, verdicts)
 
@@ -137,7 +139,8 @@ def _run(
                 one = one if arrivals is None else arrivals.checked(task, one)
                 record = _record(task, one)
                 if verdicts is not None and one.digest is not None and task.output is not None:
-                    verdicts.keep(task.output, one.digest, Verdict(record, one.outcome.warnings))
+                    verdict = Verdict(record, one.outcome.warnings, bool(options.report_frames))
+                    verdicts.keep(task.output, one.digest, verdict, stamp=task.stamp)
                 records.append(record)
                 done.append(replace(one, outcome=replace(one.outcome, record={})))
                 advance()
@@ -221,10 +224,9 @@ def _has_failed(result: Done | MotionEditError) -> bool:
     return not isinstance(result, Done) or bool(result.errors)
 
 
-def _for_workers(options: RunOptions, *, clips: int) -> RunOptions:
+def _for_workers(options: RunOptions) -> RunOptions:
     """Return the options as workers get them: nothing that cannot be pickled, and nothing left to be told by."""
-    frames = clips == 1 if options.report_frames is None else options.report_frames
-    return replace(options, progress=no_progress, report_frames=frames)
+    return replace(options, progress=no_progress)
 
 
 def _collect(

@@ -17,7 +17,7 @@ from motionedit.core.plain_values import items, json_of, mapping, text
 from motionedit.dataclass import dataclass
 from motionedit.jobs.batch.files import atomic_write, place
 from motionedit.regular_files import read_file
-from motionedit.report.record import plain
+from motionedit.report.record import plain, without_frames
 from motionedit.version import __version__
 
 try:
@@ -35,10 +35,14 @@ OF_THE_TASK = ("clip", "output")
 
 @dataclass(frozen=True)
 class Verdict:
-    """What a run had to say of a clip: its entry in the report, and its warnings."""
+    """What a run had to say of a clip: its entry in the report, and its warnings.
+
+    `frames` says whether the entry has all that is told frame by frame, or nothing of it.
+    """
 
     record: dict[str, Any]
     warnings: tuple[str, ...]
+    frames: bool
 
 
 def run_key(command: str, data: Mapping[str, Any], *, files: Sequence[Path] = (), more: object = None) -> str:
@@ -81,36 +85,42 @@ class Verdicts:
 
     def __init__(self, folder: Path, key: str) -> None:
         self._root = place(folder)
-        self._path = folder / NAME
+        self.path = folder / NAME
         self._key = key
         self._known: dict[str, bytes] | None = None
         self._added = 0
 
-    def recall(self, output: Path) -> Verdict | None:
-        """Return the verdict on an output; None where there is none on this very file, made as it would be made now."""
+    def recall(
+        self, output: Path, *, stamp: tuple[int, int] | None, frames: bool | None, verify: bool
+    ) -> Verdict | None:
+        """Return the verdict on an output; None where there is none on these very files, as wanted now.
+
+        `stamp` tells the clip's file from others. With `frames` it has what is told frame by frame, without it not;
+        None: nobody asks. With `verify` it says how bvhio read the output.
+        """
         if self._known is None:
             self._known = dict(self._lines())
-        line = self._known.get(self._name(output))
-        if line is None:
-            return None
         try:
-            said = mapping(json_of(line))
-            if said["key"] != self._key:
-                return None
-            if said["sha256"] != hashlib.sha256(read_file(output)).hexdigest():
-                return None
+            said = mapping(json_of(self._known[self._name(output)]))
+            now = (self._key, [*(stamp or ())], hashlib.sha256(read_file(output)).hexdigest())
             record = mapping(said["record"])
             text(record["status"])
-            return Verdict(record, tuple(map(text, items(said["warnings"]))))
+            lacks = (frames and not said["by_frame"]) or (verify and "verify" not in record)
+            if lacks or (said["key"], said["clip"], said["sha256"]) != now:
+                return None
+            record = without_frames(record) if frames is False else record
+            return Verdict(record, tuple(map(text, items(said["warnings"]))), bool(said["by_frame"]))
         except (OSError, KeyError, ValueError):
             return None
 
-    def keep(self, output: Path, digest: str, verdict: Verdict) -> None:
+    def keep(self, output: Path, digest: str, verdict: Verdict, *, stamp: tuple[int, int] | None) -> None:
         """Add the verdict on an output that was written just now; `digest` is the SHA-256 of what was written."""
         said = {
             "output": self._name(output),
             "sha256": digest,
+            "clip": stamp,
             "key": self._key,
+            "by_frame": verdict.frames,
             "record": plain({key: value for key, value in verdict.record.items() if key not in OF_THE_TASK}),
             "warnings": list(verdict.warnings),
         }
@@ -125,11 +135,11 @@ class Verdicts:
     def close(self) -> None:
         """Leave out lines that later ones stand for."""
         with contextlib.suppress(OSError):
-            if not self._added or self._path.stat().st_size == self._added:
+            if not self._added or self.path.stat().st_size == self._added:
                 return
             with self._opened():
                 last = sorted(dict(self._lines()).items())
-                atomic_write(self._path, [line + b"\n" for _, line in last])
+                atomic_write(self.path, [line + b"\n" for _, line in last])
 
     def _name(self, output: Path) -> str:
         return place(output).removeprefix(self._root)
@@ -138,17 +148,17 @@ class Verdicts:
     def _opened(self) -> Iterator[BinaryIO]:
         """Give the file to add to, held against other runs; one of them may have put another in its place meanwhile."""
         while True:
-            with self._path.open("a+b") as stream:
+            with self.path.open("a+b") as stream:
                 if fcntl is not None:
                     fcntl.flock(stream, fcntl.LOCK_EX)  # let go as it is closed
-                if self._path.stat().st_ino == os.fstat(stream.fileno()).st_ino:
+                if self.path.stat().st_ino == os.fstat(stream.fileno()).st_ino:
                     yield stream
                     return
 
     def _lines(self) -> Iterator[tuple[str, bytes]]:
         """Yield the outputs that the file tells of, each with its line: as text, which takes the least memory."""
         with contextlib.suppress(OSError):
-            for line in read_file(self._path).splitlines():
+            for line in read_file(self.path).splitlines():
                 # A line that a killed run began is none.
                 with contextlib.suppress(ValueError, KeyError):
                     yield text(mapping(json_of(line))["output"]), line

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
@@ -80,7 +81,7 @@ def event_frames(
     # A rule may wait for another's event; the spec has refused rings, so each round finds at least one.
     waiting = {name: spec.detect for name, spec in specs.items() if spec.detect is not None and name not in frames}
     while waiting:
-        ready = [name for name, rule in waiting.items() if not _waits_for(rule) & set(waiting)]
+        ready = [name for name, rule in waiting.items() if not _waits_for(rule) & waiting.keys()]
         for name in ready:
             frames[name] = _found(waiting.pop(name), facts, place.at(name).at("detect"), events=frames)
     return frames
@@ -156,23 +157,40 @@ def _quantity(rule: DetectRule) -> Quantity:
 def _clip_key(by_clip: Mapping[str, int], relative: str, others: Collection[str], place: Place) -> str | None:
     """Return the key that means a clip: its path or its name, each with or without .bvh."""
     path = _posix(relative)
-    keys = {_posix(key): key for key in by_clip}
+    keys = _keys_by_path(tuple(by_clip))
     for whole_path in (path, _without_suffix(path)):
         if whole_path in keys:
             return keys[whole_path]
     for name in _names(path):
         if name not in keys:
             continue
-        paths = [_posix(other) for other in others if _posix(other) != path]
-        if any(name in (other, _without_suffix(other)) for other in paths):
+        named = [other for other in _paths_by_name(tuple(others)).get(name, ()) if other != path]
+        if any(name in (other, _without_suffix(other)) for other in named):
             # It is the whole path of another clip.
             return None
-        twins = [other for other in paths if name in _names(other)]
+        twins = [other for other in named if name in _names(other)]
         if twins:
             message = f"'{keys[name]}' may be {path} or {twins[0]}; give the clip's path"
             raise place.at(keys[name]).error(message)
         return keys[name]
     return None
+
+
+# Of thousands of clips, each is looked for in a table of thousands: what is the same for all is made once.
+@lru_cache(maxsize=8)
+def _keys_by_path(keys: tuple[str, ...]) -> dict[str, str]:
+    """Return the keys of a table by the paths that they are."""
+    return {_posix(key): key for key in keys}
+
+
+@lru_cache(maxsize=2)
+def _paths_by_name(others: tuple[str, ...]) -> dict[str, list[str]]:
+    """Return the paths of clips by all that may mean one of them, each with or without .bvh."""
+    found: dict[str, list[str]] = {}
+    for path in map(_posix, others):
+        for name in {path, _without_suffix(path), *_names(path)}:
+            found.setdefault(name, []).append(path)
+    return found
 
 
 def _names(path: str) -> tuple[str, str]:

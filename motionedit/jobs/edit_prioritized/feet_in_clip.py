@@ -62,7 +62,7 @@ class FeetInClip:
 
     def plants(self, given: PlantsSpec, place: Place) -> dict[int, GivenPlants] | None:
         """Return the plants that the spec or its file gives, by ankle; None where they are to be found."""
-        found: dict[int, GivenPlants] = {}
+        found: dict[int, list[tuple[str, int, int]]] = {}
         if given.by_foot is not None:
             motion = self.facts.clip.motion
             for foot, intervals in given.by_foot.items():
@@ -80,8 +80,8 @@ class FeetInClip:
                         otherwise=None,
                     )
                     if joint is not None and span is not None:
-                        found[joint] = (*found.get(joint, ()), ("heel", *span), ("toe", *span))
-            return found
+                        found.setdefault(joint, []).extend((("heel", *span), ("toe", *span)))
+            return self._no_more_than_frames({joint: tuple(plants) for joint, plants in found.items()}, place)
         if given.rows is None:
             return None
         mine = {self.relative, PurePosixPath(self.relative).stem}
@@ -94,7 +94,20 @@ class FeetInClip:
                     )
                 elif joint is not None:
                     parts = ("heel", "toe") if row.part == "foot" else (row.part,)
-                    found[joint] = (*found.get(joint, ()), *((part, row.first, row.last) for part in parts))
+                    found.setdefault(joint, []).extend((part, row.first, row.last) for part in parts)
+        return self._no_more_than_frames({joint: tuple(plants) for joint, plants in found.items()}, place)
+
+    def _no_more_than_frames(self, found: dict[int, GivenPlants], place: Place) -> dict[int, GivenPlants]:
+        """Return plants by ankle, of which a clip has no more than frames: others lie over each other."""
+        motion = self.facts.clip.motion
+        for joint, plants in found.items():
+            for part in ("heel", "toe"):
+                count = sum(of == part for of, _, _ in plants)
+                if count > len(motion):
+                    name = motion.skeleton.names[joint]
+                    message = f"'{name}' has {count} plants of its {part}, more than {place.clip} has frames"
+                    self.faults.add(place.error(message))
+                    break
         return found
 
     def _joint(self, name: str, place: Place) -> int | None:

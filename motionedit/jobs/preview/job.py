@@ -8,8 +8,8 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 from motionedit.errors import MotionEditError, UsageError, together
-from motionedit.jobs.batch.files import atomic_write
-from motionedit.jobs.batch.one_clip import read_task
+from motionedit.jobs.batch.files import clean_leftovers
+from motionedit.jobs.batch.one_clip import read_task, write_file
 from motionedit.jobs.batch.outputs import refuse_clashes
 from motionedit.jobs.batch.plan import find_clips
 from motionedit.jobs.preview.report_file import matches, read_report
@@ -54,7 +54,7 @@ def run(
         Another ending, a clip that does not exist, an output that is an input; a sheet without matplotlib, or with a
         report; a report that cannot be read, or that fits none of the clips.
     ClipError, MotionEditErrors
-        Clips that cannot be read: nothing is written.
+        Clips that cannot be read: nothing is written; or a picture that cannot be.
     """
     kind = output.suffix.lower()
     if kind not in _PAGES + _SHEETS:
@@ -74,10 +74,8 @@ def run(
     figures = _figures(_clips(tasks, lenient=lenient), _labels(tasks), said)
     edits = [] if read is None else _edits(read, found, figures)
     content = _page(figures, edits) if kind in _PAGES else _sheet(figures, kind)
-    try:
-        atomic_write(output, content)
-    except OSError as error:
-        raise UsageError(f"cannot be written: {error.strerror or error}", file=str(output)) from error
+    clean_leftovers([output.parent])
+    write_file(output, content)
     return [output]
 
 

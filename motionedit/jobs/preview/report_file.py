@@ -112,7 +112,12 @@ def _stem(record: dict[str, Any]) -> str:
 
 def _by_path(record: dict[str, Any], free: dict[int, Path]) -> int | None:
     wanted = identity(Path(record["output"]))
-    return next((i for i, path in free.items() if identity(path) == wanted), None)
+    return next((i for i, path in free.items() if record["output"] == _told(path) or identity(path) == wanted), None)
+
+
+def _told(path: Path) -> str:
+    """Return a path as a report has it, whose text has no bytes that are none."""
+    return str(path).encode(errors="replace").decode()
 
 
 def _by_stem(record: dict[str, Any], free: dict[int, Path]) -> int | None:
@@ -125,7 +130,7 @@ def _before(record: dict[str, Any], edited: int, tasks: Sequence[ClipTask]) -> i
     """Return the input's place: by its path, else by its stem, else the other one of two."""
     source = Path(str(record.get("clip")))
     others = {i: task.source for i, task in enumerate(tasks) if i != edited and task.source is not None}
-    named = [i for i, path in others.items() if identity(path) == identity(source)]
+    named = [i for i, path in others.items() if record.get("clip") == _told(path) or identity(path) == identity(source)]
     named += [i for i, path in others.items() if path.stem == source.stem]
     named += [1 - edited] if len(tasks) == 2 else []
     return named[0] if named else None

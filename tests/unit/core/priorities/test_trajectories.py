@@ -1,81 +1,28 @@
 """Targets of shape constraints: points met exactly, holds that stand still, ramps that leave and meet the input."""
 
-import os
-from dataclasses import replace
-from pathlib import Path
-
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-from hypothesis.extra import numpy as nps
+from trajectories_through_points import (
+    FRAMES,
+    PATH,
+    PLACE,
+    RATE,
+    SHIFT,
+    TURNS,
+    T,
+    at,
+    during,
+    hold,
+    largest_jump,
+    targets,
+    turned,
+    whole,
+)
 
-from motionedit.core import rotations as rot
-from motionedit.core.body.anatomy import find_anatomy
-from motionedit.core.bvh import read_clip
-from motionedit.core.kinematics import Effector, effector_positions, forward
 from motionedit.core.priorities.trajectories import (
-    ControlPoint,
     active_interval,
-    eased,
-    position_targets,
     rotation_targets,
 )
-from motionedit.core.units import STANDARD_LEG
-
-# Frames so fine that a difference between two of them is a derivative: 10 s at 1000 frames a second.
-FRAMES, RATE = 10001, 1000.0
-T = np.arange(FRAMES) / RATE
-PATH = np.stack((np.sin(T), 0.3 * np.cos(2.0 * T) + 0.1, 1.2 * T), axis=1)
-TURNS = rot.multiply(rot.exp(np.outer(T, [0.0, 0.5, 0.0])), rot.exp(np.outer(np.sin(T), [0.4, 0.1, -0.3])))
-SHIFT = np.array([0.1, 0.7, -0.3])
-PLACE = np.array([1.3, 2.1, 4.7])
-TURN = rot.exp(np.array([0.3, -1.1, 0.4]))
-
-
-def hold(start, stop, position=None, shift=None, **more):
-    return ControlPoint("hold", start, stop, position, shift, **more)
-
-
-def during(start, stop, shift=None):
-    return ControlPoint("during", start, stop, None, shift)
-
-
-def at(frame, position=None, shift=None, **more):
-    return ControlPoint("at", frame, frame, position, shift, **more)
-
-
-def targets(points, *, path=PATH, ease=1000.0, curve="time"):
-    return position_targets(path, points, ease_in=ease, ease_out=ease, curve=curve)
-
-
-def whole(points, **how):
-    """Return the input with the targets laid into it, shape (F, 3)."""
-    path = how.get("path", PATH).copy()
-    first, found = targets(points, **how)
-    path[first : first + len(found)] = found
-    return path
-
-
-def turned(points, *, turns=TURNS, ease=1000.0):
-    turns = turns.copy()
-    first, found = rotation_targets(turns, points, ease_in=ease, ease_out=ease)
-    turns[first : first + len(found)] = found
-    return turns
-
-
-def largest_jump(path, rate=RATE):
-    """Return the largest change of velocity from one frame to the next, units a second."""
-    return np.linalg.norm(np.diff(path, n=2, axis=0), axis=1).max() * rate
-
-
-def largest_turn_jump(turns):
-    """Return the largest change of angular velocity from one frame to the next, rad a second."""
-    steps = rot.log(rot.multiply(rot.conjugate(turns[:-1]), turns[1:]))
-    return np.linalg.norm(np.diff(steps, axis=0), axis=1).max() * RATE
-
-
-# No points.
 
 
 def test_without_points_the_targets_are_the_input_over_the_whole_clip():
@@ -309,185 +256,3 @@ def test_by_index_the_ends_still_have_the_inputs_velocity():
 def test_at_even_keys_index_and_time_are_the_same_curve():
     points = [at(2000, shift=SHIFT), at(3000, shift=-SHIFT), at(4000, position=PLACE)]
     np.testing.assert_allclose(whole(points, curve="index"), whole(points), atol=1e-12)
-
-
-# Rotations.
-
-
-def test_turns_pass_through_their_points_and_stand_still_in_holds():
-    found = turned([at(2000, orientation=TURN), hold(3000, 3500), hold(5000, 5500, orientation=TURN)])
-    np.testing.assert_array_equal(found[2000], TURN)
-    np.testing.assert_array_equal(found[3000:3501], np.broadcast_to(TURNS[3000], (501, 4)))
-    np.testing.assert_array_equal(found[5000:5501], np.broadcast_to(TURN, (501, 4)))
-
-
-@pytest.mark.parametrize(
-    "points",
-    [
-        [hold(2000, 2500, orientation=TURN)],
-        [at(2000, orientation=TURN), at(3000), at(4000, orientation=rot.conjugate(TURN))],
-        [hold(0, 100), during(3000, 4000), hold(9000, 10000, orientation=TURN)],
-    ],
-)
-def test_the_angular_velocity_is_continuous(points):
-    assert largest_turn_jump(turned(points)) < 0.05
-
-
-def test_between_two_holds_it_is_a_slerp_that_starts_and_ends_at_rest():
-    other = rot.multiply(TURN, rot.exp(np.array([0.0, 0.0, 1.0])))
-    found = turned([hold(2000, 2500, orientation=TURN), hold(3500, 4000, orientation=other)])
-    s = np.linspace(0.0, 1.0, 1001)
-    expected = rot.slerp(TURN, other, s * s * (3.0 - 2.0 * s))
-    assert rot.angle_between(found[2500:3501], expected).max() < 1e-12
-
-
-def test_turns_without_an_orientation_ride_the_input_to_the_last_bit():
-    np.testing.assert_array_equal(turned([at(2000), during(3000, 4000), at(6000, shift=SHIFT)]), TURNS)
-
-
-def test_an_instants_orientation_turns_with_the_input_around_it():
-    found = turned([at(2000, orientation=TURN)])
-    extra = rot.multiply(found, rot.conjugate(TURNS))
-    # The extra turn is at its fullest there, and at rest.
-    assert rot.angle_between(extra[1999], extra[2000]) < 1e-5
-    assert rot.angle_between(extra[2000], rot.multiply(TURN, rot.conjugate(TURNS[2000]))) < 1e-12
-
-
-def test_a_ramp_outside_which_nothing_turns_leaves_the_input_to_the_last_bit():
-    found = turned([hold(2000, 2500, orientation=TURN)])
-    np.testing.assert_array_equal(found[:1001], TURNS[:1001])
-    np.testing.assert_array_equal(found[3500:], TURNS[3500:])
-
-
-def test_a_hold_of_turns_at_the_clips_end_starts_in_place():
-    first, found = rotation_targets(TURNS, [hold(0, 300, orientation=TURN)], ease_in=1000.0, ease_out=0.0)
-    assert first == 0
-    np.testing.assert_array_equal(found, np.broadcast_to(TURN, (301, 4)))
-
-
-@pytest.mark.parametrize("past", [900, 500, 100])
-def test_a_turn_that_goes_past_half_a_turn_from_its_goal_does_not_jump(past):
-    spin = rot.exp(np.outer(T, [0.0, 1.5, 0.0]))
-    # In the ramp of 1000 frames, at this one, the input is half a turn from its goal.
-    goal = rot.exp(np.array([0.0, 1.5 * T[1000 + past] + np.pi, 0.0]))
-    found = turned([hold(2000, 2500, orientation=goal)], turns=spin)
-    assert rot.angle_between(found[1:], found[:-1]).max() < 0.02
-    assert largest_turn_jump(found) < 0.05
-
-
-def test_the_sign_of_a_quaternion_does_not_matter():
-    one, other = (turned([hold(2000, 2500, orientation=sign * TURN)]) for sign in (1.0, -1.0))
-    assert rot.angle_between(one, other).max() < 1e-12
-
-
-def test_turns_that_begin_and_end_in_place_have_no_ramps():
-    found = turned([at(0, orientation=TURN), at(10000, orientation=TURN)])
-    np.testing.assert_array_equal(found[[0, -1]], np.stack((TURN, TURN)))
-
-
-# Any points.
-
-
-@st.composite
-def sessions(draw):
-    """Return a smooth path of some frames, and points on it."""
-    frames = draw(st.integers(1, 80))
-    path = np.cumsum(draw(nps.arrays(np.float64, (frames, 3), elements=st.floats(-1.0, 1.0))), axis=0)
-    times = sorted(draw(st.sets(st.integers(0, frames - 1), min_size=1, max_size=8)))
-    vectors = nps.arrays(np.float64, 3, elements=st.floats(-10.0, 10.0))
-    points = []
-    while times:
-        start = times.pop(0)
-        mode = draw(st.sampled_from(["hold", "during", "at"]))
-        stop = times.pop(0) if times and mode != "at" else start
-        means = [(None, None), (None, draw(vectors))] + [(draw(vectors), None)] * (mode != "during")
-        position, shift = draw(st.sampled_from(means))
-        points.append(ControlPoint(mode, start, stop, position, shift, None, *draw(st.tuples(*[st.floats(-1, 1)] * 3))))
-    return path, points, draw(st.floats(0.0, 40.0)), draw(st.floats(0.0, 40.0))
-
-
-@given(sessions(), st.sampled_from(["time", "index"]))
-def test_any_targets_are_finite_meet_every_point_and_are_bounded(session, curve):
-    path, points, ease_in, ease_out = session
-    first, found = position_targets(path, points, ease_in=ease_in, ease_out=ease_out, curve=curve)
-    last = active_interval(points, ease_in=ease_in, ease_out=ease_out, frames=len(path))[1]
-    assert found.shape == (last - first + 1, 3)
-    assert np.isfinite(found).all()
-    # A ramp that the clip does not cut meets the input.
-    if first < points[0].start and eased(points, ease_in=ease_in, ease_out=ease_out)[0] >= 0:
-        np.testing.assert_array_equal(found[0], path[first])
-    if last > points[-1].stop and eased(points, ease_in=ease_in, ease_out=ease_out)[1] < len(path):
-        np.testing.assert_array_equal(found[-1], path[last])
-    for point in points:
-        ride = path[point.start : point.stop + 1] if point.mode == "during" else path[point.start]
-        wanted = ride + (0.0 if point.shift is None else point.shift) if point.position is None else point.position
-        block = found[point.start - first : point.stop - first + 1]
-        np.testing.assert_array_equal(block, np.broadcast_to(wanted, block.shape))
-
-
-@given(sessions(), st.sampled_from(["time", "index"]))
-def test_any_targets_are_continuous_finer_frames_take_steps_as_much_smaller(session, curve):
-    path, points, ease_in, ease_out = session
-
-    def largest_step(fine):
-        """Return the longest step of the same session at `fine` frames for one."""
-        frames = np.arange(fine * (len(path) - 1) + 1) / fine
-        dense = np.stack([np.interp(frames, np.arange(len(path)), axis) for axis in path.T], axis=1)
-        finer = [replace(point, start=fine * point.start, stop=fine * point.stop) for point in points]
-        # Whole frames, so that no ramp is shorter than one.
-        eases = {"ease_in": fine * round(ease_in), "ease_out": fine * round(ease_out)}
-        _, found = position_targets(dense, finer, **eases, curve=curve)
-        return np.abs(np.diff(found, axis=0)).max(initial=0.0)
-
-    assert largest_step(160) <= 0.2 * largest_step(20) + 1e-12
-
-
-def test_a_joint_less_than_half_a_turn_from_its_goal_is_led_back_on_the_side_on_which_it_is():
-    # The input turns on while the goal stands: by 1.2 rad at its end, and half way through the ramp by more than pi.
-    angle = np.where(T < 4.0, 1.2, 1.2 + 6.0 * (T - 4.0))
-    turns = rot.exp(np.outer(angle, [0.0, 0.0, 1.0]))
-    found = turned([hold(2000, 4000, orientation=rot.exp(np.zeros(3)))], turns=turns)
-    behind = rot.log(rot.multiply(rot.conjugate(turns), found))[4000:5001, 2]
-    assert behind.max() < 1e-9
-    assert -np.pi < behind.min() < -1.2
-    assert largest_turn_jump(found[4001:5000]) < 0.1
-
-
-# A real walk.
-
-
-@pytest.fixture(scope="module")
-def walk():
-    """Return the paths of the right ankle and wrist, normalised metres, and the frames of one second."""
-    folder = os.environ.get("MOTIONEDIT_CLIPS")
-    file = Path(folder or "", "motions", "cmu_12_01_walk.bvh")
-    if folder is None or not file.exists():
-        pytest.skip("MOTIONEDIT_CLIPS names no folder of real clips with this walk")
-    motion = read_clip(file).motion
-    anatomy = find_anatomy(motion.skeleton)
-    poses = forward(motion)
-    joints = (anatomy.legs[1].ankle, anatomy.arms[1].wrist)
-    scale = STANDARD_LEG / anatomy.leg_length
-    return [effector_positions(poses, Effector(j, np.zeros(3))) * scale for j in joints], 1.0 / motion.frame_time
-
-
-@pytest.mark.parametrize("more", ["shift", "position"])
-def test_on_a_real_walk_the_velocity_breaks_little_at_ramps_beyond_the_walks_own_and_at_holds(walk, more):
-    paths, rate = walk
-    ease = round(0.8 * rate)
-
-    def breaks(path, frames):
-        return np.linalg.norm(path[frames + 1] - 2.0 * path[frames] + path[frames - 1], axis=1) * rate
-
-    for path in paths:
-        speed = 0.0
-        for start in range(110, len(path) - 150, 10):
-            shift = np.array([0.0, 0.1, 0.1])
-            how = {"shift": shift} if more == "shift" else {"position": path[start] + shift}
-            found = whole([hold(start, start + 24, **how)], path=path, ease=ease)
-            ramps, holds = np.array([start - ease, start + 24 + ease]), np.array([start, start + 24])
-            assert (breaks(found, ramps) < breaks(path, ramps) + 0.2).all()
-            assert (breaks(found, holds) < 0.25).all()
-            speed = max(speed, np.linalg.norm(path[ramps + 1] - path[ramps], axis=1).max() * rate)
-        # Without the input's velocity a ramp of the path would break it by all of that.
-        assert speed > 1.5

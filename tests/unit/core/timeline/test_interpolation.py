@@ -62,3 +62,9 @@ def test_the_low_pass_is_scipys_gaussian_inside_and_leaves_a_line_alone():
 def test_the_low_pass_takes_clips_shorter_than_its_kernel(frames):
     rows = np.ones((frames, 2))
     np.testing.assert_allclose(low_pass(rows, sigma=3.0), rows, atol=1e-12)
+
+
+@pytest.mark.parametrize("sigma", [0.0, 1e-300, 1e-9, 0.02, 0.1])
+def test_a_low_pass_narrower_than_a_frame_changes_nothing(sigma):
+    rows = np.random.default_rng(3).normal(size=(9, 2))
+    np.testing.assert_array_equal(low_pass(rows, sigma=sigma), rows)

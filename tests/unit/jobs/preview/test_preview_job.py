@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from mannequin import bvh_text
 
-from motionedit.errors import BvhError, MotionEditErrors, UsageError
+from motionedit.errors import BvhError, ClipError, MotionEditErrors, UsageError
 from motionedit.jobs.batch.plan import find_clips
 from motionedit.jobs.preview import job as preview
 
@@ -52,8 +52,8 @@ def test_a_clip_that_cannot_be_read_fails_the_page_and_nothing_is_written(clip, 
     assert not target.exists()
 
 
-def test_a_place_that_cannot_be_written_is_a_usage_error(clip, tmp_path):
-    with pytest.raises(UsageError, match="cannot be written"):
+def test_a_place_that_cannot_be_written_is_named(clip, tmp_path):
+    with pytest.raises(ClipError, match=r"x\.html: cannot be written"):
         preview.run([clip], clip / "x.html")
     assert clip.read_text() == bvh_text()
     assert not list(tmp_path.glob("**/.*"))
