@@ -208,7 +208,8 @@ def radians(degrees: FloatArray) -> FloatArray:
 
     Near such an angle no other one can be written: the digits would not reach below a turn.
     """
-    return np.radians(np.where(np.abs(degrees) > _MOST_WOUND, np.fmod(degrees, 360.0), degrees))
+    wound = np.abs(degrees) > _MOST_WOUND
+    return np.radians(np.where(wound, np.fmod(degrees, 360.0), degrees) if wound.any() else degrees)
 
 
 def _unwrap(angles: FloatArray, seed: FloatArray) -> FloatArray:

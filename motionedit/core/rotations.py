@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
 IDENTITY.setflags(write=False)
+_CONJUGATE = np.array([1.0, -1.0, -1.0, -1.0])
 
 # Below this angle (rad) sin(x)/x and its kin are taken from their series, exact to double precision there.
 _SMALL_ANGLE = 1e-4
@@ -43,7 +44,7 @@ def multiply(a: FloatArray, b: FloatArray) -> FloatArray:
 
 def conjugate(q: FloatArray) -> FloatArray:
     """Return the inverse of unit quaternions, shape (..., 4)."""
-    inverse: FloatArray = q * np.array([1.0, -1.0, -1.0, -1.0])
+    inverse: FloatArray = q * _CONJUGATE
     return inverse
 
 
