@@ -11,11 +11,11 @@ import numpy as np
 from motionedit.core.priorities.far_turns import arcs_of
 from motionedit.core.priorities.frames import run_of, solve_from_input
 from motionedit.core.priorities.groups import Asked, seen_by
-from motionedit.core.priorities.kinds.constraint import Scene, Targets
+from motionedit.core.priorities.kinds.constraint import Scene, Targets, between
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from motionedit.core.arrays import FloatArray
     from motionedit.core.motion import Motion
@@ -102,6 +102,23 @@ def reached_within(asked: Asked, i: int, motion: Motion, frames: slice) -> Targe
     part = motion.at(frames)
     there = constraint.reached(here, seen_by([constraint], part, asked.body))
     return None if there is here else there.since(-frames.start)
+
+
+def toward(
+    asked: Asked, original: tuple[Targets, ...], shares: Mapping[int, FloatArray], motion: Motion
+) -> tuple[Targets, ...]:
+    """Return targets on the way from the original ones to where a motion has them, so much of it each, shape (F,)."""
+    found = list(original)
+    for k, share in shares.items():
+        span = original[k].span
+        inside = np.flatnonzero(share[span])
+        if not len(inside):
+            continue
+        frames = slice(int(span.start + inside[0]), int(span.start + inside[-1] + 1))
+        there = reached_within(asked, k, motion, frames)
+        if there is not None:
+            found[k] = original[k].with_part(between(original[k].within(frames), there, share[frames]))
+    return tuple(found)
 
 
 def _goals(constraints: Sequence[Constraint], found: dict[int, Targets], frames: int) -> dict[int, FloatArray]:

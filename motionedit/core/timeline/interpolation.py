@@ -117,10 +117,19 @@ def gaussian(sigma: float, frames: int) -> FloatArray:
     return frozen(taps)
 
 
+def _line_at_end(taps: FloatArray) -> FloatArray:
+    """Return the weights of rows, the end first, that give the end of the line through them, least squares by taps."""
+    k = np.arange(len(taps))
+    sums = [float(taps @ k**power) for power in range(3)]
+    weights: FloatArray = taps * (sums[2] - sums[1] * k) / (sums[0] * sums[2] - sums[1] ** 2)
+    return weights
+
+
 def low_pass(rows: FloatArray, *, sigma: float) -> FloatArray:
     """Return rows smoothed over frames by a zero-phase Gaussian, shape (F, ...).
 
-    The ends are reflected through the end point (odd reflection), so a straight line stays as it is.
+    The ends are reflected (odd reflection) about where a line through what is near to an end, weighted as the filter
+    is, has it: a straight line stays as it is, and the last row of a clip is smoothed as all others are.
 
     Parameters
     ----------
@@ -133,8 +142,9 @@ def low_pass(rows: FloatArray, *, sigma: float) -> FloatArray:
     if radius < 1:
         return rows.copy()
     kernel = np.concatenate((taps[:0:-1], taps))
-    head = 2.0 * rows[:1] - rows[radius:0:-1]
-    tail = 2.0 * rows[-1:] - rows[-2 : -radius - 2 : -1]
+    line = _line_at_end(taps)
+    head = 2.0 * np.tensordot(line, rows[: radius + 1], 1)[None] - rows[radius:0:-1]
+    tail = 2.0 * np.tensordot(line, rows[: -radius - 2 : -1], 1)[None] - rows[-2 : -radius - 2 : -1]
     padded = np.concatenate((head, rows, tail))
     smooth = np.zeros_like(rows)
     for k, weight in enumerate(kernel):

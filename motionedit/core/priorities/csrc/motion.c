@@ -38,18 +38,27 @@ void world_poses(const int64_t *parents, const int64_t *places, const double *of
         }
 }
 
-/* One column of numbers through a symmetric filter, with odd reflection at the ends.
+/* One column of numbers through a symmetric filter, with odd reflection at the ends: about where a line through what is
+   near to an end, weighted as the filter is, has it.
 
    padded: shape (frames + 2 radius, width), its middle filled; taps: shape (radius + 1,), the middle one first. */
 static void low_pass(double *padded, int64_t frames, int64_t width, int64_t radius, const double *taps, double *out)
 {
-    double *rows = padded + radius * width;
-    for (int64_t i = 1; i <= radius; i++)
-        for (int64_t a = 0; a < width; a++) {
-            rows[-i * width + a] = 2.0 * rows[a] - rows[i * width + a];
-            rows[(frames - 1 + i) * width + a] =
-                2.0 * rows[(frames - 1) * width + a] - rows[(frames - 1 - i) * width + a];
+    double *rows = padded + radius * width, *last = rows + (frames - 1) * width, sums[3] = {0.0, 0.0, 0.0};
+    for (int64_t k = 0; k <= radius; k++)
+        sums[0] += taps[k], sums[1] += taps[k] * (double)k, sums[2] += taps[k] * (double)k * (double)k;
+    const double scale = radius ? 1.0 / (sums[0] * sums[2] - sums[1] * sums[1]) : 0.0;
+    for (int64_t a = 0; a < width; a++) {
+        double head = radius ? 0.0 : rows[a], tail = radius ? 0.0 : last[a];
+        for (int64_t k = 0; radius && k <= radius; k++) {
+            const double weight = scale * taps[k] * (sums[2] - sums[1] * (double)k);
+            head += weight * rows[k * width + a], tail += weight * last[a - k * width];
         }
+        for (int64_t i = 1; i <= radius; i++) {
+            rows[a - i * width] = 2.0 * head - rows[a + i * width];
+            last[a + i * width] = 2.0 * tail - last[a - i * width];
+        }
+    }
     for (int64_t i = 0; i < frames * width; i++)
         out[i] = taps[0] * rows[i];
     for (int64_t k = 1; k <= radius; k++)
