@@ -9,6 +9,7 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.kinematics import forward
 from motionedit.core.trace import frame_blocks
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray
@@ -27,16 +28,35 @@ _STILL = 30.0
 _OWN_JERK = 2.0
 
 
-def is_seen_at(run: Run, after: Motion) -> BoolArray:
-    """Return the frames at which a viewer sees an edited motion step or jerk, shape (F,)."""
-    seen: BoolArray = (steps_at(run, after) > 0.0) | (jerks_at(run, after) > 0.0)
-    return seen
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """What a viewer sees of an edited motion: how far joints step, rad, and how much it jerks at frames, shape (F,)."""
+
+    steps: FloatArray
+    jerks: FloatArray
+
+    @property
+    def frames(self) -> BoolArray:
+        """Where anything is seen, shape (F,)."""
+        seen: BoolArray = (self.steps > 0.0) | (self.jerks > 0.0)
+        return seen
+
+    @property
+    def anything(self) -> bool:
+        """Whether anything is seen."""
+        return bool(self.frames.any())
+
+    def most(self, frames: BoolArray) -> tuple[float, float]:
+        """Return the largest step and the largest jerk at some frames, shape (F,)."""
+        return float(self.steps[frames].max(initial=0.0)), float(self.jerks[frames].max(initial=0.0))
 
 
-def unrest(run: Run, after: Motion) -> tuple[float, float]:
-    """Return the largest step and the largest jerk of an edited motion, each 0 where a viewer does not see it."""
-    step, jerk = (float(found.max(initial=0.0)) for found in (steps_at(run, after), jerks_at(run, after)))
-    return step if step > _SEEN_STEP * run.motion.frame_time * _RATE else 0.0, jerk
+def seen_of(run: Run, after: Motion) -> Seen:
+    """Return what a viewer sees of an edited motion."""
+    steps = steps_at(run, after)
+    if steps.max(initial=0.0) <= _SEEN_STEP * run.motion.frame_time * _RATE:
+        steps = np.zeros(len(steps))
+    return Seen(steps, jerks_at(run, after))
 
 
 def steps_at(run: Run, after: Motion, *, within: FloatArray | None = None) -> FloatArray:
