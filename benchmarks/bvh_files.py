@@ -65,15 +65,15 @@ def rows(folder: Path) -> list[Row]:
     name = f"{FRAMES:,} frames x {len(clip.motion.skeleton)} joints, {size:.0f} MB"
     best = best_of(_ours(clip, path, out) | _bvhio(path, out), rounds=4)
     found = [
-        faster(f"BVH read, {name}", best["read"], best["bvhio read"], aim=15, than="bvhio readAsBvh"),
+        faster(f"BVH read, {name}", best["read"], best["bvhio read"], aim=60, than="bvhio readAsBvh"),
         faster(
             "BVH write, all values of an edit (edited_bytes)",
             best["edit"],
             best["bvhio write"],
-            aim=25,
+            aim=60,
             than="bvhio writeBvh",
         ),
-        faster("BVH write, a new file (new_bytes)", best["new"], best["bvhio write"], aim=25, than="bvhio writeBvh"),
+        faster("BVH write, a new file (new_bytes)", best["new"], best["bvhio write"], aim=60, than="bvhio writeBvh"),
         Row("BVH read", f"{size / best['read']:.0f} MB/s"),
         Row("BVH read and write without an edit", f"{size / best['copy']:.0f} MB/s"),
     ]

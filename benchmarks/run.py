@@ -8,7 +8,7 @@ from __future__ import annotations
 import tempfile
 from pathlib import Path
 
-from benchmarks import batches, bvh_files, pc_edit, prioritized, scale
+from benchmarks import batches, bvh_files, folders, pc_edit, prioritized, scale
 from benchmarks.clock import cells
 from benchmarks.results import machine, table
 from studies.lab import print_table
@@ -32,6 +32,7 @@ def main() -> None:
             ("The edit by prioritized constraints", prioritized.rows(Path(scratch))),
             ("The edit by prioritized constraints, file to file", scale.edits(Path(scratch))),
             ("Many clips, in one process", batches.rows(Path(scratch))),
+            ("Folders of short clips", folders.rows(Path(scratch))),
             (
                 "Many motions, made in memory",
                 scale.fits([(1_000, "gram", None), (1_000, "gram", 20), (1_000, "streaming", 20)]),

@@ -27,4 +27,5 @@ cones=tests/unit/core/priorities/test_cones.py::test_joints_stay_within_their_co
   tests/unit/core/priorities/test_compiled.py tests/unit/core/priorities/test_compiled_buffers.py \
   tests/unit/core/priorities/test_compiled_one_sided.py tests/unit/core/priorities/test_compiled_postures.py \
   tests/unit/core/priorities/test_cones.py tests/unit/core/priorities/test_few_channels.py \
+  tests/unit/core/test_rotations.py tests/unit/core/test_euler.py \
   tests/properties/test_compiled_text.py

@@ -18,7 +18,7 @@ from motionedit.core.compiled import compiled
 from motionedit.core.motion import position_columns
 
 if TYPE_CHECKING:
-    from motionedit.core.arrays import BoolArray, FloatArray
+    from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.motion import Motion
 
 TURN = 2.0 * np.pi
@@ -159,8 +159,8 @@ def nearest(first: FloatArray, seed: FloatArray) -> FloatArray:
     """Return angles (A, F) nearest the frame before, by whole turns, and of triples by their other solutions."""
     kernel = compiled()
     if kernel is not None:
-        angles = np.array(first, order="C")
-        kernel.nearest_angles(angles, np.ascontiguousarray(seed))
+        whole = np.array([[0, 0, first.shape[1]]])
+        angles: FloatArray = nearest_in_runs(first[:, None], whole, seed[None])[0]
         return angles
     if len(first) < 3:
         return _unwrap(first, seed)
@@ -169,6 +169,21 @@ def nearest(first: FloatArray, seed: FloatArray) -> FloatArray:
     if np.any(distance >= np.pi):
         first = _changed_over(first, seed, distance)
     return _unwrap(first, seed)
+
+
+def nearest_in_runs(first: FloatArray, runs: IntArray, seeds: FloatArray) -> FloatArray:
+    """Return what `nearest` does in runs of G joints' frames, shape (G, A, F), from solutions (A, G, F).
+
+    A run, shape (R, 3), is a joint's place, its first frame and the one after its last; it has its own seed, (R, A).
+    """
+    angles, kernel = np.array(first.swapaxes(0, 1), order="C"), compiled()
+    if kernel is not None:
+        whole = np.ascontiguousarray(runs, dtype=np.int64), np.ascontiguousarray(seeds)
+        kernel.nearest_angles(angles, *whole, angles.shape[2])
+        return angles
+    for (joint, start, stop), seed in zip(runs.tolist(), seeds, strict=True):
+        angles[joint, :, start:stop] = nearest(first[:, joint, start:stop], seed)
+    return angles
 
 
 def _changed_over(first: FloatArray, seed: FloatArray, distance: FloatArray) -> FloatArray:
@@ -193,7 +208,8 @@ def radians(degrees: FloatArray) -> FloatArray:
 
     Near such an angle no other one can be written: the digits would not reach below a turn.
     """
-    return np.radians(np.where(np.abs(degrees) > _MOST_WOUND, np.fmod(degrees, 360.0), degrees))
+    wound = np.abs(degrees) > _MOST_WOUND
+    return np.radians(np.where(wound, np.fmod(degrees, 360.0), degrees) if wound.any() else degrees)
 
 
 def _unwrap(angles: FloatArray, seed: FloatArray) -> FloatArray:

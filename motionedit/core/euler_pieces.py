@@ -8,11 +8,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motionedit.core.euler import TOGETHER, TURN, angles_near, gimbal_locked, near, nearest, radians, solve_angles
+from motionedit.core.euler import (
+    TOGETHER,
+    TURN,
+    angles_near,
+    gimbal_locked,
+    near,
+    nearest_in_runs,
+    radians,
+    solve_angles,
+)
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.motion import Motion
@@ -49,63 +58,101 @@ def touched_pieces(motion: Motion, touched: BoolArray, *, given: GivenRows, size
         No piece reaches over a multiple of this many frames. Clips of no more frames keep their angles, longer ones
         solve them again piece by piece, which costs time but hardly any memory.
     """
-    # Joints mostly ask for the same few rows, and are touched at the same frames.
-    rows = cache(lambda start, stop: radians(given(start, stop)))
-    spans: dict[bytes, list[tuple[int, int]]] = {}
+    values = _Given(given, whole=len(motion) <= size, frames=len(motion))
     turned = np.asarray(touched.any(axis=0))
-    pieces = {}
+    pieces: dict[int, list[Piece]] = {}
     for group in motion.skeleton.rotation_groups:
         places = np.flatnonzero(turned[group.joints])
         step = max(TOGETHER // len(motion), 1)
         for first in range(0, len(places), step):
             some = places[first : first + step]
-            q = np.ascontiguousarray(motion.rotations.transpose(2, 1, 0)[:, group.joints[some]])
-            solved = solve_angles(q, group.axes)
-            locked = np.any(gimbal_locked(solved), axis=-1).tolist()
-            for k, (joint, columns) in enumerate(zip(group.joints[some].tolist(), group.columns[some], strict=True)):
-                track = _Track(q[:, k], group.axes, solved[:, k], locked[k])
-                mask = touched[:, joint]
-                key = mask.tobytes()
-                if key not in spans:
-                    spans[key] = runs(mask)
-                pieces[joint] = _pieces(track, columns, given=rows, spans=spans[key], size=size)
+            joints, columns = group.joints[some], group.columns[some]
+            q = np.ascontiguousarray(motion.rotations.transpose(2, 1, 0)[:, joints])
+            runs = _runs_of(touched[:, joints].T)
+            angles, seeds, plain = _angles_of(q, group.axes, columns, runs, values)
+            degrees = np.degrees(angles) if len(motion) <= size or not plain.all() else angles
+            for i, (k, start, stop) in enumerate(runs.tolist()):
+                keep, seed = len(motion) <= size or not plain[i], seeds[i]
+                for one, other in pairwise((start, *range((start // size + 1) * size, stop, size), stop)):
+                    piece = Piece(one, other, seed, degrees[k, :, one:other].T if keep else None)
+                    pieces.setdefault(int(joints[k]), []).append(piece)
+                    seed = angles[k, :, other - 1].copy()
     return pieces
+
+
+class _Given:
+    """The input's channel values, rad: the rows that are asked for, or all of a short clip at once."""
+
+    def __init__(self, given: GivenRows, *, whole: bool, frames: int) -> None:
+        # Joints mostly ask for the same few rows.
+        self._rows = cache(lambda start, stop: radians(given(start, stop)))
+        self._whole = self._rows(0, frames) if whole else None
+
+    def between(self, start: int, stop: int) -> FloatArray:
+        """Return the values of some frames, shape (stop - start, C)."""
+        return self._rows(start, stop) if self._whole is None else self._whole[start:stop]
+
+    def at(self, frames: IntArray, columns: IntArray) -> FloatArray:
+        """Return the values of R frames, of each the columns, shape (R, A), that are its own."""
+        if self._whole is not None:
+            return self._whole[frames[:, None], columns]
+        rows = [self._rows(frame, frame + 1)[0, own] for frame, own in zip(frames.tolist(), columns, strict=True)]
+        return np.array(rows).reshape(columns.shape)
+
+
+def _angles_of(
+    q: FloatArray, axes: tuple[int, ...], columns: IntArray, runs: IntArray, given: _Given
+) -> tuple[FloatArray, FloatArray, BoolArray]:
+    """Return the angles (rad) of joints in their runs of touched frames, the runs' seeds, and which are plain.
+
+    Parameters
+    ----------
+    q, columns : shape (4, G, F), (G, A)
+        The joints' rotations, and the columns of their channels.
+    runs : shape (R, 3)
+        By `_runs_of`.
+
+    Returns
+    -------
+    angles : shape (G, A, F)
+        Each nearest the frame before, from the seed on; beyond the runs any.
+    seeds : shape (R, A)
+        The input's angles at the frames before the runs.
+    plain : shape (R,)
+        Whether nothing was put right where the run ends.
+    """
+    of, starts, stops = runs.T
+    solved = solve_angles(q, axes)
+    seeds = given.at(np.maximum(starts - 1, 0), columns[of])
+    angles = nearest_in_runs(solved, runs, seeds)
+    for k in np.flatnonzero(gimbal_locked(solved).any(axis=-1)).tolist():
+        for i in np.flatnonzero(of == k).tolist():
+            frames = slice(int(starts[i]), int(stops[i]))
+            angles[k, :, frames] = near(q[:, k, frames], axes, solved[:, k, frames], seeds[i]).T
+    plain = np.ones(len(runs), dtype=np.bool_)
+    inner = np.flatnonzero(stops < q.shape[2])
+    if not len(inner):
+        return angles, seeds, plain
+    own = columns[of[inner]]
+    last, following = given.at(stops[inner] - 1, own), given.at(stops[inner], own)
+    turned = _turns(last - angles[of[inner], :, stops[inner] - 1]).any(axis=1)
+    for i in np.flatnonzero(turned).tolist():
+        k, start, stop = runs[inner[i]].tolist()
+        track = _Track(q[:, k, start:stop], axes, solved[:, k, start:stop])
+        ends = seeds[inner[i]], last[i], following[i]
+        steps = np.diff(given.between(start, stop)[:, columns[k]], axis=0, prepend=ends[0][None])
+        angles[k, :, start:stop] = _meet_end(track, angles[k, :, start:stop].T, steps, ends).T
+    plain[inner[turned]] = False
+    return angles, seeds, plain
 
 
 @dataclass(frozen=True, eq=False)
 class _Track:
-    """A joint's rotations `q` (4, F), its `axes`, and one solution of each frame, `solved` (A, F) rad.
-
-    `locked` says whether any frame is at gimbal lock.
-    """
+    """A joint's rotations `q` (4, n) in a run, its `axes`, and one solution of each frame, `solved` (A, n) rad."""
 
     q: FloatArray
     axes: tuple[int, ...]
     solved: FloatArray
-    locked: bool
-
-    def near(self, frames: slice, seed: FloatArray) -> FloatArray:
-        """Return the angles of some frames, shape (n, A), each nearest the one before, as `angles_near`."""
-        if not self.locked:
-            return nearest(self.solved[:, frames], seed).T
-        return near(self.q[:, frames], self.axes, self.solved[:, frames], seed)
-
-
-def _pieces(
-    track: _Track, columns: IntArray, *, given: GivenRows, spans: Sequence[tuple[int, int]], size: int
-) -> list[Piece]:
-    """Return one joint's pieces over its runs of touched frames; the input's values (rad) are given(start, stop)."""
-    pieces = []
-    for start, stop in spans:
-        angles, plain = _run(track, lambda a, b: given(a, b)[:, columns], start, stop)
-        keep = not plain or track.q.shape[1] <= size
-        seed = given(max(start - 1, 0), max(start, 1))[0, columns]
-        cuts = [start, *range((start // size + 1) * size, stop, size), stop]
-        for first, last in pairwise(cuts):
-            kept = np.degrees(angles[first - start : last - start]) if keep else None
-            pieces.append(Piece(first, last, seed, kept))
-            seed = angles[last - 1 - start].copy()
-    return pieces
 
 
 def piece_angles(motion: Motion, joint: int, *, piece: Piece) -> FloatArray:
@@ -117,27 +164,19 @@ def piece_angles(motion: Motion, joint: int, *, piece: Piece) -> FloatArray:
     return angles
 
 
-def _run(track: _Track, given: GivenRows, start: int, stop: int) -> tuple[FloatArray, bool]:
-    """Return the angles (rad) of one run of touched frames, shape (stop - start, A), and whether none was put right.
-
-    The input's angles (rad) are given(first, last).
-    """
-    seed = given(max(start - 1, 0), max(start, 1))[0]
-    angles = track.near(slice(start, stop), seed)
-    if stop == track.q.shape[1]:
-        return angles, True
-    last, following = given(stop - 1, stop + 1)
-    if not _turns(last - angles[-1]).any():
-        return angles, True
-    steps = np.diff(given(start, stop), axis=0, prepend=seed[None])
-    return _meet_end(track, slice(start, stop), angles, steps, (seed, last, following)), False
-
-
 def runs(mask: BoolArray) -> list[tuple[int, int]]:
     """Return the (start, stop) of each run of True, stop exclusive."""
     padded = np.concatenate(([False], mask, [False]))
     edges = np.flatnonzero(padded[1:] != padded[:-1])
     return [(int(a), int(b)) for a, b in zip(edges[0::2], edges[1::2], strict=True)]
+
+
+def _runs_of(masks: BoolArray) -> IntArray:
+    """Return (row, start, stop) of each run of True in G masks (G, F), stop exclusive, shape (R, 3)."""
+    padded = np.zeros((len(masks), masks.shape[1] + 2), dtype=np.bool_)
+    padded[:, 1:-1] = masks
+    of, edges = np.nonzero(padded[:, 1:] != padded[:, :-1])
+    return np.column_stack((of[::2], edges[::2], edges[1::2]))
 
 
 def _turns(extra: FloatArray) -> IntArray:
@@ -147,11 +186,7 @@ def _turns(extra: FloatArray) -> IntArray:
 
 
 def _meet_end(
-    track: _Track,
-    frames: slice,
-    angles: FloatArray,
-    steps: FloatArray,
-    ends: tuple[FloatArray, FloatArray, FloatArray],
+    track: _Track, angles: FloatArray, steps: FloatArray, ends: tuple[FloatArray, FloatArray, FloatArray]
 ) -> FloatArray:
     """Return a run's angles such that its last frame meets the input's next without a turn that the input has not.
 
@@ -166,7 +201,7 @@ def _meet_end(
     carried = angles + TURN * np.cumsum(np.rint(steps / TURN), axis=0)
     if not _turns(last - carried[-1]).any():
         return carried
-    backward = near(track.q[:, frames][:, ::-1], track.axes, track.solved[:, frames][:, ::-1], following)[::-1]
+    backward = near(track.q[:, ::-1], track.axes, track.solved[:, ::-1], following)[::-1]
     jumps = np.abs(backward - np.concatenate((before[None], angles[:-1]))).sum(axis=-1)
     change = int(np.argmin(jumps))
     return np.concatenate((angles[:change], backward[change:]))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,6 +22,11 @@ class Effector:
 
     joint: int
     offset: FloatArray
+
+    @cached_property
+    def is_off(self) -> bool:
+        """Whether it is another point than the joint itself."""
+        return bool(self.offset.any())
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,6 +115,6 @@ def forward_of(motion: Motion, joint: int) -> tuple[FloatArray, FloatArray]:
 def effector_positions(poses: WorldPoses, effector: Effector) -> FloatArray:
     """Return the world positions of an effector, shape (F, 3)."""
     j = effector.joint
-    if not effector.offset.any():
+    if not effector.is_off:
         return poses.positions[:, j].copy()
     return poses.positions[:, j] + rot.rotate(poses.rotations[:, j], effector.offset)

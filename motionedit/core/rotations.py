@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
 IDENTITY.setflags(write=False)
+_CONJUGATE = np.array([1.0, -1.0, -1.0, -1.0])
 
 # Below this angle (rad) sin(x)/x and its kin are taken from their series, exact to double precision there.
 _SMALL_ANGLE = 1e-4
@@ -27,7 +28,7 @@ _STRAIGHT_ARC = 1e-8
 
 def multiply(a: FloatArray, b: FloatArray) -> FloatArray:
     """Return the Hamilton product a b, shape (..., 4): first turn by b, then by a."""
-    product = _in_one_loop("multiply", a, b)
+    product = _in_one_loop("multiply", a, b, 4)
     if product is not None:
         return product
     aw, ax, ay, az = _parts(a)
@@ -43,7 +44,7 @@ def multiply(a: FloatArray, b: FloatArray) -> FloatArray:
 
 def conjugate(q: FloatArray) -> FloatArray:
     """Return the inverse of unit quaternions, shape (..., 4)."""
-    inverse: FloatArray = q * np.array([1.0, -1.0, -1.0, -1.0])
+    inverse: FloatArray = q * _CONJUGATE
     return inverse
 
 
@@ -55,7 +56,7 @@ def normalize(q: FloatArray) -> FloatArray:
 
 def rotate(q: FloatArray, v: FloatArray) -> FloatArray:
     """Return vectors v turned by q, shape (..., 3)."""
-    turned = _in_one_loop("rotate", q, v)
+    turned = _in_one_loop("rotate", q, v, 3)
     if turned is not None:
         return turned
     w, xyz = q[..., :1], q[..., 1:]
@@ -65,7 +66,7 @@ def rotate(q: FloatArray, v: FloatArray) -> FloatArray:
 
 def cross(a: FloatArray, b: FloatArray) -> FloatArray:
     """Return the cross product a x b, shape (..., 3); several times faster than `numpy.cross`."""
-    product = _in_one_loop("cross", a, b)
+    product = _in_one_loop("cross", a, b, 3)
     if product is not None:
         return product
     ax, ay, az = _parts(a)
@@ -81,7 +82,7 @@ def dot(a: FloatArray, b: FloatArray) -> FloatArray:
     """Return the dot products of vectors, shape (...): a sum over a short last axis takes several times as long."""
     product = _in_one_loop("dot", a, b)
     if product is not None:
-        return product[..., 0]
+        return product
     ax, ay, az = _parts(a)
     bx, by, bz = _parts(b)
     summed: FloatArray = ax * bx + ay * by + az * bz
@@ -94,25 +95,29 @@ def length(v: FloatArray) -> FloatArray:
     return found
 
 
-# How many numbers a row of the result has, by the compiled function.
-_WIDTHS = {"multiply": 4, "rotate": 3, "cross": 3, "dot": 1}
 # Numbers: of more than these no second copy is made only to have them in one shape.
 _FEW = 1 << 18
 
 
-def _in_one_loop(what: str, a: FloatArray, b: FloatArray) -> FloatArray | None:
-    """Return what the compiled part makes of rows of numbers, the same to the bit; None where numpy makes it."""
+def _in_one_loop(what: str, a: FloatArray, b: FloatArray, *width: int) -> FloatArray | None:
+    """Return what the compiled part makes of rows of numbers, the same to the bit; None where numpy makes it.
+
+    `width` is how many numbers a row of the result has; none where it is one without an axis of its own.
+    """
     kernel = compiled()
     if kernel is None:
         return None
-    if a.ndim == 1 or b.ndim == 1 or a.shape[:-1] == b.shape[:-1]:
-        leading = (a if b.ndim == 1 else b).shape[:-1]
+    one, other = a.shape[:-1], b.shape[:-1]
+    if one == other or one[len(one) - len(other) :] == other:
+        leading = one
+    elif other[len(other) - len(one) :] == one:
+        leading = other
     else:
-        leading = np.broadcast_shapes(a.shape[:-1], b.shape[:-1])
+        leading = np.broadcast_shapes(one, other)
         if max(a.size, b.size) > _FEW:
             return None
         a, b = (np.broadcast_to(each, (*leading, each.shape[-1])) for each in (a, b))
-    out = np.empty((*leading, _WIDTHS[what]))
+    out = np.empty(leading + width)
     getattr(kernel, what)(np.ascontiguousarray(a, np.float64), np.ascontiguousarray(b, np.float64), out)
     return out
 

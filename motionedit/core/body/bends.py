@@ -11,6 +11,8 @@ from motionedit.core.arrays import frozen
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.body.anatomy import Anatomy, Leg
     from motionedit.core.kinematics import WorldPoses
@@ -18,6 +20,8 @@ if TYPE_CHECKING:
 
 _BENT = float(np.sin(np.radians(2.0)))  # a limb bent by more than this shows to which side it bends
 _STRAIGHT = float(np.sin(np.radians(0.2)))  # a limb bent by less than this hardly shortens when it bends
+
+_BLOCK_POSES = 1 << 13
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,42 +62,45 @@ def find_bends(skeleton: Skeleton, poses: WorldPoses, anatomy: Anatomy, *, first
         forward = front if toes is None else toes
         limbs.append(((leg.thigh, leg.knee, leg.ankle), None if forward is None else -forward))
     limbs += [((arm.shoulder, arm.elbow, arm.wrist), front) for arm in anatomy.arms or ()]
-    bends = (_bend(skeleton, poses, joints, towards, first=first) for joints, towards in limbs)
-    return tuple(bend for bend in bends if bend is not None)
+    # A few limbs at a time: those of a long motion all at once would take several times its memory.
+    together = max(_BLOCK_POSES // len(poses.positions), 1)
+    starts = range(0, len(limbs), together)
+    return tuple(bend for i in starts for bend in _bends(skeleton, poses, limbs[i : i + together], first))
 
 
-def _bend(
-    skeleton: Skeleton,
-    poses: WorldPoses,
-    limb: tuple[int, int, int],
-    towards: FloatArray | None,
-    *,
-    first: int,
-) -> Bend | None:
-    """Return the bend of a limb whose end comes `towards` a side, shape (F, 3), where no frame shows it."""
-    top, joint, end = limb
-    sides = _sides(poses.positions, top, joint, end)
+def _bends(
+    skeleton: Skeleton, poses: WorldPoses, limbs: Sequence[tuple[tuple[int, int, int], FloatArray | None]], first: int
+) -> tuple[Bend, ...]:
+    """Return the bends of limbs, each with the side, shape (F, 3), `towards` which it bends where no frame shows it."""
+    tops, joints, ends = np.array([limb for limb, _ in limbs]).T
+    parents = skeleton.parents[joints]
+    sides = _sides(poses.positions, tops, joints, ends)
     sines = rot.length(sides)
     bent = sines > _BENT
     bent[:first] = False
-    if not bent.any():
-        if towards is None:
-            return None
-        lower = poses.positions[:, end] - poses.positions[:, joint]
-        sides, bent = rot.cross(lower, towards), np.ones(len(sides), dtype=np.bool_)
-    parents = poses.rotations[bent, skeleton.parents[joint]]
-    axis = rot.rotate(rot.conjugate(parents), sides[bent]).sum(axis=0)
-    length = float(np.linalg.norm(axis))
-    if length == 0.0:
-        return None
-    upper = mean_direction(poses, top, joint, seen_from=int(skeleton.parents[joint]), first=first)
-    lower = mean_direction(poses, joint, end, seen_from=joint, first=first)
-    parent = poses.rotations[:, skeleton.parents[joint]]
-    local = rot.multiply(rot.conjugate(parent), poses.rotations[:, joint])
-    angles = turns_about(axis / length, upper, rot.rotate(local, lower))
-    return Bend(
-        joint, frozen(axis / length), frozen(sines < _STRAIGHT), frozen(upper), frozen(lower), frozen(angles[first:])
-    )
+    for i in np.flatnonzero(~bent.any(axis=0)).tolist():
+        towards = limbs[i][1]
+        if towards is not None:
+            lower = poses.positions[:, ends[i]] - poses.positions[:, joints[i]]
+            sides[:, i], bent[:, i] = rot.cross(lower, towards), True
+    carried = poses.rotations[:, parents]
+    own = rot.rotate(rot.conjugate(carried), sides)
+    own[~bent] = 0.0
+    axes = own.sum(axis=0)
+    uppers = mean_directions(poses, tops, joints, seen_from=parents, first=first)
+    lowers = mean_directions(poses, joints, ends, seen_from=joints, first=first)
+    local = rot.multiply(rot.conjugate(carried), poses.rotations[:, joints])
+    directions = rot.rotate(local, lowers)
+    found = []
+    for i, joint in enumerate(joints.tolist()):
+        length = float(np.linalg.norm(axes[i]))
+        if length == 0.0:
+            continue
+        angles = turns_about(axes[i] / length, uppers[i], directions[:, i])
+        straight = frozen(np.ascontiguousarray(sines[:, i] < _STRAIGHT))
+        ways = frozen(uppers[i].copy()), frozen(lowers[i].copy())
+        found.append(Bend(joint, frozen(axes[i] / length), straight, *ways, frozen(angles[first:])))
+    return tuple(found)
 
 
 def turns_about(axis: FloatArray, start: FloatArray, stop: FloatArray) -> FloatArray:
@@ -124,11 +131,11 @@ def mean_directions(
     return directions
 
 
-def _sides(positions: FloatArray, top: int, joint: int, end: int) -> FloatArray:
-    """Return upper x lower of a limb's unit bones, shape (F, 3): its axis, times the sine by which it is bent."""
-    upper, lower = positions[:, joint] - positions[:, top], positions[:, end] - positions[:, joint]
+def _sides(positions: FloatArray, tops: IntArray, joints: IntArray, ends: IntArray) -> FloatArray:
+    """Return upper x lower of n limbs' unit bones, shape (F, n, 3): axes, times the sines by which they are bent."""
+    upper, lower = positions[:, joints] - positions[:, tops], positions[:, ends] - positions[:, joints]
     lengths = rot.length(upper) * rot.length(lower)
-    sides: FloatArray = rot.cross(upper, lower) / np.maximum(lengths, np.finfo(float).tiny)[:, None]
+    sides: FloatArray = rot.cross(upper, lower) / np.maximum(lengths, np.finfo(float).tiny)[..., None]
     return sides
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bisect import bisect_left
+from bisect import bisect_left, bisect_right
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -204,10 +204,10 @@ def _stands(
     shortest = round(_SHORTEST / frame_time + 1e-9)
     around = max(1, round(_TOP_WHILE / frame_time))
     slow_runs = _runs(slow)
+    begins, ends = [first for first, _ in slow_runs], [last for _, last in slow_runs]
     for start, stop in _closed(_runs(planted), places, round(_LONGEST_GAP / frame_time)):
         level = float(heights[start : stop + 1].min())
-        began = next(first for first, last in slow_runs if last >= start)
-        ended = next(last for first, last in reversed(slow_runs) if first <= stop)
+        began, ended = begins[bisect_left(ends, start)], ends[bisect_right(begins, stop) - 1]
         beside = (heights[max(0, began - around) : began], heights[ended + 1 : ended + 1 + around])
         lower = [side.min() < level - _TOP for side in beside if len(side)]
         # Who stands on a box for a while has both feet there, and who holds a foot up stands on the other.

@@ -78,7 +78,7 @@ class JerkMeter:
         third = np.diff(positions, n=3, axis=0)
         if third.size:
             third *= third
-            squares = np.sum(third, axis=-1)
+            squares = third[..., 0] + third[..., 1] + third[..., 2]
             self._sum += float(np.sum(squares))
             self._count += squares.size
             frame, joint = np.unravel_index(int(np.argmax(squares)), squares.shape)

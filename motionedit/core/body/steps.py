@@ -58,8 +58,12 @@ def change_steps(before: Motion, after: Motion, *, first: int) -> Steps:
     steps, to the bit.
     """
     one, other = before.rotations[first:], after.rotations[first:]
-    # Joint by joint: of a long motion all at once would take as much memory as its rotations have numbers.
-    changed = np.flatnonzero([np.any(one[:, j] != other[:, j]) for j in range(len(before.skeleton))])
+    differ = np.zeros(one.shape[1:], dtype=np.bool_)
+    # A few frames at a time: of a long motion all at once would take as much memory as its rotations have numbers.
+    together = max(_BLOCK_POSES // len(before.skeleton), 1)
+    for start in range(0, len(one), together):
+        differ |= (one[start : start + together] != other[start : start + together]).any(axis=0)
+    changed = np.flatnonzero(differ.any(axis=1))
 
     def changes(some: IntArray) -> FloatArray:
         return rot.multiply(rot.conjugate(one[:, some]), other[:, some])

@@ -25,6 +25,9 @@ if TYPE_CHECKING:
     from motionedit.core.bvh.header import Header
     from motionedit.core.bvh.rows import Rows
 
+# Values, of which so many are kept: to read them again would take as long as to read the clip.
+_FEW_VALUES = 1 << 17
+
 
 @dataclass(frozen=True, eq=False)
 class Clip:
@@ -150,8 +153,12 @@ def parse_clip(data: bytes, *, label: str, lenient: bool = False, source: Path |
     rotations = np.empty((capacity, len(skeleton), 4))
     translations = np.empty((capacity, len(skeleton.translated), 3))
 
+    kept = np.empty((capacity, columns)) if capacity * columns <= _FEW_VALUES else None
+
     def take(first: int, values: FloatArray) -> None:
         block = slice(first, first + len(values))
+        if kept is not None:
+            kept[block] = values
         write_poses(skeleton, values, rotations=rotations[block], translations=translations[block])
 
     rows = read_rows(data, start, columns=columns, expected=header.frames, label=label, lenient=lenient, take=take)
@@ -159,7 +166,8 @@ def parse_clip(data: bytes, *, label: str, lenient: bool = False, source: Path |
     frames = len(rows.starts)
     _refuse_far_places(data, rows, translations[:frames], label=label)
     motion = Motion(skeleton, frozen(rotations[:frames]), frozen(translations[:frames]), header.frame_time)
-    return Clip(label, motion, BvhText(data, header, rows, motion), warnings, source)
+    text = BvhText(data, header, rows, motion, None if kept is None else frozen(kept[:frames]))
+    return Clip(label, motion, text, warnings, source)
 
 
 def _refuse_far_places(data: bytes, rows: Rows, translations: FloatArray, *, label: str) -> None:

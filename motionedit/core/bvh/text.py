@@ -17,12 +17,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class BvhText:
-    """A file's own bytes, where its header's numbers and its rows stand in them, and the motion they were read as."""
+    """A file's own bytes, where its header's numbers and its rows stand in them, and the motion they were read as.
+
+    `values`, shape (F, C), are the channel values of a short clip; of a long one they are read from the bytes again.
+    """
 
     data: bytes
     header: Header
     rows: Rows
     motion: Motion
+    values: FloatArray | None = None
 
     @property
     def frame_time_decimals(self) -> int:
@@ -31,6 +35,8 @@ class BvhText:
 
     def values_between(self, start: int, stop: int) -> FloatArray:
         """Return the channel values of the frames from start up to stop, shape (stop - start, C)."""
+        if self.values is not None:
+            return self.values[start:stop]
         columns = self.header.skeleton.channel_count
         return values_between(self.data, self.rows, start, stop, columns=columns)
 

@@ -85,7 +85,7 @@ def foot_measures(
     if down is not None:
         at = down.of(places)
         drift = float(rot.length(at - down.spread(down.means(at))).max())
-        of_toes = np.isin([plant.point for plant in plants], toes)
+        of_toes = np.array([plant.point in toes for plant in plants])
         highest = float(down.means(down.of(heights))[of_toes].max(initial=0.0))
         # From each frame of a plant to the next: not from its last.
         steps = down.spread(of_toes)

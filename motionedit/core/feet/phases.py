@@ -36,21 +36,46 @@ def kept(plants: Sequence[Plant], poses: WorldPoses, anatomy: Anatomy, frame_tim
     found: list[Plant] = []
     shortest = max(2, round(_SHORTEST / frame_time))
     for foot in feet_of(anatomy):
-        here = [plant for plant in plants if plant.foot == foot.side]
+        here: list[Plant | None] = [plant for plant in plants if plant.foot == foot.side]
         path, hip, reach = foot_path(poses, foot), poses.positions[:, foot.leg.thigh], reach_of(poses, foot)
+        asked = list(range(len(here)))
         for _ in range(_ROUNDS):
-            shorter = _held(here, path, shortest, hip=hip, reach=reach)
-            if shorter == here:
+            before = [plant for plant in (here[i] for i in asked) if plant is not None]
+            after = _held(before, path, shortest, hip=hip, reach=reach)
+            for i, plant in zip(asked, after, strict=True):
+                here[i] = plant
+            # What hangs together with none that changed would come out as it is.
+            again = _beside_changed(before, after)
+            asked = [i for i, changed in zip(asked, again, strict=True) if changed and here[i] is not None]
+            if not asked:
                 break
-            here = shorter
-        found += here
+        found += [plant for plant in here if plant is not None]
     return found
 
 
-def _held(plants: Sequence[Plant], path: FootPath, shortest: int, *, hip: FloatArray, reach: FloatArray) -> list[Plant]:
+def _beside_changed(before: Sequence[Plant], after: Sequence[Plant | None]) -> list[bool]:
+    """Return whether each plant of a foot overlaps or meets one that changed, or another that does, and so on."""
+    beside = [False] * len(before)
+    together: list[int] = []
+    stop = -2
+    for k in sorted(range(len(before)), key=lambda k: before[k].start):
+        if before[k].start > stop + 1:
+            together = []
+        together.append(k)
+        stop = max(stop, before[k].stop)
+        if after[k] is not before[k] or beside[together[0]]:
+            for other in together if not beside[together[0]] else (k,):
+                beside[other] = True
+    return beside
+
+
+def _held(
+    plants: Sequence[Plant], path: FootPath, shortest: int, *, hip: FloatArray, reach: FloatArray
+) -> list[Plant | None]:
+    """Return plants, their heels up where `released` has them up; None where nothing is left of one."""
     stance = stance_of(path, plants)
     heel = released(stance, hip, reach).heel
-    found = []
+    found: list[Plant | None] = []
     for plant in plants:
         stop = plant.stop
         while plant.part == "heel" and stop >= plant.start and not heel[stop]:
@@ -59,4 +84,6 @@ def _held(plants: Sequence[Plant], path: FootPath, shortest: int, *, hip: FloatA
             found.append(plant)
         elif stop - plant.start >= shortest and stance.toe[plant.start : stop + 1].any():
             found.append(replace(plant, stop=stop))
+        else:
+            found.append(None)
     return found

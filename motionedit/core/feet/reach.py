@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core import rotations as rot
 from motionedit.core.feet.stance import runs
 
 if TYPE_CHECKING:
@@ -25,8 +26,7 @@ _ROUNDING = 1e-9
 def stretch(poses: WorldPoses, foot: Foot) -> tuple[FloatArray, FloatArray]:
     """Return the way from hip to ankle, and the leg's length, shape (F,) each."""
     hip, knee, ankle = (poses.positions[:, j] for j in (foot.leg.thigh, foot.leg.knee, foot.leg.ankle))
-    length = np.linalg.norm(knee - hip, axis=1) + np.linalg.norm(ankle - knee, axis=1)
-    return np.linalg.norm(ankle - hip, axis=1), length
+    return rot.length(ankle - hip), rot.length(knee - hip) + rot.length(ankle - knee)
 
 
 def reach_of(poses: WorldPoses, foot: Foot, knee: Knee | None = None) -> FloatArray:
@@ -44,7 +44,7 @@ def released(stance: Stance, hip: FloatArray, reach: FloatArray) -> Stance:
 
     A body that goes on over its foot ends a heel's plant; a strain that passes is the pelvis' to bear.
     """
-    far = stance.flat & (np.linalg.norm(hip - stance.heel_place, axis=1) > reach * (1.0 + _ROUNDING))
+    far = stance.flat & (rot.length(hip - stance.heel_place) > reach * (1.0 + _ROUNDING))
     if not far.any():
         return stance
     heel = stance.heel.copy()

@@ -172,7 +172,7 @@ def _meetings(plants: Sequence[Plant]) -> list[tuple[int, int, int]]:
 def mean_turn(turns: FloatArray) -> FloatArray:
     """Return the mean of rotations that are near to each other, quaternions (n, 4), shape (4,)."""
     same = np.where((turns @ turns[0] < 0.0)[:, None], -turns, turns).sum(axis=0)
-    mean: FloatArray = same / np.linalg.norm(same)
+    mean: FloatArray = same / np.sqrt(same.dot(same))
     return mean
 
 
@@ -181,18 +181,20 @@ def _chained(count: int, links: Sequence[tuple[int, int]], ways: FloatArray) -> 
 
     Heels do not overlap heels, nor toes toes: so links never close a circle, and one way leads to each plant.
     """
-    whole, offsets = list(range(count)), np.zeros((count, 3))
-    members = {k: [k] for k in range(count)}
-    for (heel, toe), way in zip(links, ways, strict=True):
+    whole, members = list(range(count)), {k: [k] for k in range(count)}
+    # Numbers by themselves: few rows of three take longer as arrays.
+    offsets = [[0.0, 0.0, 0.0] for _ in range(count)]
+    for (heel, toe), way in zip(links, ways.tolist(), strict=True):
         if whole[heel] == whole[toe]:
             continue
         others = members.pop(whole[toe])
         # The toe's side is moved so that toe - heel is the way.
-        offsets[others] += offsets[heel] + way - offsets[toe]
+        shift = [a + b - c for a, b, c in zip(offsets[heel], way, offsets[toe], strict=True)]
         for k in others:
+            offsets[k] = [a + b for a, b in zip(offsets[k], shift, strict=True)]
             whole[k] = whole[heel]
         members[whole[heel]] += others
-    return whole, offsets
+    return whole, np.array(offsets).reshape(-1, 3)
 
 
 def runs(there: BoolArray) -> list[tuple[int, int]]:

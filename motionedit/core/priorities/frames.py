@@ -167,10 +167,13 @@ def _solve(
         threads=run.asked.settings.threads,
     )
     solved.iterations[group.frames], solved.converged[group.frames] = solution.iterations, solution.converged
-    solved.ranks[group.frames] = 0
-    np.add.at(solved.ranks, (group.frames[:, None], group.levels), solution.ranks)
-    solved.left[group.frames] = 0.0
-    np.maximum.at(solved.left, (group.frames[:, None], group.levels), solution.left)
+    count = len(group.frames), solved.ranks.shape[1]
+    ranks, left = np.zeros(count, dtype=np.intp), np.zeros(count)
+    # Of one priority there may be two layers.
+    for layer, level in enumerate(group.levels.tolist()):
+        ranks[:, level] += solution.ranks[:, layer]
+        np.maximum(left[:, level], solution.left[:, layer], out=left[:, level])
+    solved.ranks[group.frames], solved.left[group.frames] = ranks, left
 
 
 def _same(one: Motion, other: Motion) -> BoolArray:

@@ -257,7 +257,8 @@ def _mobility(body: Body, joints: IntArray) -> FloatArray:
 
 def _hinge_columns(hinges: Sequence[Hinge], joints: IntArray) -> HingeColumns:
     """Return the hinges among the columns, which are `joints`."""
-    here = [hinge for hinge in hinges if hinge.joint in set(map(int, joints))]
+    columns = set(joints.tolist())
+    here = [hinge for hinge in hinges if hinge.joint in columns]
     return HingeColumns(
         places=np.searchsorted(joints, np.array([hinge.joint for hinge in here], dtype=np.intp)),
         axes=np.array([hinge.axis for hinge in here]).reshape(-1, 3),
@@ -270,8 +271,8 @@ def _hinge_columns(hinges: Sequence[Hinge], joints: IntArray) -> HingeColumns:
 
 def _limit_columns(body: Body, joints: IntArray) -> LimitColumns:
     """Return the limits among the columns, which are `joints`; a hinge has its own."""
-    hinged = {hinge.joint for hinge in body.hinges}
-    here = [limit for limit in body.limits if limit.joint in set(map(int, joints)) - hinged]
+    columns = set(joints.tolist()) - {hinge.joint for hinge in body.hinges}
+    here = [limit for limit in body.limits if limit.joint in columns]
     return LimitColumns(
         places=np.searchsorted(joints, np.array([limit.joint for limit in here], dtype=np.intp)),
         centers=np.array([limit.center for limit in here]).reshape(-1, 4),

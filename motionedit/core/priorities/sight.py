@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from motionedit.core.body.center_of_mass import Masses, center_of_mass
 from motionedit.core.kinematics import WorldPoses, forward
-from motionedit.core.trace import frame_blocks
+from motionedit.core.trace import BLOCK_FRAMES, frame_blocks
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Sight:
-    """A motion; world transforms of the joints, and the CoM, shape (F, 3), that were asked for; zeros elsewhere."""
+    """A motion; world transforms of at least the joints, and the CoM, shape (F, 3), that were asked for."""
 
     motion: Motion
     poses: WorldPoses
@@ -35,6 +36,8 @@ def sight_of(motion: Motion, joints: Collection[int], masses: Masses | None) -> 
     masses : Masses or None
         None where nobody asks for the center of mass.
     """
+    if len(motion) <= BLOCK_FRAMES:
+        return _seen_again(motion, masses) if motion.is_fixed else _seen_whole(motion, masses)
     frames, count = len(motion), len(motion.skeleton)
     seen = np.array(sorted(joints), dtype=np.intp)
     # Joint by joint: what is never written takes no memory.
@@ -49,3 +52,13 @@ def sight_of(motion: Motion, joints: Collection[int], masses: Masses | None) -> 
         if masses is not None:
             center[block] = center_of_mass(poses, masses)
     return Sight(motion, WorldPoses(positions, rotations), center)
+
+
+def _seen_whole(motion: Motion, masses: Masses | None) -> Sight:
+    """Return what is seen of a short motion, with all its joints: to pick some would take longer."""
+    poses = forward(motion)
+    return Sight(motion, poses, np.zeros((len(motion), 3)) if masses is None else center_of_mass(poses, masses))
+
+
+# The input of an edit is looked at again and again.
+_seen_again = lru_cache(maxsize=2)(_seen_whole)

@@ -34,6 +34,8 @@ _PATIENCE, _PROGRESS = 3, 0.95
 def in_passes(run: Run, state: Solved, smoothing: Passes, *, aimed: Callable[[Motion], Run] | None = None) -> Solved:
     """Return a solution smoothed and solved again in all passes, and in more around frames whose change steps.
 
+    The solution that is given is used up: it lets go of its motion.
+
     Parameters
     ----------
     aimed : callable, optional
@@ -43,7 +45,7 @@ def in_passes(run: Run, state: Solved, smoothing: Passes, *, aimed: Callable[[Mo
     for left in reversed(range(smoothing.count)):
         smooth = smoothed_displacement(motion, state.motion, sigma=smoothing.sigma, first=first, hinges=hinges)
         known = known_after(run, state, smooth) if aimed is None else None
-        del state  # of a long motion no more copies are kept than are needed
+        state.motion = motion  # of a long one no more copies are kept than are needed, not by those who called, too
         now = run if aimed is None else aimed(smooth)
         # Smoothing rounds off where a ramp ends, until the last pass.
         state = _solved(now, smooth, known) if left else _led(now, smooth, known)

@@ -5,9 +5,12 @@ scipy has the first two, but takes longer to import than a whole edit lasts; the
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
+
+from motionedit.core.arrays import frozen
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
@@ -102,6 +105,7 @@ def _second_derivatives(rows: FloatArray) -> FloatArray:
     return M
 
 
+@lru_cache(maxsize=16)
 def gaussian(sigma: float, frames: int) -> FloatArray:
     """Return the right half of a normalized Gaussian over frames, shape (radius + 1,), the middle first.
 
@@ -109,10 +113,10 @@ def gaussian(sigma: float, frames: int) -> FloatArray:
     """
     radius = max(min(int(np.ceil(KERNEL_RADIUS * sigma)), frames - 1), 0) if sigma > NARROWEST else 0
     if radius < 1:
-        return np.ones(1)
+        return frozen(np.ones(1))
     weights = np.exp(-0.5 * (np.arange(radius + 1) / sigma) ** 2)
     taps: FloatArray = weights / (weights[0] + 2.0 * weights[1:].sum())
-    return taps
+    return frozen(taps)
 
 
 def _line_at_end(taps: FloatArray) -> FloatArray:

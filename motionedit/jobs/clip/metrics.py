@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
+from motionedit.core import rotations as rot
 from motionedit.core.body.quality import foot_drift, foot_slide_max
 from motionedit.core.feet.measures import foot_measures
 from motionedit.core.trace import Trace, trace_of
@@ -44,7 +43,7 @@ def edit_metrics(facts: ClipFacts, before: Trace, after: Trace | None, *, steps:
     drift = foot_drift(before.tracks, after.tracks, plants)
     metrics |= {"after": clip_metrics(facts, after, plants, steps), "foot_drift_max": drift}
     if before.center is not None and after.center is not None:
-        metrics["com_shift_max"] = float(np.linalg.norm(after.center - before.center, axis=1).max())
+        metrics["com_shift_max"] = float(rot.length(after.center - before.center).max())
     return metrics
 
 

@@ -50,7 +50,7 @@ static double distance_of(const double *from, const double *to)
     return sum;
 }
 
-void nearest_angles(double *angles, int64_t axes, int64_t frames, const double *seed)
+void nearest_angles(double *angles, int64_t axes, int64_t step, int64_t frames, const double *seed)
 {
     double solved[3], taken[3], turns[3] = {0.0};
     int is_other = 0; /* whether the other solutions are taken */
@@ -59,7 +59,7 @@ void nearest_angles(double *angles, int64_t axes, int64_t frames, const double *
     for (int64_t f = 0; f < frames; f++) {
         double one[3], other[3];
         for (int64_t axis = 0; axis < axes; axis++)
-            one[axis] = angles[axis * frames + f];
+            one[axis] = angles[axis * step + f];
         if (axes == 3) {
             other[0] = one[0] + PI, other[1] = PI - one[1], other[2] = one[2] + PI;
             /* The two solutions are at least a whole turn apart: a step below half a turn needs no other one. */
@@ -70,7 +70,7 @@ void nearest_angles(double *angles, int64_t axes, int64_t frames, const double *
         for (int64_t axis = 0; axis < axes; axis++) {
             const double angle = is_other ? other[axis] : one[axis];
             turns[axis] += rint((angle - taken[axis]) * (1.0 / TURN));
-            angles[axis * frames + f] = angle - TURN * turns[axis];
+            angles[axis * step + f] = angle - TURN * turns[axis];
             solved[axis] = one[axis], taken[axis] = angle;
         }
     }

@@ -18,8 +18,8 @@ void cross_all(const double *a, int64_t a_step, const double *b, int64_t b_step,
 /* out = a . b, one number each. */
 void dot_all(const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out);
 
-/* Make a track of Euler angles, shape (axes, frames), rad, continuous: each frame by whole turns, and with three axes by
+/* Make a track of Euler angles, rad, `step` numbers from axis to axis, continuous: each frame by whole turns, and with three axes by
    the other solution of its rotation, nearest the frame before, the first one nearest `seed`, shape (axes,). */
-void nearest_angles(double *angles, int64_t axes, int64_t frames, const double *seed);
+void nearest_angles(double *angles, int64_t axes, int64_t step, int64_t frames, const double *seed);
 
 #endif

@@ -262,11 +262,13 @@ static PyObject *smooth(PyObject *self, PyObject *arguments)
     Py_RETURN_NONE;
 }
 
-/* Whether a buffer has one item of `width` numbers, for which the step from item to item is 0, or one for each of `count`. */
-static int has_items(const Py_buffer *buffer, int64_t count, int64_t width, int64_t *step, const char *name)
+/* Whether a buffer has so many items of `width` numbers that they stand for `count`, again and again; `items` says how
+   many. */
+static int has_items(const Py_buffer *buffer, int64_t count, int64_t width, int64_t *items, const char *name)
 {
-    *step = buffer->len == width * (Py_ssize_t)sizeof(double) ? 0 : width;
-    return *step == 0 || has_size(buffer, count * width, sizeof(double), name);
+    *items = (int64_t)(buffer->len / (Py_ssize_t)sizeof(double)) / width;
+    const int64_t all = count == 0 || *items == 0 || count % *items ? count : *items;
+    return has_size(buffer, all * width, sizeof(double), name);
 }
 
 /* What is done to rows of numbers, two and two, and how many numbers a row of each has, and of the results. */
@@ -275,18 +277,30 @@ typedef struct {
     int64_t one, other, result;
 } OnRows;
 
+/* Do it to `count` rows; of fewer rows the same come again and again. */
+static void do_rows(
+    const OnRows *of, const double *one, int64_t ones, const double *other, int64_t others, int64_t count, double *out)
+{
+    /* The steps from row to row, none where one row stands for all. */
+    const int64_t step = ones == 1 ? 0 : of->one, other_step = others == 1 ? 0 : of->other;
+    const int64_t together = ones == 1 ? others : others == 1 ? ones : ones < others ? ones : others;
+    for (int64_t i = 0; i < count; i += together)
+        of->work(
+            one + i % ones * step, step, other + i % others * other_step, other_step, together, out + i * of->result);
+}
+
 static PyObject *on_rows(const OnRows *of, PyObject *arguments)
 {
     Py_buffer b[3] = {{0}};
-    int64_t one, other;
+    int64_t ones, others;
     if (!PyArg_ParseTuple(arguments, "y*y*w*", b, b + 1, b + 2))
         return NULL;
     const int64_t count = b[2].len / (Py_ssize_t)sizeof(double) / of->result;
     const int fits = has_size(b + 2, count * of->result, sizeof(double), "results") &&
-                     has_items(b, count, of->one, &one, "the first") &&
-                     has_items(b + 1, count, of->other, &other, "the second");
-    if (fits) {
-        Py_BEGIN_ALLOW_THREADS of->work(b[0].buf, one, b[1].buf, other, count, b[2].buf);
+                     has_items(b, count, of->one, &ones, "the first") &&
+                     has_items(b + 1, count, of->other, &others, "the second");
+    if (fits && count > 0) {
+        Py_BEGIN_ALLOW_THREADS do_rows(of, b[0].buf, ones, b[1].buf, others, count, b[2].buf);
         Py_END_ALLOW_THREADS
     }
     for (int i = 0; i < 3; i++)
@@ -320,23 +334,44 @@ static PyObject *dot_rows(PyObject *self, PyObject *arguments)
     return on_rows(&(const OnRows){dot_all, 3, 3, 1}, arguments);
 }
 
+/* Whether each run is of a joint that there is, and of frames that it has. */
+static int are_runs(const int64_t *runs, int64_t count, int64_t joints, int64_t frames)
+{
+    for (int64_t i = 0; i < count; i++, runs += 3)
+        if (runs[0] < 0 || runs[0] >= joints || runs[1] < 0 || runs[1] > runs[2] || runs[2] > frames) {
+            PyErr_Format(PyExc_ValueError, "run %lld has no such joint, or no such frames", (long long)i);
+            return 0;
+        }
+    return 1;
+}
+
 static PyObject *make_continuous(PyObject *self, PyObject *arguments)
 {
-    Py_buffer angles = {0}, seed = {0};
+    enum { ANGLES, RUNS, SEEDS, COUNT };
+    Py_buffer b[COUNT] = {{0}};
+    long long frames;
     (void)self;
-    if (!PyArg_ParseTuple(arguments, "w*y*", &angles, &seed))
+    if (!PyArg_ParseTuple(arguments, "w*y*y*L", b, b + 1, b + 2, &frames))
         return NULL;
-    const int64_t axes = seed.len / (Py_ssize_t)sizeof(double);
-    const int64_t frames = axes > 0 ? angles.len / (Py_ssize_t)sizeof(double) / axes : 0;
-    int fits = has_size(&angles, axes * frames, sizeof(double), "angles");
+    const Py_ssize_t number = sizeof(double);
+    const int64_t count = b[RUNS].len / (Py_ssize_t)(3 * sizeof(int64_t));
+    const int64_t axes = count > 0 ? b[SEEDS].len / number / count : 1;
+    const int64_t joints = frames > 0 && axes > 0 ? b[ANGLES].len / number / axes / frames : 0;
+    int fits = has_size(b + RUNS, 3 * count, sizeof(int64_t), "runs") &&
+               has_size(b + SEEDS, axes * count, sizeof(double), "seeds");
     if (fits && (axes < 1 || axes > 3)) {
         PyErr_SetString(PyExc_ValueError, "a joint turns about one to three axes");
         fits = 0;
     }
-    if (fits)
-        nearest_angles(angles.buf, axes, frames, seed.buf);
-    PyBuffer_Release(&angles);
-    PyBuffer_Release(&seed);
+    fits = fits && (count == 0 || has_size(b + ANGLES, joints * axes * frames, sizeof(double), "angles")) &&
+           are_runs(b[RUNS].buf, count, joints, frames);
+    for (int64_t i = 0; fits && i < count; i++) {
+        const int64_t *run = (const int64_t *)b[RUNS].buf + 3 * i;
+        double *angles = (double *)b[ANGLES].buf + run[0] * axes * frames + run[1];
+        nearest_angles(angles, axes, frames, run[2] - run[1], (const double *)b[SEEDS].buf + i * axes);
+    }
+    for (int i = 0; i < COUNT; i++)
+        PyBuffer_Release(b + i);
     if (!fits)
         return NULL;
     Py_RETURN_NONE;
@@ -433,11 +468,11 @@ static PyMethodDef methods[] = {
     {"solve_narrow", solve_narrow, METH_VARARGS, "As solve, with what every processor has: the same to the bit."},
     {"forward", forward_frames, METH_VARARGS, "Write the world transforms of all joints at all frames."},
     {"smooth", smooth, METH_VARARGS, "Write rotations plus their low-passed displacement."},
-    {"multiply", multiply, METH_VARARGS, "Write the products of quaternions; one quaternion stands for all."},
-    {"rotate", rotate, METH_VARARGS, "Write vectors turned by quaternions; one of either stands for all."},
-    {"cross", cross_rows, METH_VARARGS, "Write the cross products of vectors; one vector stands for all."},
-    {"dot", dot_rows, METH_VARARGS, "Write the dot products of vectors; one vector stands for all."},
-    {"nearest_angles", make_continuous, METH_VARARGS, "Make a track of Euler angles continuous, in place."},
+    {"multiply", multiply, METH_VARARGS, "Write the products of quaternions; fewer of either come again and again."},
+    {"rotate", rotate, METH_VARARGS, "Write vectors turned by quaternions; fewer of either come again and again."},
+    {"cross", cross_rows, METH_VARARGS, "Write the cross products of vectors; fewer of either come again and again."},
+    {"dot", dot_rows, METH_VARARGS, "Write the dot products of vectors; fewer of either come again and again."},
+    {"nearest_angles", make_continuous, METH_VARARGS, "Make runs of Euler angles continuous, in place."},
     {"rows_from_text", rows_from_text, METH_VARARGS,
         "Read rows of numbers; return how many and the most decimals, or None where it is no such text."},
     {"rows_to_text", rows_to_text, METH_VARARGS,

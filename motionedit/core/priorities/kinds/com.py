@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 
+from motionedit.core import rotations as rot
 from motionedit.core.body.center_of_mass import Masses, center_of_mass, subtree_centers
 from motionedit.core.measure import WORLD, Measure
 from motionedit.core.priorities.kinds.constraint import Constraint, ConstraintErrors, Movable, Symbol, Targets
@@ -117,7 +118,7 @@ class CenterOfMass(Constraint):
         del reference
         path = after.center[targets.span] @ self.measure.axes.T
         wanted = self.measure.aimed(path, targets.all_positions)
-        distance: FloatArray = np.linalg.norm(path - wanted, axis=1)
+        distance: FloatArray = rot.length(path - wanted)
         return ConstraintErrors(targets.first, distance, None, wanted @ self.measure.axes)
 
     def words(self, names: tuple[str, ...]) -> str:

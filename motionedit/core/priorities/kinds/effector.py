@@ -53,7 +53,7 @@ class EffectorConstraint(Constraint):
     @property
     def own_joint_moves_it(self) -> bool:
         """Whether turning the effector's own joint moves the task."""
-        return self.turns or bool(np.any(self.effector.offset))
+        return self.turns or self.effector.is_off
 
     @property
     def base_turns_it(self) -> bool:
@@ -117,6 +117,6 @@ class EffectorConstraint(Constraint):
         if targets.positions is not None:
             place = self.measure.positions(effector_positions(poses, self.effector), poses)
             wanted = self.measure.aimed(place, targets.positions)
-            lengths = np.linalg.norm(place - wanted, axis=1)
+            lengths = rot.length(place - wanted)
             places = self.measure.in_world(wanted, poses)
         return ConstraintErrors(targets.first, lengths, angles, places)
