@@ -121,6 +121,12 @@ def test_plants_of_a_file_or_the_spec_are_taken(edit, tmp_path):
     assert np.ptp(forward(again.clip.motion).positions[24:31, ankle], axis=0).max() < 1e-3
 
 
+def test_a_heel_that_a_leg_cannot_hold_is_named(edit):
+    _, record = edit([{**FEET, "plants": {"LeftFoot": [[24, 38]]}}], clip=WALK)
+    assert record["status"] == "rough"
+    assert "the left heel is not held at frames 36-38: the leg is too short there" in record["message"]
+
+
 @pytest.mark.parametrize(
     ("table", "message"),
     [

@@ -13,8 +13,8 @@ from motionedit.core.feet.goals import FootGoal, Ground, foot_goal
 from motionedit.core.feet.knees import knee_of
 from motionedit.core.feet.legs import LegGoal, legs_onto, turns_freely
 from motionedit.core.feet.pelvis import drop_needed, smooth_cover
-from motionedit.core.feet.reach import reach_of, released
-from motionedit.core.feet.stance import feet_of, foot_path, stance_of
+from motionedit.core.feet.reach import LOWERED, reach_of, released
+from motionedit.core.feet.stance import feet_of, foot_path, runs, stance_of
 from motionedit.core.kinematics import WorldPoses, forward
 from motionedit.core.motion import Motion
 from motionedit.dataclass import dataclass
@@ -27,19 +27,20 @@ if TYPE_CHECKING:
     from motionedit.core.body.contacts import Plant
     from motionedit.core.feet.stance import Foot, Stance
 
-
-# Of a leg: a heel comes up where the pelvis would have to come down by more.
-_LOWERED = 0.02
 _GIVE = 0.006  # of a leg: 5 mm
 
 
 @dataclass(frozen=True, eq=False)
 class Kept:
-    """A motion whose feet stand, the goals of its feet, and how far its pelvis was lowered, shape (F,)."""
+    """A motion whose feet stand, the goals of its feet, and how far its pelvis was lowered, shape (F,).
+
+    `let_go` are the frames in which a heel was to stand and did not, its leg being too short: (side, first, last).
+    """
 
     motion: Motion
     goals: tuple[FootGoal, ...]
     lowered: FloatArray
+    let_go: tuple[tuple[str, int, int], ...] = ()
 
 
 def keep_feet(
@@ -100,11 +101,17 @@ def onto_stances(
 
     Where there is a `floor`, a height along up, no foot in the air goes below it.
     """
-    low = _LOWERED * anatomy.leg_length * up
+    low = LOWERED * anatomy.leg_length * up
+    asked = stances
     stances = [
         (foot, released(stance, poses.positions[:, foot.leg.thigh] - low, reach_of(poses, foot)))
         for foot, stance in stances
     ]
+    let_go = tuple(
+        (foot.side, start, stop)
+        for (foot, before), (_, after) in zip(asked, stances, strict=True)
+        for start, stop in runs(before.heel & ~after.heel)
+    )
     lowered = np.zeros(len(motion))
     if not any(stance.down.any() for _, stance in stances):
         return Kept(motion, (), lowered)
@@ -144,7 +151,8 @@ def onto_stances(
     done = shifted(stood, shift, poses, travel) if lowered.any() else stood
     rotations = done.rotations.copy()
     rotations[:first] = motion.rotations[:first]
-    return Kept(Motion(done.skeleton, frozen(rotations), done.translations, done.frame_time), goals, lowered)
+    found = Motion(done.skeleton, frozen(rotations), done.translations, done.frame_time)
+    return Kept(found, goals, lowered, let_go)
 
 
 def shifted(motion: Motion, shift: FloatArray, poses: WorldPoses, travel: int) -> Motion:

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 # A leg is stretched to this share of its length, or as far as it is already: nearer to straight, a millimetre at the
 # ankle is a centimetre at the knee.
 REACH = 0.994
+# Of a leg: a heel comes up where the pelvis would have to come down by more.
+LOWERED = 0.02
 _LEAST = float(np.radians(5.0))  # rad
 _ROUNDING = 1e-9
 

@@ -9,8 +9,9 @@ import numpy as np
 
 from motionedit.core.body.contacts import Plant
 from motionedit.core.feet.keep import onto_stances, shifted
+from motionedit.core.feet.reach import LOWERED, reach_of
 from motionedit.core.feet.stance import Stance, feet_of, foot_path, runs, stance_of
-from motionedit.core.feet.stands import body_shift, carried, on_height
+from motionedit.core.feet.stands import body_shift, carried, on_height, within_reach
 from motionedit.core.kinematics import forward
 from motionedit.core.motion import scaled
 from motionedit.core.priorities.kinds.constraint import Scene, Targets
@@ -69,6 +70,13 @@ def on_feet(
     if np.any(total):
         motion = shifted(motion, total, poses, facts.travel)
         poses = forward(motion)
+    low = LOWERED * facts.anatomy.leg_length
+    placed = [
+        (foot, within_reach(stance, poses.positions[:, foot.leg.thigh], reach_of(poses, foot), low, facts.up))
+        if ask.follows_path
+        else (foot, stance)
+        for (ask, _, _), (foot, stance) in zip(stances, placed, strict=True)
+    ]
     floors = [each.constraint.least.height / scale for each in constraints if each.constraint.least is not None]
     kept = onto_stances(
         motion,
@@ -87,9 +95,22 @@ def on_feet(
         body=body_again(loaded, stood, sized.body),
         before=sized.motion,
         lowered=scale * kept.lowered,
+        let_go=_heels_let_go(kept.let_go),
     )
     goals = {goal.foot.leg.ankle: goal for goal in kept.goals}
     return found, [part for each in constraints for part in _with_goals(each, goals, constraints, sized)]
+
+
+def _heels_let_go(let_go: Sequence[tuple[str, int, int]]) -> tuple[str, ...]:
+    """Return a line for each foot whose heel does not stand where it was to."""
+    lines = []
+    for side in sorted({side for side, _, _ in let_go}):
+        spans = [f"{first}-{last}" for of, first, last in let_go if of == side]
+        lines.append(
+            f"the {side} heel is not held at frames {', '.join(spans)}: the leg is too short there, even with the "
+            "pelvis lowered"
+        )
+    return tuple(lines)
 
 
 def _stances(
