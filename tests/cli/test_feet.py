@@ -102,6 +102,16 @@ def test_plants_go_with_the_path_as_a_whole(edit):
     assert record["metrics"]["after"]["jerk_rms"] < 1.15 * record["metrics"]["before"]["jerk_rms"]
 
 
+def test_a_foot_on_a_longer_way_stands_where_its_leg_holds_it_to_the_end(edit):
+    way = {"type": "position", "effector": "Hips", "priority": 5}
+    points = [{"at": 0}, {"at": "100%", "shift": [0, 0, 80]}]
+    feet = {**FEET, "at": "path", "plants": {"LeftFoot": [[24, 35]]}}
+    after, record = edit([feet, {**way, "points": points}], clip=WALK)
+    assert record["status"] == "ok"
+    ankle = after.clip.motion.skeleton.names.index("LeftFoot")
+    assert np.ptp(forward(after.clip.motion).positions[24:36, ankle], axis=0).max() < 1e-3
+
+
 def test_feet_stand_on_a_height_and_nothing_of_them_goes_below(edit):
     after, record = edit([{**FEET, "height": 5}, {"type": "floor", "height": 5, "priority": 9}], clip=WALK)
     tracks = sole_tracks(forward(after.clip.motion), after.anatomy)[..., 1]
