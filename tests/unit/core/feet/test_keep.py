@@ -9,12 +9,13 @@ import pytest
 
 import motionedit
 from motionedit.core.body.bends import find_bends
-from motionedit.core.body.contacts import sole_tracks
+from motionedit.core.body.contacts import Plant, sole_tracks
 from motionedit.core.body.quality import jerk_rms
-from motionedit.core.feet.keep import keep_feet, shifted
+from motionedit.core.feet.keep import keep_feet, onto_stances, shifted
 from motionedit.core.feet.knees import eased_ways, knee_of
 from motionedit.core.feet.legs import LegGoal, legs_onto
 from motionedit.core.feet.pelvis import drop_needed, smooth_cover
+from motionedit.core.feet.stance import feet_of, foot_path, stance_of
 from motionedit.core.kinematics import forward
 from motionedit.jobs.clip.facts import facts_of
 
@@ -148,6 +149,22 @@ def test_a_heel_that_stands_leaves_its_knee_five_degrees():
             )
         )
         assert least == pytest.approx(5.0, abs=1e-6)
+
+
+def test_a_heel_that_stands_alone_keeps_its_toe_on_the_floor():
+    clip = facts("walk.bvh")
+    # The foot rolls off: its heel, held where it is on average, would push the toe down.
+    plants = [Plant("left", "heel", clip.anatomy.legs[0].ankle, 0, 33, 39, 0.0)]
+    stances = [(foot, stance_of(foot_path(clip.poses, foot), plants)) for foot in feet_of(clip.anatomy)[:1]]
+    toe = next(i for i, point in enumerate(clip.anatomy.sole_points) if (point.foot, point.part) == ("left", "toe"))
+    floor = float(sole_tracks(clip.poses, clip.anatomy)[33:40, toe, 1].min())
+    deepest = []
+    for height in (None, floor):
+        where = {"up": clip.up, "travel": clip.travel, "first": clip.first, "floor": height}
+        found = onto_stances(clip.clip.motion, clip.poses, stances, clip.anatomy, **where).motion
+        deepest.append(sole_tracks(forward(found), clip.anatomy)[33:40, toe, 1].min() - floor)
+    assert deepest[0] < -0.5
+    assert deepest[1] == pytest.approx(0.0, abs=1e-9)
 
 
 def test_a_knee_that_is_nearly_straight_eases_off_its_plant_without_a_shake_or_a_flip():
