@@ -13,9 +13,11 @@ from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray
+    from motionedit.core.body.anatomy import Anatomy
     from motionedit.core.feet.knees import Knee
     from motionedit.core.feet.stance import Foot, FootPath, Stance
 
+_GIVE = 0.006  # of a leg
 _NO_WAY = 1e-12  # a length: a foot without a toe has no arm
 # Seconds: how slowly an ankle's correction bends, from the first where it is a small share of a leg to the second where
 # it is a large one: far ways take their time.
@@ -35,6 +37,11 @@ class Ground:
     height: float | None
     give: float
     leg: float
+
+
+def ground_under(anatomy: Anatomy, up: FloatArray, *, floor: float | None = None) -> Ground:
+    """Return the ground of a body, on which a foot in the air goes 5 mm deeper than before (at a leg of 0.85 m)."""
+    return Ground(up, floor, _GIVE * anatomy.leg_length, anatomy.leg_length)
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,6 +11,7 @@ import motionedit
 from motionedit.core.body.bends import find_bends
 from motionedit.core.body.contacts import Plant, sole_tracks
 from motionedit.core.body.quality import jerk_rms
+from motionedit.core.feet.goals import ground_under
 from motionedit.core.feet.keep import keep_feet, onto_stances, shifted
 from motionedit.core.feet.knees import eased_ways, knee_of
 from motionedit.core.feet.legs import LegGoal, legs_onto
@@ -40,12 +41,17 @@ def kept(name, reference=None):
     )
 
 
-def kept_raised(name, share):
-    """Return a clip whose body is raised by a share of a leg, its feet kept where they were."""
+def raised(name, share):
+    """Return the clip of a name with its body raised by a share of a leg."""
     clip = facts(name)
     way = np.tile(share * clip.anatomy.leg_length * clip.up, (len(clip.clip.motion), 1))
-    raised = shifted(clip.clip.motion, way, clip.poses, clip.travel)
-    return keep_feet(raised, clip.clip.motion, clip.anatomy, clip.phases, up=clip.up, travel=clip.travel)
+    return shifted(clip.clip.motion, way, clip.poses, clip.travel)
+
+
+def kept_raised(name, share):
+    """Return such a clip with its feet kept where they were."""
+    clip = facts(name)
+    return keep_feet(raised(name, share), clip.clip.motion, clip.anatomy, clip.phases, up=clip.up, travel=clip.travel)
 
 
 def drift(motion, of, plants=None):
@@ -119,19 +125,15 @@ def test_a_pelvis_comes_down_as_far_as_a_leg_asks_and_smoothly():
     assert cover[0] == cover[-1] == 0.0
 
 
-def test_a_pelvis_comes_down_by_two_percent_of_a_leg_before_a_heel_is_let_go_and_that_is_said():
+def test_a_pelvis_comes_down_by_two_percent_of_a_leg_before_a_heel_is_let_go():
     clip = facts("walk.bvh")
     found = kept_raised("walk.bvh", 0.02)
-    assert found.let_go == ()
     assert found.lowered.max() == pytest.approx(0.02 * clip.anatomy.leg_length, rel=0.01)
     assert drift(found.motion, clip) < 1e-9
     found = kept_raised("walk.bvh", 0.03)
     assert found.lowered.max() < 0.02 * clip.anatomy.leg_length
-    heels = [plant for plant in clip.phases if plant.part == "heel"]
-    for side, first, last in found.let_go:
-        assert any(plant.foot == side and plant.start <= first <= last <= plant.stop for plant in heels)
-    toes = [plant for plant in clip.phases if plant.part == "toe"]
-    assert drift(found.motion, clip, toes) < 1e-9
+    assert drift(found.motion, clip, [plant for plant in clip.phases if plant.part == "heel"]) > 1.0
+    assert drift(found.motion, clip, [plant for plant in clip.phases if plant.part == "toe"]) < 1e-9
 
 
 def test_a_heel_that_stands_leaves_its_knee_five_degrees():
@@ -160,8 +162,8 @@ def test_a_heel_that_stands_alone_keeps_its_toe_on_the_floor():
     floor = float(sole_tracks(clip.poses, clip.anatomy)[33:40, toe, 1].min())
     deepest = []
     for height in (None, floor):
-        where = {"up": clip.up, "travel": clip.travel, "first": clip.first, "floor": height}
-        found = onto_stances(clip.clip.motion, clip.poses, stances, clip.anatomy, **where).motion
+        ground = ground_under(clip.anatomy, clip.up, floor=height)
+        found = onto_stances(clip.clip.motion, clip.poses, stances, clip.anatomy, ground, travel=0, first=0).motion
         deepest.append(sole_tracks(forward(found), clip.anatomy)[33:40, toe, 1].min() - floor)
     assert deepest[0] < -0.5
     assert deepest[1] == pytest.approx(0.0, abs=1e-9)
