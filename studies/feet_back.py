@@ -30,10 +30,12 @@ if TYPE_CHECKING:
 
 PAIRS = 24
 FARTHEST = 25.0  # clip units: how far the joint is from where it is asked to be, at most
+HELD = {"constraints": [{"type": "footplants"}]}
 FEET_BACK = Path(__file__).parents[1] / "configs" / "feet-back.yaml"
 COLUMNS = {
+    "drift in the input's plants (mm)": 3,
     "drift in plants (mm)": 3,
-    "plants off the input's (mm)": 3,
+    "plants off the input's, held (mm)": 3,
     "joint off its goal (mm)": 3,
     "hands off the edit's (mm)": 3,
     "jerk, x the edit's": 2,
@@ -60,26 +62,36 @@ def places(strokes: Sequence[ClipFacts], joint: int, frame: int) -> FloatArray:
     return np.array(seen)
 
 
+def farthest(ways: FloatArray) -> float:
+    """Return the longest of ways, shape (n, 3)."""
+    return float(np.linalg.norm(ways, axis=1).max())
+
+
 def measured(clips: Sequence[ClipFacts], joint: int, frame: int, goal: FloatArray) -> list[float]:
-    """Return the numbers of a row from the input, the edited and the final clip: mm at a leg of 0.85 m, and ratios."""
+    """Return the numbers of a row from the input, the edited, the final clip, and the input with feet held.
+
+    mm at a leg of 0.85 m, and ratios. A plant of the input that slides has no place; held, it has one.
+    """
     before = clips[0]
     millimetres = 1000.0 * STANDARD_LEG / before.anatomy.leg_length
     places = [facts.poses.positions for facts in clips]
     tracks = [sole_tracks(facts.poses, before.anatomy) for facts in clips]
-    drift, off = 0.0, 0.0
+    slid, drift, off = 0.0, 0.0, 0.0
     for plant in before.phases:
-        mine, theirs = (track[plant.start : plant.stop + 1, plant.point] for track in (tracks[-1], tracks[0]))
-        drift = max(drift, float(np.linalg.norm(mine - mine.mean(axis=0), axis=1).max()))
-        off = max(off, float(np.linalg.norm(mine.mean(axis=0) - theirs.mean(axis=0))))
+        given, _, mine, held = (track[plant.start : plant.stop + 1, plant.point] for track in tracks)
+        slid = max(slid, farthest(given - given.mean(axis=0)))
+        drift = max(drift, farthest(mine - mine.mean(axis=0)))
+        off = max(off, farthest(mine - held))
     hands = [arm.wrist for arm in before.anatomy.arms or ()]
     jerks = [jerk_rms(each, frame_time=before.clip.motion.frame_time, first=before.first) for each in places]
     return [
+        millimetres * slid,
         millimetres * drift,
         millimetres * off,
-        millimetres * float(np.linalg.norm(places[-1][frame, joint] - goal)),
-        millimetres * float(np.linalg.norm(places[-1][:, hands] - places[1][:, hands], axis=-1).max(initial=0.0)),
-        jerks[-1] / jerks[1],
-        jerks[-1] / jerks[0],
+        millimetres * float(np.linalg.norm(places[2][frame, joint] - goal)),
+        millimetres * float(np.linalg.norm(places[2][:, hands] - places[1][:, hands], axis=-1).max(initial=0.0)),
+        jerks[2] / jerks[1],
+        jerks[2] / jerks[0],
     ]
 
 
@@ -102,7 +114,8 @@ def rows(folder: Path, name: str, frame: int, count: int) -> list[list[float]]:
             asked = {"effector": name, "at": "hit", "position": goal.tolist()}
             edited = lab.edit(files[i], model, {"unit": "cm", "events": {"hit": frame}, "goals": [asked]}).path
             final = lab.edit_prioritized(edited, feet_back(strokes[i], files[i])).path
-            clips = [strokes[i], *(facts_of(motionedit.read(path)) for path in (edited, final))]
+            held = lab.edit_prioritized(files[i], HELD).path
+            clips = [strokes[i], *(facts_of(motionedit.read(path)) for path in (edited, final, held))]
             found.append(measured(clips, joint, frame, goal))
     return found
 

@@ -102,6 +102,16 @@ def test_plants_go_with_the_path_as_a_whole(edit):
     assert record["metrics"]["after"]["jerk_rms"] < 1.15 * record["metrics"]["before"]["jerk_rms"]
 
 
+def test_a_foot_on_a_longer_way_stands_where_its_leg_holds_it_to_the_end(edit):
+    way = {"type": "position", "effector": "Hips", "priority": 5}
+    points = [{"at": 0}, {"at": "100%", "shift": [0, 0, 80]}]
+    feet = {**FEET, "at": "path", "plants": {"LeftFoot": [[24, 35]]}}
+    after, record = edit([feet, {**way, "points": points}], clip=WALK)
+    assert record["status"] == "ok"
+    ankle = after.clip.motion.skeleton.names.index("LeftFoot")
+    assert np.ptp(forward(after.clip.motion).positions[24:36, ankle], axis=0).max() < 1e-3
+
+
 def test_feet_stand_on_a_height_and_nothing_of_them_goes_below(edit):
     after, record = edit([{**FEET, "height": 5}, {"type": "floor", "height": 5, "priority": 9}], clip=WALK)
     tracks = sole_tracks(forward(after.clip.motion), after.anatomy)[..., 1]
@@ -119,6 +129,12 @@ def test_plants_of_a_file_or_the_spec_are_taken(edit, tmp_path):
     (tmp_path / "p.csv").write_text("clip,foot,part,first,last\nwalk-skating,left,foot,24,30\nother,left,toe,1,2\n")
     again, _ = edit([{**FEET, "plants": "p.csv"}])
     assert np.ptp(forward(again.clip.motion).positions[24:31, ankle], axis=0).max() < 1e-3
+
+
+def test_a_heel_that_a_leg_cannot_hold_is_named(edit):
+    _, record = edit([{**FEET, "plants": {"LeftFoot": [[24, 38]]}}], clip=WALK)
+    assert record["status"] == "rough"
+    assert "the left heel is not held at frames 36-38: the leg is too short there" in record["message"]
 
 
 @pytest.mark.parametrize(

@@ -9,11 +9,11 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
 from motionedit.core.body.bends import find_bends
-from motionedit.core.feet.goals import FootGoal, Ground, foot_goal
+from motionedit.core.feet.goals import FootGoal, Ground, foot_goal, ground_under
 from motionedit.core.feet.knees import knee_of
 from motionedit.core.feet.legs import LegGoal, legs_onto, turns_freely
 from motionedit.core.feet.pelvis import drop_needed, smooth_cover
-from motionedit.core.feet.reach import reach_of, released
+from motionedit.core.feet.reach import LOWERED, reach_bent, reach_of, released
 from motionedit.core.feet.stance import feet_of, foot_path, stance_of
 from motionedit.core.kinematics import WorldPoses, forward
 from motionedit.core.motion import Motion
@@ -26,11 +26,6 @@ if TYPE_CHECKING:
     from motionedit.core.body.anatomy import Anatomy
     from motionedit.core.body.contacts import Plant
     from motionedit.core.feet.stance import Foot, Stance
-
-
-# Of a leg: a heel comes up where the pelvis would have to come down by more.
-_LOWERED = 0.02
-_GIVE = 0.006  # of a leg: 5 mm
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +77,20 @@ def keep_feet(
     for foot in feet_of(anatomy):
         here = [plant for plant in plants if plant.foot == foot.side]
         stances.append((foot, stance_of(foot_path(theirs, foot), here)))
-    return onto_stances(motion, poses, stances, anatomy, up=up, travel=travel, first=first)
+    held = within_legs(stances, poses, anatomy, up=up)
+    ground = ground_under(anatomy, up)
+    return onto_stances(motion, poses, held, anatomy, ground, travel=travel, first=first)
+
+
+def within_legs(
+    stances: Sequence[tuple[Foot, Stance]], poses: WorldPoses, anatomy: Anatomy, *, up: FloatArray
+) -> list[tuple[Foot, Stance]]:
+    """Return stances whose heels come up once the pelvis would have to come down by more than 2 % of a leg for them."""
+    low = LOWERED * anatomy.leg_length * up
+    return [
+        (foot, released(stance, poses.positions[:, foot.leg.thigh] - low, reach_of(poses, foot)))
+        for foot, stance in stances
+    ]
 
 
 def onto_stances(
@@ -90,25 +98,19 @@ def onto_stances(
     poses: WorldPoses,
     stances: Sequence[tuple[Foot, Stance]],
     anatomy: Anatomy,
+    ground: Ground,
     *,
-    up: FloatArray,
     travel: int,
     first: int,
-    floor: float | None = None,
 ) -> Kept:
     """Return a motion whose feet stand as given, as `keep_feet`; `poses` are its world transforms.
 
-    Where there is a `floor`, a height along up, no foot in the air goes below it.
+    A heel that its leg is too short for stays down, and the pelvis goes as low as that takes: see `within_legs`.
     """
-    low = _LOWERED * anatomy.leg_length * up
-    stances = [
-        (foot, released(stance, poses.positions[:, foot.leg.thigh] - low, reach_of(poses, foot)))
-        for foot, stance in stances
-    ]
+    up = ground.up
     lowered = np.zeros(len(motion))
     if not any(stance.down.any() for _, stance in stances):
         return Kept(motion, (), lowered)
-    ground = Ground(up, floor, _GIVE * anatomy.leg_length, anatomy.leg_length)
     bends = {bend.joint: bend for bend in find_bends(motion.skeleton, poses, anatomy, first=first)}
     knees = {
         foot.side: knee_of(motion.skeleton, poses, foot.leg, bends[foot.leg.knee])
@@ -118,8 +120,9 @@ def onto_stances(
     if motion.skeleton.position_axes[travel]:
         # Heels that stand say how low the pelvis is; a foot on its toe rolls on instead.
         for foot, stance in stances:
-            hip, reach = poses.positions[:, foot.leg.thigh], reach_of(poses, foot, knees.get(foot.side))
-            lowered = np.maximum(lowered, np.where(stance.heel, drop_needed(hip, stance.heel_place, reach, up), 0.0))
+            hip, places, knee = poses.positions[:, foot.leg.thigh], stance.heel_place, knees.get(foot.side)
+            reach = reach_of(poses, foot) if knee is None else reach_bent(poses, foot, knee, places)
+            lowered = np.maximum(lowered, np.where(stance.heel, drop_needed(hip, places, reach, up), 0.0))
         lowered[:first] = 0.0
         lowered[first:] = smooth_cover(lowered[first:], motion.frame_time)
     shift = -lowered[:, None] * up
@@ -144,7 +147,8 @@ def onto_stances(
     done = shifted(stood, shift, poses, travel) if lowered.any() else stood
     rotations = done.rotations.copy()
     rotations[:first] = motion.rotations[:first]
-    return Kept(Motion(done.skeleton, frozen(rotations), done.translations, done.frame_time), goals, lowered)
+    found = Motion(done.skeleton, frozen(rotations), done.translations, done.frame_time)
+    return Kept(found, goals, lowered)
 
 
 def shifted(motion: Motion, shift: FloatArray, poses: WorldPoses, travel: int) -> Motion:

@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 EASE = 0.2
 # The pelvis goes down no farther than this share of a leg.
 _DEEPEST = 0.1
+# Of a length squared: by so little a leg that is as long as it was may seem too short, and no pelvis comes down.
+_ROUNDING = 1e-12
 
 
 def drop_needed(hip: FloatArray, ankle: FloatArray, reach: FloatArray, up: FloatArray) -> FloatArray:
@@ -25,7 +27,7 @@ def drop_needed(hip: FloatArray, ankle: FloatArray, reach: FloatArray, up: Float
     level = np.maximum(np.sum(way**2, axis=1) - height**2, 0.0)
     under = np.sqrt(np.maximum(reach**2 - level, 0.0))
     needed: FloatArray = np.clip(height - under, 0.0, _DEEPEST * reach)
-    return np.where(np.sum(way**2, axis=1) <= reach**2, 0.0, needed)
+    return np.where(np.sum(way**2, axis=1) <= (1.0 + _ROUNDING) * reach**2, 0.0, needed)
 
 
 def smooth_cover(needed: FloatArray, frame_time: float, *, ease: float = EASE) -> FloatArray:

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 # A leg is stretched to this share of its length, or as far as it is already: nearer to straight, a millimetre at the
 # ankle is a centimetre at the knee.
 REACH = 0.994
+# Of a leg: a heel comes up where the pelvis would have to come down by more.
+LOWERED = 0.02
 _LEAST = float(np.radians(5.0))  # rad
 _ROUNDING = 1e-9
 
@@ -29,14 +31,23 @@ def stretch(poses: WorldPoses, foot: Foot) -> tuple[FloatArray, FloatArray]:
     return rot.length(ankle - hip), rot.length(knee - hip) + rot.length(ankle - knee)
 
 
-def reach_of(poses: WorldPoses, foot: Foot, knee: Knee | None = None) -> FloatArray:
-    """Return how far from its hip an ankle may be, shape (F,): a share of the leg, or as far as it is already.
-
-    But no farther than leaves a knee 5 degrees: closer to straight it would shake, or bend back.
-    """
+def reach_of(poses: WorldPoses, foot: Foot) -> FloatArray:
+    """Return how far from its hip an ankle may be, shape (F,): a share of the leg, or as far as it is already."""
     way, length = stretch(poses, foot)
-    reach: FloatArray = np.maximum(REACH * length, way)
-    return reach if knee is None else np.minimum(reach, knee.way(np.full(len(way), _LEAST)))
+    return np.maximum(REACH * length, way)
+
+
+def reach_bent(poses: WorldPoses, foot: Foot, knee: Knee, places: FloatArray) -> FloatArray:
+    """Return how far from its hip an ankle may be that goes to places (F, 3), shape (F,): as `reach_of`.
+
+    But no farther than leaves a knee 5 degrees: closer to straight it would shake, or bend back. That brings it nearer
+    to the hip by no more than the ankle is off its place: one that is there may be as straight as it is.
+    """
+    way, _ = stretch(poses, foot)
+    off = np.linalg.norm(places - poses.positions[:, foot.leg.ankle], axis=1)
+    bent = knee.way(np.full(len(way), _LEAST))
+    reach: FloatArray = np.minimum(reach_of(poses, foot), np.maximum(bent, way - off))
+    return reach
 
 
 def released(stance: Stance, hip: FloatArray, reach: FloatArray) -> Stance:

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.feet.reach import released
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -15,6 +17,9 @@ if TYPE_CHECKING:
 
 # Seconds over which the body follows the heights of its feet.
 _FOLLOWS = 0.25
+# Rounds, each of which takes half of what a stand lacks: the farthest frames of its two ends share what cannot be had.
+_ROUNDS = 48
+_WELL_WITHIN = 0.999  # of the reach: what a step aims at, so that few of them arrive
 
 
 def carried(stance: Stance, shift: FloatArray) -> Stance:
@@ -23,6 +28,39 @@ def carried(stance: Stance, shift: FloatArray) -> Stance:
     for stand in np.unique(stance.whole[stance.whole >= 0]):
         here = stance.whole == stand
         ways[here] = shift[here].mean(axis=0)
+    return replace(stance, heel_place=stance.heel_place + ways, toe_place=stance.toe_place + ways)
+
+
+def within_reach(stance: Stance, hip: FloatArray, reach: FloatArray, low: float, up: FloatArray) -> Stance:
+    """Return a stance whose stands are moved on the level, where a heel would be `released`, until it is within reach.
+
+    A body that goes on another path goes farther, or faster, while a foot stands: where the mean of its path takes
+    the foot, the leg may be too short for the first or the last frames.
+
+    Parameters
+    ----------
+    hip : shape (F, 3)
+    reach : shape (F,)
+        How far from the hip the heel may be.
+    low : float
+        How far the pelvis may come down before a heel is released; where both ends of a stand lack, each gets a share.
+    """
+    let_go = stance.heel & ~released(stance, hip - low * up, reach).heel
+    way = stance.heel_place - hip
+    height = way @ up
+    level = way - height[:, None] * up
+    radius = np.sqrt(np.maximum(reach**2 - height**2, 0.0))
+    ways = np.zeros((len(stance.whole), 3))
+    for stand in np.unique(stance.whole[let_go]):
+        here = stance.whole == stand
+        from_hip, within, moved = level[here & stance.heel], radius[here & stance.heel], np.zeros(3)
+        for _ in range(_ROUNDS):
+            far = np.linalg.norm(from_hip + moved, axis=1)
+            worst = int(np.argmax(far - within))
+            if far[worst] <= within[worst]:
+                break
+            moved -= 0.5 * (1.0 - _WELL_WITHIN * within[worst] / far[worst]) * (from_hip[worst] + moved)
+        ways[here] = moved
     return replace(stance, heel_place=stance.heel_place + ways, toe_place=stance.toe_place + ways)
 
 

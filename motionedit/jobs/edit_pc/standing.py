@@ -10,7 +10,7 @@ import numpy as np
 from motionedit.core import kinematics
 from motionedit.core import rotations as rot
 from motionedit.core.body.contacts import foot_plants
-from motionedit.core.standing.legs import keep_feet, standing_feet
+from motionedit.core.feet.put_back import put_back, standing_feet
 from motionedit.core.units import STANDARD_LEG
 from motionedit.jobs.edit_pc.goals import seen
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
     from motionedit.core.coefficients.edit import CoefficientEdit
     from motionedit.core.coefficients.goal_chains import GoalRequest
+    from motionedit.core.feet.put_back import Places, StandingFoot
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.motion import Motion
-    from motionedit.core.standing.legs import Places, StandingFoot
     from motionedit.jobs.clip.facts import ClipFacts
 
 # Metres at leg length 0.85 m, and radians: what putting the feet back may move a goal by.
@@ -43,22 +43,24 @@ def edit_standing(
     part of a standing leg: `again` changes a motion so that goals are met while some joints are still.
     """
     edit = solve(requests)
-    legs = facts.anatomy.legs
-    if legs is None or not (edit.touched.any() or edit.moved.any()):
+    anatomy = facts.anatomy
+    if anatomy.legs is None or not (edit.touched.any() or edit.moved.any()):
         return edit
     motion = facts.clip.motion
     fixed = {(request.effector.joint, request.frame) for request in requests}
-    feet = standing_feet(motion, legs, foot_plants(facts.plants), fixed=fixed)
+    feet = standing_feet(motion, anatomy, foot_plants(facts.plants), fixed=fixed)
     still = _still(motion, feet)
     # Where a goal is out of reach, what the solver has come to is kept.
     reached = kinematics.forward(edit.motion)
     asked = [
         request if edit.reasons[i] == "converged" else _reached(request, reached) for i, request in enumerate(requests)
     ]
-    tolerance = _SETTLED * facts.anatomy.leg_length / STANDARD_LEG
+    tolerance = _SETTLED * anatomy.leg_length / STANDARD_LEG
     current, touched, moved = edit.motion, edit.touched, edit.moved
     for _ in range(_ROUNDS):
-        kept = keep_feet(current, motion, feet, up=facts.up, travel=facts.travel, places=places, first=facts.first)
+        kept = put_back(
+            current, motion, feet, anatomy, up=facts.up, travel=facts.travel, places=places, first=facts.first
+        )
         current, touched, moved = kept.motion, touched | kept.touched, moved | kept.moved
         poses = kinematics.forward(current)
         if all(_off(request, poses, tolerance) < 1.0 for request in asked):
@@ -69,8 +71,8 @@ def edit_standing(
 
 def _still(motion: Motion, feet: Sequence[StandingFoot]) -> list[int]:
     """Return the joints that move the ankle of a foot without goals."""
-    chains = [motion.skeleton.chain(foot.leg.ankle) for foot in feet if not foot.fixed]
-    shared = [motion.skeleton.chain(foot.leg.thigh)[:-1] for foot in feet]
+    chains = [motion.skeleton.chain(each.foot.leg.ankle) for each in feet if not each.fixed]
+    shared = [motion.skeleton.chain(each.foot.leg.thigh)[:-1] for each in feet]
     return sorted({int(j) for chain in (*chains, *shared) for j in chain})
 
 

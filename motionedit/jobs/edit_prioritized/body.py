@@ -40,7 +40,8 @@ class SizedClip:
     """A clip as it is solved: its motion in normalised metres, its body, and what the user should know of them.
 
     `scale` is normalised metres (leg length 0.85 m) per clip unit; `masses` are in clip units. `before` is the clip
-    itself, where its feet were made to stand before the edit, and `lowered` (F,) how far its pelvis was for that.
+    itself, where its feet were made to stand before the edit, and `lowered` (F,) how far its pelvis was for that;
+    `let_go` tells of the heels that could not be held, a line a foot.
     """
 
     facts: ClipFacts
@@ -51,6 +52,7 @@ class SizedClip:
     warnings: tuple[str, ...]
     before: Motion | None = None
     lowered: FloatArray | None = None
+    let_go: tuple[str, ...] = ()
 
     @property
     def input(self) -> Motion:

@@ -209,7 +209,9 @@ class EditByPriorities:
             traces=(before, after),
             bends=sized.body.bends,
         )
-        result = edit_record(edit, constraints, facts, scale=sized.scale, settings=settings, rough=rough)
+        result = edit_record(
+            edit, constraints, facts, scale=sized.scale, settings=settings, rough=(*sized.let_go, *rough)
+        )
         about = {
             **self._about(sized, before, after, steps),
             "solver": edit.solver,

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.body.contacts import Plant
-from motionedit.core.feet.keep import onto_stances, shifted
+from motionedit.core.feet.goals import ground_under
+from motionedit.core.feet.keep import onto_stances, shifted, within_legs
+from motionedit.core.feet.reach import LOWERED, reach_of
 from motionedit.core.feet.stance import Stance, feet_of, foot_path, runs, stance_of
-from motionedit.core.feet.stands import body_shift, carried, on_height
+from motionedit.core.feet.stands import body_shift, carried, on_height, within_reach
 from motionedit.core.kinematics import forward
 from motionedit.core.motion import scaled
 from motionedit.core.priorities.kinds.constraint import Scene, Targets
@@ -69,16 +71,23 @@ def on_feet(
     if np.any(total):
         motion = shifted(motion, total, poses, facts.travel)
         poses = forward(motion)
+    low = LOWERED * facts.anatomy.leg_length
+    placed = [
+        (foot, within_reach(stance, poses.positions[:, foot.leg.thigh], reach_of(poses, foot), low, facts.up))
+        if ask.follows_path
+        else (foot, stance)
+        for (ask, _, _), (foot, stance) in zip(stances, placed, strict=True)
+    ]
     floors = [each.constraint.least.height / scale for each in constraints if each.constraint.least is not None]
+    held = within_legs(placed, poses, facts.anatomy, up=facts.up)
     kept = onto_stances(
         motion,
         poses,
-        placed,
+        held,
         facts.anatomy,
-        up=facts.up,
+        ground_under(facts.anatomy, facts.up, floor=max(floors, default=None)),
         travel=facts.travel,
         first=facts.first,
-        floor=max(floors, default=None),
     )
     stood = replace(facts, clip=replace(facts.clip, motion=kept.motion), world=Poses(kept.motion))
     found = replace(
@@ -87,9 +96,23 @@ def on_feet(
         body=body_again(loaded, stood, sized.body),
         before=sized.motion,
         lowered=scale * kept.lowered,
+        let_go=_heels_let_go(placed, held),
     )
     goals = {goal.foot.leg.ankle: goal for goal in kept.goals}
     return found, [part for each in constraints for part in _with_goals(each, goals, constraints, sized)]
+
+
+def _heels_let_go(asked: Sequence[tuple[Foot, Stance]], held: Sequence[tuple[Foot, Stance]]) -> tuple[str, ...]:
+    """Return a line for each foot whose heel does not stand where it was to."""
+    lines = []
+    for (foot, before), (_, after) in zip(asked, held, strict=True):
+        spans = ", ".join(f"{first}-{last}" for first, last in runs(before.heel & ~after.heel))
+        if spans:
+            lines.append(
+                f"the {foot.side} heel is not held at frames {spans}: the leg is too short there, even with the pelvis "
+                "lowered"
+            )
+    return tuple(lines)
 
 
 def _stances(

@@ -9,12 +9,14 @@ import pytest
 
 import motionedit
 from motionedit.core.body.bends import find_bends
-from motionedit.core.body.contacts import sole_tracks
+from motionedit.core.body.contacts import Plant, sole_tracks
 from motionedit.core.body.quality import jerk_rms
-from motionedit.core.feet.keep import keep_feet
+from motionedit.core.feet.goals import ground_under
+from motionedit.core.feet.keep import keep_feet, onto_stances, shifted
 from motionedit.core.feet.knees import eased_ways, knee_of
 from motionedit.core.feet.legs import LegGoal, legs_onto
 from motionedit.core.feet.pelvis import drop_needed, smooth_cover
+from motionedit.core.feet.stance import feet_of, foot_path, stance_of
 from motionedit.core.kinematics import forward
 from motionedit.jobs.clip.facts import facts_of
 
@@ -39,9 +41,22 @@ def kept(name, reference=None):
     )
 
 
-def drift(motion, of):
+def raised(name, share):
+    """Return the clip of a name with its body raised by a share of a leg."""
+    clip = facts(name)
+    way = np.tile(share * clip.anatomy.leg_length * clip.up, (len(clip.clip.motion), 1))
+    return shifted(clip.clip.motion, way, clip.poses, clip.travel)
+
+
+def kept_raised(name, share):
+    """Return such a clip with its feet kept where they were."""
+    clip = facts(name)
+    return keep_feet(raised(name, share), clip.clip.motion, clip.anatomy, clip.phases, up=clip.up, travel=clip.travel)
+
+
+def drift(motion, of, plants=None):
     tracks = sole_tracks(forward(motion), of.anatomy)
-    return max(np.ptp(tracks[p.start : p.stop + 1, p.point], axis=0).max() for p in of.phases)
+    return max(np.ptp(tracks[p.start : p.stop + 1, p.point], axis=0).max() for p in plants or of.phases)
 
 
 @pytest.mark.parametrize("name", ["walk.bvh", "walk-skating.bvh", "kick.bvh"])
@@ -108,6 +123,50 @@ def test_a_pelvis_comes_down_as_far_as_a_leg_asks_and_smoothly():
     assert (cover >= needed - 1e-12).all()
     assert np.abs(np.diff(cover)).max() < 0.15 * needed[30]
     assert cover[0] == cover[-1] == 0.0
+
+
+def test_a_pelvis_comes_down_by_two_percent_of_a_leg_before_a_heel_is_let_go():
+    clip = facts("walk.bvh")
+    found = kept_raised("walk.bvh", 0.02)
+    assert found.lowered.max() == pytest.approx(0.02 * clip.anatomy.leg_length, rel=0.01)
+    assert drift(found.motion, clip) < 1e-9
+    found = kept_raised("walk.bvh", 0.03)
+    assert found.lowered.max() < 0.02 * clip.anatomy.leg_length
+    assert drift(found.motion, clip, [plant for plant in clip.phases if plant.part == "heel"]) > 1.0
+    assert drift(found.motion, clip, [plant for plant in clip.phases if plant.part == "toe"]) < 1e-9
+
+
+def test_a_heel_that_stands_leaves_its_knee_five_degrees():
+    clip = facts("walk-skating.bvh")
+    poses = forward(kept_raised("walk-skating.bvh", 0.01).motion)
+    bends = {bend.joint: bend for bend in find_bends(clip.clip.motion.skeleton, clip.poses, clip.anatomy, first=0)}
+    for leg, side in zip(clip.anatomy.legs, ("left", "right"), strict=True):
+        least = np.degrees(
+            min(
+                knee_of(clip.clip.motion.skeleton, poses, leg, bends[leg.knee])
+                .angle[plant.start : plant.stop + 1]
+                .min()
+                for plant in clip.phases
+                if plant.part == "heel" and plant.foot == side
+            )
+        )
+        assert least == pytest.approx(5.0, abs=1e-6)
+
+
+def test_a_heel_that_stands_alone_keeps_its_toe_on_the_floor():
+    clip = facts("walk.bvh")
+    # The foot rolls off: its heel, held where it is on average, would push the toe down.
+    plants = [Plant("left", "heel", clip.anatomy.legs[0].ankle, 0, 33, 39, 0.0)]
+    stances = [(foot, stance_of(foot_path(clip.poses, foot), plants)) for foot in feet_of(clip.anatomy)[:1]]
+    toe = next(i for i, point in enumerate(clip.anatomy.sole_points) if (point.foot, point.part) == ("left", "toe"))
+    floor = float(sole_tracks(clip.poses, clip.anatomy)[33:40, toe, 1].min())
+    deepest = []
+    for height in (None, floor):
+        ground = ground_under(clip.anatomy, clip.up, floor=height)
+        found = onto_stances(clip.clip.motion, clip.poses, stances, clip.anatomy, ground, travel=0, first=0).motion
+        deepest.append(sole_tracks(forward(found), clip.anatomy)[33:40, toe, 1].min() - floor)
+    assert deepest[0] < -0.5
+    assert deepest[1] == pytest.approx(0.0, abs=1e-9)
 
 
 def test_a_knee_that_is_nearly_straight_eases_off_its_plant_without_a_shake_or_a_flip():

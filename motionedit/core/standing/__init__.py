@@ -1,1 +1,0 @@
-"""Feet that stand, put right by the legs alone."""

@@ -1,0 +1,110 @@
+"""Feet put back by the legs alone, on the walk of data/ whose pelvis was moved."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from motionedit.core import kinematics
+from motionedit.core import rotations as rot
+from motionedit.core.body.anatomy import anatomy_of
+from motionedit.core.body.bends import find_bends
+from motionedit.core.body.contacts import find_plants, foot_plants
+from motionedit.core.bvh import read_clip
+from motionedit.core.feet.knees import knee_of
+from motionedit.core.feet.put_back import put_back, standing_feet
+from motionedit.core.motion import Motion
+
+WALK = Path(__file__).resolve().parents[4] / "data" / "walk.bvh"
+UP = np.array([0.0, 1.0, 0.0])
+
+
+@pytest.fixture(scope="module")
+def walk():
+    motion = read_clip(WALK).motion
+    anatomy = anatomy_of(motion)
+    plants = foot_plants(find_plants(motion, kinematics.forward(motion), anatomy, up=UP, first=0))
+    return motion, anatomy, plants
+
+
+def moved(motion, shift):
+    return Motion(motion.skeleton, motion.rotations, motion.translations + shift, motion.frame_time)
+
+
+def jerk(motion):
+    return np.sqrt(np.mean(np.diff(kinematics.forward(motion).positions, 3, axis=0) ** 2))
+
+
+@pytest.mark.parametrize("shift", [(3.0, -1.0, 2.0), (0.0, 4.0, 0.0), (-6.0, 0.0, 0.0)])
+def test_planted_feet_stand_where_they_stood_and_the_rest_keeps_its_turns(walk, shift):
+    motion, anatomy, plants = walk
+    feet = standing_feet(motion, anatomy, plants)
+    kept = put_back(moved(motion, np.array(shift)), motion, feet, anatomy, up=UP, travel=0, places="keep")
+    before, after = kinematics.forward(motion), kinematics.forward(kept.motion)
+    for foot in feet:
+        ankle = foot.foot.leg.ankle
+        for start, stop in foot.intervals:
+            off = after.positions[start : stop + 1, ankle] - before.positions[start : stop + 1, ankle]
+            assert np.linalg.norm(off, axis=1).max() < 0.5
+    legs = [j for leg in anatomy.legs for j in (leg.thigh, leg.knee, leg.ankle)]
+    others = np.setdiff1d(np.arange(len(motion.skeleton)), legs)
+    np.testing.assert_array_equal(kept.motion.rotations[:, others], motion.rotations[:, others])
+    assert not kept.touched[:, others].any()
+    assert jerk(kept.motion) < 1.5 * jerk(motion)
+
+
+def test_plants_that_move_as_wholes_go_where_the_edit_takes_them(walk):
+    motion, anatomy, plants = walk
+    shift = np.array([4.0, 0.0, -3.0])
+    kept = put_back(
+        moved(motion, shift), motion, standing_feet(motion, anatomy, plants), anatomy, up=UP, travel=0, places="move"
+    )
+    before, after = kinematics.forward(motion), kinematics.forward(kept.motion)
+    np.testing.assert_allclose(after.positions, before.positions + shift, atol=1e-6)
+
+
+def test_what_is_in_place_and_a_rest_pose_stay(walk):
+    motion, anatomy, plants = walk
+    feet = standing_feet(motion, anatomy, plants)
+    same = put_back(motion, motion, feet, anatomy, up=UP, travel=0, places="keep")
+    assert not same.moved.any()
+    np.testing.assert_allclose(same.motion.rotations, motion.rotations, atol=1e-9)
+    late = put_back(moved(motion, [3.0, 0.0, 0.0]), motion, feet, anatomy, up=UP, travel=0, places="keep", first=20)
+    np.testing.assert_array_equal(late.motion.rotations[:20], motion.rotations[:20])
+
+
+def test_a_foot_with_a_goal_is_free_at_that_frame(walk):
+    motion, anatomy, plants = walk
+    leg = anatomy.legs[0]
+    plant = next(p for p in plants if p.foot == "left")
+    feet = standing_feet(motion, anatomy, plants, fixed={(leg.ankle, plant.start)})
+    assert (plant.start, plant.stop) not in feet[0].intervals
+    assert feet[0].fixed == (plant.start,)
+
+
+def test_a_knee_that_a_capture_has_past_straight_for_a_while_bends_forward_all_along(walk):
+    motion, anatomy, plants = walk
+    leg, poses = anatomy.legs[0], kinematics.forward(motion)
+    bend = next(b for b in find_bends(motion.skeleton, poses, anatomy, first=0) if b.joint == leg.knee)
+    plant = next(p for p in plants if p.foot == "left" and p.start > 20)
+    # In the middle of the plant the knee is bent back, by up to 4 degrees.
+    middle = np.arange(len(motion)) - 0.5 * (plant.start + plant.stop)
+    angle = knee_of(motion.skeleton, poses, leg, bend).angle
+    extra = (np.radians(-4.0) - angle) * np.exp(-0.5 * (middle / 3.0) ** 2)
+    rotations = motion.rotations.copy()
+    rotations[:, leg.knee] = rot.multiply(rot.exp(extra[:, None] * bend.axis), rotations[:, leg.knee])
+    locked = Motion(motion.skeleton, rotations, motion.translations, motion.frame_time)
+    before = knee_of(motion.skeleton, kinematics.forward(locked), leg, bend).angle
+    assert np.degrees(before.min()) == pytest.approx(-4.0, abs=0.5)
+    kept = put_back(
+        moved(locked, [0.0, 0.0, 1.0]),
+        locked,
+        standing_feet(locked, anatomy, plants),
+        anatomy,
+        up=UP,
+        travel=0,
+        places="keep",
+    )
+    after = np.degrees(knee_of(motion.skeleton, kinematics.forward(kept.motion), leg, bend).angle)
+    assert after[plant.start : plant.stop + 1].min() > 0.0
+    assert np.abs(np.diff(after, 2)).max() < 2.0 * np.abs(np.diff(np.degrees(before), 2)).max()
