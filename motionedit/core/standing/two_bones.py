@@ -11,8 +11,9 @@ from motionedit.core import rotations as rot
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
 
-# Sine of the bend (6 degrees) below which the knee's plane is taken from the frames in which it bends more.
-_STRAIGHT = 0.1
+# How much the plane in which a leg bends over the whole clip counts beside that of a frame, whose weight is the sine of
+# its bend. Where an edit straightens a leg, noise turns its plane about; bent again, its knee would kick sideways.
+_STRAIGHT = 1.0
 # Cosine of the least bend (2 degrees) of a leg that is stretched: straight, it has no side to bend to.
 _LEAST_BEND = float(np.cos(np.radians(2.0)))
 # A leg comes to rest before it is straight where it is corrected by more than this share of its length; where it is

@@ -113,3 +113,19 @@ def test_a_knee_that_a_capture_has_past_straight_for_a_while_bends_forward_all_a
     assert np.linalg.norm(np.diff(place[4:-4], axis=0), axis=1).max() < 0.01
     reached = place + rot.rotate(whole, rot.rotate(shank, ankle - knee))
     np.testing.assert_allclose(reached, target, atol=1e-3)
+
+
+def test_a_leg_that_an_edit_straightens_does_not_kick_its_knee_sideways():
+    frames = 40
+    # For a while the leg is nearly straight, and what is left of its bend turns aside by a right angle.
+    stretched = np.exp(-0.5 * ((np.arange(frames) - 20.0) / 4.0) ** 2)
+    bend, aside = np.radians(40.0 - 34.0 * stretched), np.radians(90.0) * stretched
+    hip, knee = np.zeros((frames, 3)), np.tile([0.0, -0.4, 0.0], (frames, 1))
+    across = np.sin(bend)[:, None] * np.stack((np.sin(aside), np.zeros(frames), -np.cos(aside)), axis=1)
+    ankle = knee + 0.4 * (across - np.cos(bend)[:, None] * np.array([0.0, 1.0, 0.0]))
+    target = np.tile([0.0, -0.7, -0.1], (frames, 1))
+    thigh = np.tile(rot.IDENTITY, (frames, 1))
+    _, whole = bent_to(hip, knee, ankle, target, thigh, soft=np.full(frames, 0.006))
+    place = rot.rotate(whole, knee)
+    assert np.linalg.norm(np.diff(place, axis=0), axis=1).max() < 0.025  # metres a frame; 0.4 m is the thigh
+    assert np.abs(place[:, 0]).max() < 0.12
