@@ -23,14 +23,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """One edit ready to be solved: what is asked, and the groups of its frames.
-
-    `calm`: no layer shall make the motion step, for an ease relies on it.
-    """
+    """One edit ready to be solved: what is asked, and the groups of its frames."""
 
     asked: Asked
     groups: tuple[Group, ...]
-    calm: bool = False
 
     def aimed_at(self, targets: tuple[Targets, ...]) -> Run:
         """Return the same edit with other targets over the same frames."""
@@ -58,8 +54,8 @@ def run_of(asked: Asked) -> Run:
 class Solved:
     """A motion whose frames are solved in place, and how it went: iterations (F,), converged (F,), ranks (F, L).
 
-    `left` (F, L) is what was left of each layer before the last step, as `LayeredSolution` has it. `steps`: whether
-    its change still steps after all passes; `ends`: where the ramps ended in the last, None where they were not led.
+    `left` (F, L) is what was left of each layer before the last step, as `LayeredSolution` has it. `ends`: where the
+    ramps ended in the last pass, None where they were not led.
     """
 
     motion: Motion
@@ -67,7 +63,6 @@ class Solved:
     converged: BoolArray
     ranks: IntArray
     left: FloatArray
-    steps: bool = False
     ends: Ends | None = None
 
 

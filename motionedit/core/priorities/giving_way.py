@@ -16,7 +16,7 @@ import numpy as np
 from motionedit.core.priorities.frames import Known, run_of, solve_from_input
 from motionedit.core.priorities.ramps import ending_in
 from motionedit.core.priorities.shares import shares_of
-from motionedit.core.priorities.smoothing import in_passes, steps_at
+from motionedit.core.priorities.smoothing import in_passes
 from motionedit.core.priorities.straight import bent_where_missed
 from motionedit.core.priorities.targets import lefts_of, toward
 from motionedit.dataclass import dataclass
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.frames import Run, Solved
     from motionedit.core.priorities.groups import Asked
-    from motionedit.core.priorities.kinds.constraint import Targets
     from motionedit.core.priorities.settings import Passes
 
 # Metres or radians: what is farther from its goal is missed.
@@ -39,10 +38,8 @@ _SOFTNESS = 0.12**2
 _KEPT = 0.01
 # Seconds over which it begins to give way, and ceases to.
 _RAMP = 0.3
-# Its path is smoother than an edit is, by so much of the passes' sigma,
+# Its path is smoother than an edit is, by so much of the passes' sigma.
 _SMOOTHER = 1.5
-# and where an edit still steps by so much, one after the other.
-_SMOOTHER_STILL = (1.5, 3.0, 6.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,9 +59,9 @@ def within_reach(run: Run, state: Solved, smoothing: Passes) -> Reached:
         unsure = np.atleast_2d(unsure.T).max(axis=0) >= MISSED
         if not unsure.any():
             continue
-        here = _down_to(level, asked)
+        here = down_to(level, asked)
         above = asked.only(here)
-        members = _members(level, above)
+        members = members_of(level, above)
         if level == asked.levels[-1]:
             missed = _missed(asked, [here[k] for k in members], state.motion)
         else:
@@ -74,85 +71,21 @@ def within_reach(run: Run, state: Solved, smoothing: Passes) -> Reached:
             missed = _missed(above, members, bent_where_missed(part, alone).motion) & unsure
         if not missed.any():
             continue
-        above = _given_way(above, dict(zip(members, missed, strict=True)), smoothing)
-        asked = _with_paths(asked, above, here)
+        above = given_way(above, dict(zip(members, missed, strict=True)), smoothing)
+        asked = with_paths(asked, above, here)
         run = run_of(asked)
         state = bent_where_missed(run, solve_from_input(run))
     return Reached(run, in_passes(run, state, smoothing))
 
 
-def without_steps(found: Reached, smoothing: Passes) -> Solved:
-    """Return a solution in which constraints that yield do so where meeting them makes the motion step.
-
-    Layer by layer from the top: what steps with a layer, and does not without it, that layer is to blame for. The most
-    important one yields to nothing. What is below a layer has no say here either. Where it still steps, that is done
-    again, along smoother paths; the solution whose largest step is the smallest is returned.
-    """
-    best = found.state
-    smallest = _largest_step(found.run, best)
-    for smoother in _SMOOTHER_STILL:
-        asked = _yielding(found, smoothing, smoother)
-        if asked is found.run.asked or not smallest:
-            break
-        found = _with_asked(asked, smoothing)
-        largest = _largest_step(found.run, found.state)
-        if largest < smallest:
-            best, smallest = found.state, largest
-    return best
-
-
-def _with_asked(asked: Asked, smoothing: Passes) -> Reached:
-    run = run_of(asked)
-    return Reached(run, _solved(run, smoothing))
-
-
-def _largest_step(run: Run, state: Solved) -> float:
-    return float(steps_at(run, state.motion).max(initial=0.0))
-
-
-def _yielding(found: Reached, smoothing: Passes, smoother: float) -> Asked:
-    """Return what is asked with paths for what yields, or is missed anyway, where it makes the motion step."""
-    asked = found.run.asked
-    before = np.zeros(len(found.run.motion), dtype=np.bool_)
-    for level in asked.levels:
-        here = _down_to(level, asked)
-        above = asked.only(here)
-        unchanged = asked is found.run.asked and level == asked.levels[-1]
-        state = found.state if unchanged else _solved(run_of(above), smoothing)
-        steps = steps_at(found.run, state.motion) > 0.0
-        new, before = steps & ~before, steps
-        if level == asked.levels[0]:
-            continue
-        stepping = {}
-        for k in _members(level, above):
-            soft, there = above.softness[k], _within(new, above.targets[k])
-            if not above.constraints[k].yields:
-                there &= False if soft is None else soft > 0.0
-            stepping[k] = there
-        if any(frames.any() for frames in stepping.values()):
-            asked = _with_paths(asked, _given_way(above, stepping, smoothing, smoother), here)
-    return asked
-
-
-def _down_to(level: int, asked: Asked) -> list[int]:
+def down_to(level: int, asked: Asked) -> list[int]:
     """Return the constraints of a priority and of those above it."""
     return [i for i, each in enumerate(asked.constraints) if each.priority >= level]
 
 
-def _members(level: int, asked: Asked) -> list[int]:
+def members_of(level: int, asked: Asked) -> list[int]:
     """Return the constraints of a priority."""
     return [i for i, each in enumerate(asked.constraints) if each.priority == level]
-
-
-def _within(frames: BoolArray, targets: Targets) -> BoolArray:
-    there = np.zeros_like(frames)
-    there[targets.span] = frames[targets.span]
-    return there
-
-
-def _solved(run: Run, smoothing: Passes) -> Solved:
-    """Return the smooth solution of an edit."""
-    return in_passes(run, bent_where_missed(run, solve_from_input(run)), smoothing)
 
 
 def _missed(asked: Asked, which: list[int], motion: Motion) -> BoolArray:
@@ -161,22 +94,27 @@ def _missed(asked: Asked, which: list[int], motion: Motion) -> BoolArray:
     return missed
 
 
-def _given_way(above: Asked, missed: Mapping[int, BoolArray], smoothing: Passes, smoother: float = _SMOOTHER) -> Asked:
+def given_way(above: Asked, missed: Mapping[int, BoolArray], smoothing: Passes, *, further: float = 1.0) -> Asked:
     """Return what is asked of a motion with paths that can be reached for constraints that are missed at frames (F,).
 
     These are the last of its layers.
+
+    Parameters
+    ----------
+    further : float
+        So many times smoother the paths are, and lambda so many times larger.
     """
     motion, original = above.motion, above.targets
     ramp = max(1, round(_RAMP / motion.frame_time))
     shares = {k: shares_of(frames, ramp, _changes(above, k)) for k, frames in missed.items() if frames.any()}
-    soft = _unled(_softened(above, shares, _SOFTNESS), shares)
+    soft = _unled(_softened(above, shares, _SOFTNESS * further**2), shares)
 
     def aimed(smooth: Motion) -> Run:
         return run.aimed_at(toward(soft, original, shares, smooth))
 
     run = run_of(soft)
     state = solve_from_input(run)
-    state = in_passes(run, state, replace(smoothing, sigma=smoother * smoothing.sigma), aimed=aimed)
+    state = in_passes(run, state, replace(smoothing, sigma=_SMOOTHER * further * smoothing.sigma), aimed=aimed)
     everywhere = {k: np.ceil(share) for k, share in shares.items()}
     led = ending_in(above, state.ends, shares)
     targets = toward(soft, led.targets, everywhere, state.motion)
@@ -213,7 +151,7 @@ def _changes(above: Asked, k: int) -> list[int]:
     return sorted(begun | {t.last + 1 for t in spans if t.last + 1 < len(above.motion)})
 
 
-def _with_paths(asked: Asked, above: Asked, here: list[int]) -> Asked:
+def with_paths(asked: Asked, above: Asked, here: list[int]) -> Asked:
     """Return what is asked with the targets, softness and ramps of some of its constraints, `here`, replaced."""
     targets, softness, ramps = list(asked.targets), list(asked.softness), list(asked.ramps)
     for k, i in enumerate(here):

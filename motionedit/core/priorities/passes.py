@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from motionedit.core.priorities.calming import calmed
 from motionedit.core.priorities.continuity import filtered_root
 from motionedit.core.priorities.frames import (
     Run,
@@ -15,7 +16,7 @@ from motionedit.core.priorities.frames import (
     solve_from_input,
     solve_in_order,
 )
-from motionedit.core.priorities.giving_way import within_reach, without_steps
+from motionedit.core.priorities.giving_way import within_reach
 from motionedit.core.priorities.recruiting import Recruits
 from motionedit.core.priorities.settings import PaperFilter, Passes
 from motionedit.core.priorities.straight import bent_where_missed
@@ -27,11 +28,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Passed:
-    """A motion after all passes: its `state`, iterations (F,) of the first solve, and whether steps were `calmed`."""
+    """A motion after all passes: its `state`, and iterations (F,) of the first solve."""
 
     state: Solved
     iterations: IntArray
-    calmed: bool = False
 
 
 def solve(run: Run, smoothing: Passes | PaperFilter) -> Passed:
@@ -44,8 +44,7 @@ def solve_in_passes(run: Run, smoothing: Passes) -> Passed:
     state = bent_where_missed(run, solve_from_input(run))
     iterations = state.iterations.copy()
     found = within_reach(run, state, smoothing)
-    calm = run.calm or found.state.steps
-    return Passed(without_steps(found, smoothing) if calm else found.state, iterations, calm)
+    return Passed(calmed(found, smoothing) if smoothing.count else found.state, iterations)
 
 
 def solve_as_the_paper(run: Run, smoothing: PaperFilter) -> Passed:

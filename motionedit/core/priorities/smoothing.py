@@ -13,7 +13,7 @@ from motionedit.core.priorities.frames import Known, known_after, solve_frames
 from motionedit.core.priorities.ramps import ends_in, led_frames, led_to
 from motionedit.core.priorities.shares import shares_of
 from motionedit.core.priorities.targets import toward
-from motionedit.core.trace import frame_blocks
+from motionedit.core.priorities.visible import steps_at
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -25,9 +25,7 @@ if TYPE_CHECKING:
     from motionedit.core.priorities.ramps import Ends
     from motionedit.core.priorities.settings import Passes
 
-# Radians a frame at 60 frames a second: a viewer sees 10 degrees. A change that steps further gets more passes,
-_STEP, _RATE = float(np.radians(8.0)), 60.0
-# this many at most, around its frames, blended in over so many seconds.
+# A change that steps gets more passes, this many at most, around its frames, blended in over so many seconds,
 _MORE_PASSES, _RAMP = 8, 0.6
 # and no more once so many of them have hardly helped.
 _PATIENCE, _PROGRESS = 3, 0.95
@@ -54,7 +52,6 @@ def in_passes(run: Run, state: Solved, smoothing: Passes, *, aimed: Callable[[Mo
     for more in range(_MORE_PASSES + 1 if smoothing.count else 0):
         steps = steps_at(run, state.motion, within=share)
         largest = float(steps.max(initial=0.0))
-        state.steps = largest > 0.0
         if largest == 0.0 or more == _MORE_PASSES or largest > _PROGRESS * found[-_PATIENCE]:
             break
         found.append(largest)
@@ -62,7 +59,9 @@ def in_passes(run: Run, state: Solved, smoothing: Passes, *, aimed: Callable[[Mo
         smooth = smoothed_displacement(motion, state.motion, sigma=smoothing.sigma, first=first, hinges=hinges)
         smooth = _between(state.motion, smooth, share)
         known = Known(share == 0.0, state.ranks)
-        state = _led(run if aimed is None else aimed(smooth), smooth, known, _Before(state.ends, state.motion, share))
+        state = _led(
+            run if aimed is None else aimed(smooth), smooth, known, PassedBefore(state.ends, state.motion, share)
+        )
     return state
 
 
@@ -71,8 +70,8 @@ def _solved(run: Run, smooth: Motion, known: Known | None) -> Solved:
 
 
 @dataclass(frozen=True, eq=False)
-class _Before:
-    """What is solved on in some frames: where its ramps ended, its motion, and how much of each frame is solved on."""
+class PassedBefore:
+    """A solution that is solved on: where its ramps ended, its motion, and how much of each frame is, shape (F,)."""
 
     ends: Ends | None
     motion: Motion
@@ -88,7 +87,7 @@ class _Before:
         return run.aimed_at(toward(run.asked, run.asked.targets, shares, self.motion))
 
 
-def _led(run: Run, smooth: Motion, known: Known | None, before: _Before | None = None) -> Solved:
+def _led(run: Run, smooth: Motion, known: Known | None, before: PassedBefore | None = None) -> Solved:
     """Return a smoothed solution solved again, the frames outside of ramps first, and ramps led to them.
 
     Frames that are known need something all the same where ramps do not end where they did `before`.
@@ -110,36 +109,6 @@ def _led(run: Run, smooth: Motion, known: Known | None, before: _Before | None =
 
 def _are_chained(asked: Asked, outside: list[int]) -> bool:
     return any(ramp.left[outside].any() for ramps in asked.ramps for ramp in ramps)
-
-
-def steps_at(run: Run, after: Motion, *, within: FloatArray | None = None) -> FloatArray:
-    """Return the largest step of a joint's change into or out of each frame, rad, shape (F,).
-
-    0 where none is larger than is allowed, and than the joint's own largest step in the input.
-
-    Parameters
-    ----------
-    within : shape (F,), optional
-        Only steps among the frames at which it is not 0 are looked for.
-    """
-    before, first = run.motion, run.asked.body.first
-    limit = _STEP * before.frame_time * _RATE
-    found = np.zeros(len(before))
-    looked = np.arange(first, len(before)) if within is None else first + np.flatnonzero(within[first:])
-    start, stop = (int(looked[0]), int(looked[-1]) + 1) if len(looked) else (0, 0)
-    for block in frame_blocks(stop - start):
-        frames = slice(start + block.start, min(start + block.stop + 1, stop))
-        # All joints: to pick some would cost more than what is known of the others.
-        change = rot.multiply(rot.conjugate(before.rotations[frames]), after.rotations[frames])
-        # A cosine of half the step costs less than the step, and nearly all are let off by it.
-        far = np.abs(np.einsum("fji,fji->fj", change[:-1], change[1:])) < np.cos(0.5 * limit)
-        for joint in np.flatnonzero(far.any(axis=0)):
-            steps = rot.angle_between(change[:-1, joint], change[1:, joint])
-            q = before.rotations[first:, joint]
-            steps[steps <= max(limit, float(rot.angle_between(q[:-1], q[1:]).max()))] = 0.0
-            for side in (slice(frames.start, frames.stop - 1), slice(frames.start + 1, frames.stop)):
-                found[side] = np.maximum(found[side], steps)
-    return found
 
 
 def _between(one: Motion, other: Motion, share: FloatArray) -> Motion:

@@ -10,7 +10,7 @@ import numpy as np
 from motionedit.core.priorities.continuity import NO_DISPLACEMENT
 from motionedit.core.priorities.frames import run_of
 from motionedit.core.priorities.kinds.constraint import moved
-from motionedit.core.priorities.passes import Passed, solve_in_passes
+from motionedit.core.priorities.passes import solve_in_passes
 from motionedit.core.priorities.ramps import ramps_of, task_at
 from motionedit.core.priorities.targets import errors_of, reached
 
@@ -27,8 +27,8 @@ def eased_from_others(asked: Asked, smoothing: Passes) -> Run:
 
     In a ramp the motion that a constraint takes over is what the others make of it, not the input.
     """
-    motion, calm = asked.motion, False
-    alone: dict[tuple[int, ...], Passed] = {}
+    motion = asked.motion
+    alone: dict[tuple[int, ...], Motion] = {}
     targets, ramps = list(asked.targets), []
     for i in range(len(targets)):
         own = list(ramps_of(asked, i))
@@ -37,15 +37,13 @@ def eased_from_others(asked: Asked, smoothing: Passes) -> Run:
             if not others or not _is_moved(asked.only(others), motion, ramp.left > 0.0):
                 continue
             if others not in alone:
-                alone[others] = solve_in_passes(run_of(asked.only(others)), smoothing)
-            passed = alone[others]
-            calm = calm or passed.calmed
-            there = passed.state.motion
+                alone[others] = solve_in_passes(run_of(asked.only(others)), smoothing).state.motion
+            there = alone[others]
             left = ramp.left[targets[i].span]
             targets[i] = moved(targets[i], reached(asked, i, motion), reached(asked, i, there), left)
             own[k] = replace(ramp, end=task_at(asked, i, there, ramp.outside))
         ramps.append(tuple(own))
-    return replace(run_of(replace(asked, targets=tuple(targets), ramps=tuple(ramps))), calm=calm)
+    return run_of(replace(asked, targets=tuple(targets), ramps=tuple(ramps)))
 
 
 def _others(asked: Asked, i: int, ramp: Ramp) -> tuple[int, ...]:

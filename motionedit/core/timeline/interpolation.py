@@ -114,7 +114,7 @@ def gaussian(sigma: float, frames: int) -> FloatArray:
 
 
 def _line_at_end(taps: FloatArray) -> FloatArray:
-    """Return the weights of rows, the end first, that give the end of the line through them: least squares by `taps`."""
+    """Return the weights of rows, the end first, that give the end of the line through them, least squares by taps."""
     k = np.arange(len(taps))
     sums = [float(taps @ k**power) for power in range(3)]
     weights: FloatArray = taps * (sums[2] - sums[1] * k) / (sums[0] * sums[2] - sums[1] ** 2)
@@ -124,8 +124,8 @@ def _line_at_end(taps: FloatArray) -> FloatArray:
 def low_pass(rows: FloatArray, *, sigma: float) -> FloatArray:
     """Return rows smoothed over frames by a zero-phase Gaussian, shape (F, ...).
 
-    The ends are reflected (odd reflection) about where a line through what is near to an end, weighted as the filter is,
-    has it: a straight line stays as it is, and the last row of a clip is smoothed as all others are.
+    The ends are reflected (odd reflection) about where a line through what is near to an end, weighted as the filter
+    is, has it: a straight line stays as it is, and the last row of a clip is smoothed as all others are.
 
     Parameters
     ----------

@@ -9,12 +9,10 @@ from person import BODY, HARD, edited, end, held_feet, path, swaying
 from motionedit.core import rotations as rot
 from motionedit.core.kinematics import forward
 from motionedit.core.motion import Motion
-from motionedit.core.priorities import giving_way
 from motionedit.core.priorities.edit import edit_by_priorities, prepare
 from motionedit.core.priorities.frames import run_of, solve_frames
 from motionedit.core.priorities.kinds import CenterOfMass, Position
 from motionedit.core.priorities.numpy_solver import attraction
-from motionedit.core.priorities.passes import solve_in_passes
 from motionedit.core.priorities.problem import Reference
 from motionedit.core.priorities.settings import LayeredSettings, Passes
 from motionedit.core.priorities.targets import lefts_of
@@ -170,13 +168,3 @@ def test_a_soft_layer_makes_the_error_and_the_change_least_together(softness):
 def _turning_only(run):
     (mine,) = run.asked.recruits
     return replace(mine, root=False)
-
-
-def test_whether_a_layer_makes_the_motion_step_is_judged_without_what_is_below(monkeypatch):
-    feet = held_feet(FRAMES)
-    run, _ = prepare(MOTION, [*feet, reaching(SHIFTS[1]), CenterOfMass(name="com", priority=2)], BODY, SMOOTH)
-    alone, seen = solve_in_passes(run_of(run.asked.only(range(len(feet) + 1))), Passes()), []
-    monkeypatch.setattr(giving_way, "steps_at", lambda _, motion: seen.append(motion) or np.zeros(len(motion)))
-    solve_in_passes(replace(run, calm=True), Passes())
-    _, hand, _ = seen
-    assert rot.angle_between(hand.rotations, alone.state.motion.rotations).max() < 1e-6

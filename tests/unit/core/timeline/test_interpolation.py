@@ -24,6 +24,14 @@ def test_the_monotone_cubic_never_turns_back_and_is_clamped_outside():
     assert curve[-1] == 61.0
 
 
+def test_the_low_pass_smooths_the_ends_as_it_does_the_rest():
+    rows = np.random.default_rng(5).normal(size=(400, 40))
+    smooth = low_pass(rows, sigma=4.0)
+    inside = np.sqrt(np.mean(smooth[100:300] ** 2))
+    assert np.sqrt(np.mean(smooth[[0, -1]] ** 2)) < 2.5 * inside
+    assert inside < 0.3
+
+
 @pytest.mark.parametrize("frames", [1, 2, 3, 4, 50])
 def test_the_natural_spline_is_scipys(frames):
     rows = np.random.default_rng(frames).normal(size=(frames, 4, 2))

@@ -1,0 +1,119 @@
+"""What a viewer sees of an edit: joints whose change steps, and frames at which the body jerks."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core import rotations as rot
+from motionedit.core.kinematics import forward
+from motionedit.core.trace import frame_blocks
+from motionedit.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from motionedit.core.arrays import BoolArray, FloatArray
+    from motionedit.core.motion import Motion
+    from motionedit.core.priorities.frames import Run
+
+# Radians a frame at 60 frames a second: a viewer sees 10 degrees. What is larger than this is smoothed,
+_STEP, _RATE = float(np.radians(8.0)), 60.0
+# and than this calmed.
+_SEEN_STEP = float(np.radians(9.5))
+# Times the input's jerk that a viewer sees in one frame,
+_JERK = 10.0
+# and what that counts as at the least, m / s^3: a clip that stands still has none to be compared with.
+_STILL = 30.0
+# Times what the input has in the same frame, where that is more.
+_OWN_JERK = 2.0
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """What a viewer sees of an edited motion: how far joints step, rad, and how much it jerks at frames, shape (F,)."""
+
+    steps: FloatArray
+    jerks: FloatArray
+
+    @property
+    def frames(self) -> BoolArray:
+        """Where anything is seen, shape (F,)."""
+        seen: BoolArray = (self.steps > 0.0) | (self.jerks > 0.0)
+        return seen
+
+    @property
+    def anything(self) -> bool:
+        """Whether anything is seen."""
+        return bool(self.frames.any())
+
+    def most(self, frames: BoolArray) -> tuple[float, float]:
+        """Return the largest step and the largest jerk at some frames, shape (F,)."""
+        return float(self.steps[frames].max(initial=0.0)), float(self.jerks[frames].max(initial=0.0))
+
+
+def seen_of(run: Run, after: Motion) -> Seen:
+    """Return what a viewer sees of an edited motion."""
+    steps = steps_at(run, after)
+    if steps.max(initial=0.0) <= _SEEN_STEP * run.motion.frame_time * _RATE:
+        steps = np.zeros(len(steps))
+    return Seen(steps, jerks_at(run, after))
+
+
+def steps_at(run: Run, after: Motion, *, within: FloatArray | None = None) -> FloatArray:
+    """Return the largest step of a joint's change into or out of each frame, rad, shape (F,).
+
+    0 where none is larger than is allowed, and than the joint's own largest step in the input.
+
+    Parameters
+    ----------
+    within : shape (F,), optional
+        Only steps among the frames at which it is not 0 are looked for.
+    """
+    before, first = run.motion, run.asked.body.first
+    limit = _STEP * before.frame_time * _RATE
+    found = np.zeros(len(before))
+    looked = np.arange(first, len(before)) if within is None else first + np.flatnonzero(within[first:])
+    start, stop = (int(looked[0]), int(looked[-1]) + 1) if len(looked) else (0, 0)
+    for block in frame_blocks(stop - start):
+        frames = slice(start + block.start, min(start + block.stop + 1, stop))
+        # All joints: to pick some would cost more than what is known of the others.
+        change = rot.multiply(rot.conjugate(before.rotations[frames]), after.rotations[frames])
+        # A cosine of half the step costs less than the step, and nearly all are let off by it.
+        far = np.abs(np.einsum("fji,fji->fj", change[:-1], change[1:])) < np.cos(0.5 * limit)
+        for joint in np.flatnonzero(far.any(axis=0)):
+            steps = rot.angle_between(change[:-1, joint], change[1:, joint])
+            q = before.rotations[first:, joint]
+            steps[steps <= max(limit, float(rot.angle_between(q[:-1], q[1:]).max()))] = 0.0
+            for side in (slice(frames.start, frames.stop - 1), slice(frames.start + 1, frames.stop)):
+                found[side] = np.maximum(found[side], steps)
+    return found
+
+
+def jerks_at(run: Run, after: Motion) -> FloatArray:
+    """Return by how much of what a viewer sees the body jerks at each frame, 0 where he does not, shape (F,).
+
+    The jerk of a frame is that of all joints, sqrt(mean |p(f+3) - 3 p(f+2) + 3 p(f+1) - p(f)|^2), over ten times the
+    root mean square of the input's.
+    """
+    before, first = run.motion, run.asked.body.first
+    found, count = np.zeros(len(before)), len(before) - first - 3
+    if count < 1:
+        return found
+    was, now = _jerk(before, first), _jerk(after, first)
+    least = max(float(np.sqrt(np.mean(was * was))), _STILL * before.frame_time**3)
+    seen = np.where(now > _OWN_JERK * was, now / (_JERK * least), 0.0)
+    seen[seen <= 1.0] = 0.0
+    # It is seen in the middle of its four frames.
+    for middle in (first + 1, first + 2):
+        found[middle : middle + count] = np.maximum(found[middle : middle + count], seen)
+    return found
+
+
+def _jerk(motion: Motion, first: int) -> FloatArray:
+    """Return the third difference of all joints over frames, root mean square, metres, shape (F - first - 3,)."""
+    parts = []
+    for block in frame_blocks(len(motion) - first - 3):
+        frames = slice(first + block.start, min(first + block.stop + 3, len(motion)))
+        third = np.diff(forward(motion.at(frames)).positions, n=3, axis=0)
+        parts.append(np.sqrt(np.einsum("fja,fja->f", third, third) / third.shape[1]))
+    return np.concatenate(parts)
