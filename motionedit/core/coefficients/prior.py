@@ -32,8 +32,8 @@ FADE = 0.15
 # a column that does not vary at all has, so that the root of the whole exists.
 _ALONE, _LEAST_VARIANCE = 0.5, 1e-12
 # Metres at leg length 0.85 m: a point of a planted foot that is so far off for twice `FADE` counts as one standard
-# deviation.
-FOOT_DEVIATION = 0.06
+# deviation. The legs put it back at little cost, but for hips that go further than they reach.
+FOOT_DEVIATION = 0.15
 # Beside 1 on the diagonal of K: frames next to each other are nearly one.
 _JITTER = 1e-9
 

@@ -36,7 +36,7 @@ from motionedit.jobs.edit_pc.goals import clip_goals, numbers_of
 from motionedit.jobs.edit_pc.model_events import events_for_model, refuse_unknown_events
 from motionedit.jobs.edit_pc.record import Judged, edit_record, goal_line
 from motionedit.jobs.edit_pc.solver import chosen_solver, plausibility_bound, residual_share
-from motionedit.jobs.edit_pc.standing import edit_standing
+from motionedit.jobs.edit_pc.standing import edit_standing, plants_without
 from motionedit.jobs.edit_pc.unexplained import unexplained
 from motionedit.jobs.preview.with_page import with_page
 
@@ -147,7 +147,7 @@ class _Edit:
         poses = kinematics.forward(projection.motion) if spec.timing == "normalized" else facts.poses
         goals = clip_goals(self.loaded, model, facts, events=events, poses=poses)
         bound = plausibility_bound(spec, model, projection.coefficients, asked=_asked_together(spec, goals))
-        solver = chosen_solver(spec, model, bound=bound, feet=self._feet(facts, projection))
+        solver = chosen_solver(spec, model, bound=bound, feet=self._feet(facts, projection, goals))
 
         def solve(requests: Sequence[GoalRequest]) -> CoefficientEdit:
             return edit_by_coefficients(
@@ -174,12 +174,13 @@ class _Edit:
         edit = solve(requests) if feet == "off" else edit_standing(solve, again, requests, facts, places=feet)
         return self._outcome(facts, projection, edit, goals, before=poses, bound=bound)
 
-    def _feet(self, facts: ClipFacts, projection: Projection) -> tuple[PlantedFoot, ...]:
-        """Return the points of feet that stand; none where they are left alone."""
+    def _feet(self, facts: ClipFacts, projection: Projection, goals: Sequence[ClipGoal]) -> tuple[PlantedFoot, ...]:
+        """Return the points of feet that stand; none where they are left alone, or where a goal is about the foot."""
         if self.loaded.model.feet_in_force == "off":
             return ()
         points = [point.effector for point in facts.anatomy.sole_points]
-        return planted_feet(projection, self.model.space, poses=facts.poses, plants=facts.plants, points=points)
+        plants = plants_without(facts, {(goal.request.effector.joint, goal.request.frame) for goal in goals})
+        return planted_feet(projection, self.model.space, poses=facts.poses, plants=plants, points=points)
 
     def _projection(self, facts: ClipFacts, task: ClipTask) -> tuple[Projection, dict[str, float]]:
         """Return a clip in the model's coordinates, and the frames of its events."""

@@ -15,8 +15,9 @@ from motionedit.core.units import STANDARD_LEG
 from motionedit.jobs.edit_pc.goals import seen
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Collection, Sequence
 
+    from motionedit.core.body.contacts import Plant
     from motionedit.core.coefficients.edit import CoefficientEdit
     from motionedit.core.coefficients.goal_chains import GoalRequest
     from motionedit.core.feet.put_back import Places, StandingFoot
@@ -27,6 +28,9 @@ if TYPE_CHECKING:
 # Metres at leg length 0.85 m, and radians: what putting the feet back may move a goal by.
 _SETTLED = 5e-6
 _ROUNDS = 8
+# Seconds: a foot with a goal so shortly before it stands, or after, does not stand where it did. Put back there, it
+# would swing far out on its way.
+_NEARBY = 0.15
 
 
 def edit_standing(
@@ -48,7 +52,7 @@ def edit_standing(
         return edit
     motion = facts.clip.motion
     fixed = {(request.effector.joint, request.frame) for request in requests}
-    feet = standing_feet(motion, anatomy, foot_plants(facts.plants), fixed=fixed)
+    feet = standing_feet(motion, anatomy, foot_plants(plants_without(facts, fixed)), fixed=fixed)
     still = _still(motion, feet)
     # Where a goal is out of reach, what the solver has come to is kept.
     reached = kinematics.forward(edit.motion)
@@ -67,6 +71,23 @@ def edit_standing(
             break
         current = again(current, asked, still)
     return replace(edit, motion=current, touched=touched, moved=moved)
+
+
+def plants_without(facts: ClipFacts, fixed: Collection[tuple[int, int]]) -> list[Plant]:
+    """Return the clip's plants but for those whose foot is meant to be elsewhere: `fixed` (joint, frame) nearby."""
+    skeleton, points = facts.clip.motion.skeleton, facts.anatomy.sole_points
+    thighs = [leg.thigh for leg in facts.anatomy.legs or ()]
+    nearby = round(_NEARBY / facts.clip.motion.frame_time)
+
+    def free(plant: Plant) -> bool:
+        own = skeleton.chain(points[plant.point].effector.joint)
+        return any(
+            plant.start - nearby <= frame <= plant.stop + nearby
+            and any(thigh in own and thigh in skeleton.chain(joint) for thigh in thighs)
+            for joint, frame in fixed
+        )
+
+    return [plant for plant in facts.plants if not free(plant)]
 
 
 def _still(motion: Motion, feet: Sequence[StandingFoot]) -> list[int]:

@@ -1,0 +1,31 @@
+"""Which plants an edit by coefficients leaves alone: those of a foot that a goal is about."""
+
+from pathlib import Path
+
+import numpy as np
+
+from motionedit.core.bvh import read_clip
+from motionedit.jobs.clip.facts import facts_of
+from motionedit.jobs.edit_pc.standing import plants_without
+
+WALK = Path(__file__).resolve().parents[3] / "data" / "walk.bvh"
+
+
+def test_a_plant_is_left_alone_where_its_foot_has_a_goal_shortly_before_it_stands():
+    facts = facts_of(read_clip(WALK))
+    left, _ = facts.anatomy.legs
+    plant = next(p for p in facts.plants if p.foot == "left" and p.start > 0)
+    second = round(1.0 / facts.clip.motion.frame_time)
+    others = [p for p in facts.plants if p.foot == "right"]
+    for joint in (left.ankle, left.knee):
+        near = plants_without(facts, {(joint, plant.start - second // 10)})
+        assert plant not in near
+        assert [p for p in near if p.foot == "right"] == others
+    middle = (facts.plants[0].start + facts.plants[0].stop) // 2
+    for fixed in (set(), {(facts.travel, middle)}, {(left.ankle, 10 * len(facts.clip.motion))}):
+        assert plants_without(facts, fixed) == list(facts.plants)
+    ends = np.array([[p.start, p.stop] for p in facts.plants if p.foot == "left"])
+    free = [f for f in range(len(facts.clip.motion)) if (np.abs(ends - f) > second // 4).all()]
+    in_air = [f for f in free if not ((ends[:, 0] <= f) & (f <= ends[:, 1])).any()]
+    if in_air:
+        assert plants_without(facts, {(left.ankle, in_air[0])}) == list(facts.plants)
