@@ -123,15 +123,15 @@ def test_the_number_of_threads_changes_no_byte(threads):
     assert one.translations.tobytes() == other.translations.tobytes()
 
 
-# Where frames swing to and fro until their iterations run out, roundings grow.
-@pytest.mark.parametrize(("shift", "apart"), [(SHIFTS[0], 0.05), (SHIFTS[1], 1e-5)])
-def test_both_solvers_give_way_alike(shift, apart, monkeypatch):
+# Not the first of SHIFTS: there some frames swing to and fro until their iterations run out, and roundings grow.
+@pytest.mark.parametrize("shift", [SHIFTS[1], (0.6, 0.9, 0.5)])
+def test_both_solvers_give_way_alike(shift, monkeypatch):
     asked = [*held_feet(FRAMES), reaching(shift), CenterOfMass(name="com", priority=2)]
     one = edited(MOTION, asked, SMOOTH).motion
     monkeypatch.setenv("MOTIONEDIT_SOLVER", "numpy")
     other = edited(MOTION, asked, SMOOTH).motion
-    assert rot.angle_between(one.rotations, other.rotations).max() < apart
-    assert np.abs(one.translations - other.translations).max() < apart
+    assert rot.angle_between(one.rotations, other.rotations).max() < 1e-7
+    assert np.abs(one.translations - other.translations).max() < 1e-7
 
 
 def test_the_papers_smoothing_gives_way_to_nothing(monkeypatch):
