@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 _MORE_PASSES, _RAMP = 8, 0.6
 # and no more once so many of them have hardly helped.
 _PATIENCE, _PROGRESS = 3, 0.95
+# lambda^2 of a goal that is half eased in them, (m/rad)^2.
+_HARDLY_SOFT = 1e-3
 
 
 def in_passes(run: Run, state: Solved, smoothing: Passes, *, aimed: Callable[[Motion], Run] | None = None) -> Solved:
@@ -82,10 +84,12 @@ class PassedBefore:
     def eased(self, run: Run) -> Run:
         """Return an edit whose soft goals are where the motion has them as far as the share, shape (F,), is not 1.
 
-        Each solve goes on toward soft goals: a frame solved once more would be off one beside it that is not.
+        Each solve goes on toward soft goals: a frame solved once more would be off one beside it that is not. Goals
+        that are hardly soft are kept, or what is below them would take them along.
         """
         softness = enumerate(run.asked.softness)
-        shares = {k: (1.0 - self.share) * (soft > 0.0) for k, soft in softness if soft is not None}
+        much = {k: soft**2 / (soft**2 + _HARDLY_SOFT**2) for k, soft in softness if soft is not None}
+        shares = {k: (1.0 - self.share) * each for k, each in much.items()}
         return run.aimed_at(toward(run.asked, run.asked.targets, shares, self.motion))
 
 
