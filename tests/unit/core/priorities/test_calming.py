@@ -122,6 +122,9 @@ def test_frames_that_are_not_solved_on_leave_those_beside_them_where_they_are():
     soft = run_of(replace(run.asked, softness=(*run.asked.softness[:-1], np.full(FRAMES, 0.01))))
     motion = solve_frames(soft, MOTION, reference=MOTION, pull_root=False).motion
     hardly = PassedBefore(None, motion, np.full(FRAMES, 1e-9))
-    for again, moves in ((soft, True), (hardly.eased(soft), False)):
+    moved = []
+    for again in (soft, hardly.eased(soft)):
         after = solve_frames(again, motion, reference=motion, pull_root=True).motion
-        assert (rot.angle_between(after.rotations, motion.rotations).max() > 1e-3) == moves
+        moved.append(rot.angle_between(after.rotations, motion.rotations).max())
+    assert moved[0] > 0.01
+    assert moved[1] < 0.05 * moved[0]
