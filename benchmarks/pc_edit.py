@@ -11,7 +11,7 @@ import yaml
 from benchmarks.clock import Row, at_most, best_of, longer, process
 from motionedit.core.coefficients import edit as coefficient_edit
 from motionedit.core.coefficients.goals import stacked_errors
-from motionedit.core.coefficients.solver import solve_goals
+from motionedit.core.coefficients.likeliest import likeliest_change
 from motionedit.jobs.batch.plan import RunOptions
 from motionedit.jobs.edit_pc import job as edit_pc
 from motionedit.spec.load import load_spec
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from motionedit.core.coefficients.goals import Goal
-    from motionedit.core.coefficients.solver import CoefficientSolution
+    from motionedit.core.coefficients.likeliest import LikeliestChange
 
 ROOT = Path(__file__).resolve().parents[1]
 CLIP = ROOT / "data" / "golf" / "swing04.bvh"
@@ -45,14 +45,14 @@ def _solver_rows(lab: Lab, model: Path) -> list[Row]:
     out = str(lab.place() / "edited.bvh")
     best = best_of(
         {
-            "iteration": lambda: stacked_errors(near, met.change),
-            "solve": lambda: solve_goals(near, **near_settings),
-            "bounded": lambda: solve_goals(far, **far_settings),
+            "iteration": lambda: stacked_errors(near[0], met.change),
+            "solve": lambda: likeliest_change(near, **near_settings),
+            "bounded": lambda: likeliest_change(far, **far_settings),
             "edit": lambda: edit_pc.run(spec, [CLIP], out, model, RunOptions()),
         },
         rounds=5,
     )
-    joints = len(near[0].chain.vectors)
+    joints = len(near[0][0].chain.vectors)
     return [
         at_most(f"edit-pc: error and Jacobian, {joints} joints in the chain", best["iteration"], 100 * MICROSECONDS),
         at_most(f"edit-pc: solve, 10 cm, {met.iterations} iterations", best["solve"], MILLISECONDS),
@@ -70,19 +70,19 @@ def _spec(lab: Lab, shift: Sequence[float]) -> Path:
 
 def _problem(
     lab: Lab, model: Path, shift: Sequence[float]
-) -> tuple[Sequence[Goal], dict[str, Any], CoefficientSolution]:
+) -> tuple[Sequence[Sequence[Goal]], dict[str, Any], LikeliestChange]:
     """Return what the edit of a clip gives its solver, and what the solver finds."""
-    found: list[tuple[Sequence[Goal], dict[str, Any], CoefficientSolution]] = []
+    found: list[tuple[Sequence[Sequence[Goal]], dict[str, Any], LikeliestChange]] = []
 
-    def noted(goals: Sequence[Goal], **settings: Any) -> CoefficientSolution:  # noqa: ANN401  as the solver's own
-        found.append((goals, settings, solve_goals(goals, **settings)))
+    def noted(layers: Sequence[Sequence[Goal]], **settings: Any) -> LikeliestChange:  # noqa: ANN401  as the solver's own
+        found.append((layers, settings, likeliest_change(layers, **settings)))
         return found[-1][-1]
 
-    coefficient_edit.solve_goals = noted
+    coefficient_edit.likeliest_change = noted
     try:
         edit_pc.run(load_spec(_spec(lab, shift), "edit-pc"), [CLIP], str(lab.place()), model, RunOptions())
     finally:
-        coefficient_edit.solve_goals = solve_goals
+        coefficient_edit.likeliest_change = likeliest_change
     return found[0]
 
 
