@@ -1,6 +1,7 @@
 """What the benchmark of edit-pc times is the solver that its edits use."""
 
 import yaml
+
 from benchmarks.pc_edit import ROOT, _problem
 from studies.lab import Lab
 
