@@ -19,14 +19,9 @@ def _module() -> Any:  # noqa: ANN401  a module without types
     return _compiled
 
 
-# The environment as the system has it: asked hundreds of times a clip, `os.environ.get` takes as long as what it is
-# asked for.
-_KEY, _NUMPY = os.environ.encodekey(CHOICE), os.environ.encodevalue("numpy")
-
-
 def compiled() -> Any:  # noqa: ANN401  as above
     """Return the compiled module, or None where there is none or numpy alone is wanted."""
-    return None if os.environ._data.get(_KEY) == _NUMPY else _module()  # type: ignore[attr-defined]  # noqa: SLF001
+    return None if os.environ.get(CHOICE) == "numpy" else _module()
 
 
 def solver_name() -> str:

@@ -1,5 +1,7 @@
 """Small clips and specs for the command line."""
 
+from pathlib import Path
+
 import pytest
 from click.testing import CliRunner
 from prioritized_edits import edits_in
@@ -7,6 +9,16 @@ from small_motions import make_motion
 
 from motionedit.cli import main
 from motionedit.core.bvh import new_bytes
+
+
+@pytest.fixture(scope="module")
+def configs():
+    return Path(__file__).resolve().parents[2] / "configs"
+
+
+@pytest.fixture(scope="module")
+def data(configs):
+    return configs.parent / "data" / "golf"
 
 
 @pytest.fixture

@@ -1,26 +1,14 @@
 """Normalizing and fitting the golf swings: which clips make a database, what a run refuses and what it says."""
 
 import json
-from pathlib import Path
 
 import numpy as np
-import pytest
 
 from motionedit.core.bvh import read_clip, resampled_bytes
 from motionedit.core.motion import Motion
 from motionedit.core.pca import streaming, vectors
 from motionedit.core.pca.model_file import read_model
 from motionedit.jobs.fit_pca import job as fit_pca
-
-
-@pytest.fixture(scope="module")
-def configs():
-    return Path(__file__).resolve().parents[2] / "configs"
-
-
-@pytest.fixture(scope="module")
-def data(configs):
-    return configs.parent / "data" / "golf"
 
 
 def changed_copy(data, path, *, rate=1, scale=1.0):

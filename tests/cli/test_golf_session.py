@@ -10,17 +10,6 @@ from motionedit.core.bvh import parse_clip, read_clip, resampled_bytes
 from motionedit.core.motion import Motion
 from studies.lab import effector_path
 
-
-@pytest.fixture(scope="module")
-def configs():
-    return Path(__file__).resolve().parents[2] / "configs"
-
-
-@pytest.fixture(scope="module")
-def data(configs):
-    return configs.parent / "data" / "golf"
-
-
 EVENTS = Path(__file__).resolve().parents[2] / "data" / "golf" / "events.csv"
 HITS = {name: int(frame) for name, frame in (line.split(",") for line in EVENTS.read_text().split()[1:])}
 

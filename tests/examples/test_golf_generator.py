@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from places import CLUB_HEAD, club_head
 
 from data.generator.golf import BALL_HEIGHT, SwingModel, make_swing, with_ball
 from data.generator.measures import Track, swing_measures
@@ -11,47 +12,6 @@ from data.generator.players import BALL, GROUPS, random_swing, random_swings, sh
 from data.generator.styles import KEYS, STYLES
 from motionedit.core import kinematics
 from motionedit.core import rotations as rot
-from motionedit.core.bvh import read_clip
-
-CLUB_HEAD = np.array([0.0, -92.0, 0.0])
-
-
-@pytest.fixture(scope="module")
-def folder(pytestconfig):
-    return pytestconfig.rootpath / "data"
-
-
-@pytest.fixture(scope="module")
-def hits(folder):
-    rows = (folder / "golf" / "events.csv").read_text().splitlines()
-    assert rows[0] == "clip,frame"
-    return {name: int(frame) for name, frame in (row.split(",") for row in rows[1:])}
-
-
-@pytest.fixture(scope="module")
-def balls(folder):
-    rows = [row.split("\t") for row in (folder / "golf" / "balls.tsv").read_text().splitlines()[1:]]
-    return {row[0]: np.array(row[2:], dtype=float) for row in rows}
-
-
-@pytest.fixture(scope="module")
-def swings(folder):
-    return {path.stem: read_clip(path).motion for path in sorted((folder / "golf").glob("*.bvh"))}
-
-
-@pytest.fixture(scope="module")
-def walk(folder):
-    return read_clip(folder / "walk.bvh").motion
-
-
-@pytest.fixture(scope="module")
-def kick(folder):
-    return read_clip(folder / "kick.bvh").motion
-
-
-def club_head(motion, poses):
-    club = motion.skeleton.names.index("Club")
-    return kinematics.effector_positions(poses, kinematics.Effector(club, CLUB_HEAD))
 
 
 def accelerations(motion):

@@ -2,32 +2,13 @@
 
 import numpy as np
 import pytest
+from places import joint
 
 from data.generator.kick import make_kick
 from data.generator.measures import kick_measures, walk_measures
 from data.generator.walk import make_walk
 from motionedit.core import kinematics
 from motionedit.core import rotations as rot
-from motionedit.core.bvh import read_clip
-
-
-@pytest.fixture(scope="module")
-def folder(pytestconfig):
-    return pytestconfig.rootpath / "data"
-
-
-@pytest.fixture(scope="module")
-def walk(folder):
-    return read_clip(folder / "walk.bvh").motion
-
-
-@pytest.fixture(scope="module")
-def kick(folder):
-    return read_clip(folder / "kick.bvh").motion
-
-
-def joint(motion, poses, name):
-    return poses.positions[:, motion.skeleton.names.index(name)]
 
 
 def sliding(path):

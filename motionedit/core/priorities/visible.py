@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
+from motionedit.core.body.quality import STILL
 from motionedit.core.kinematics import forward
 from motionedit.core.trace import frame_blocks
 from motionedit.dataclass import dataclass
@@ -18,10 +19,8 @@ if TYPE_CHECKING:
 
 # Radians a frame at 60 frames a second: a viewer sees 10 degrees.
 _STEP, _RATE = float(np.radians(8.0)), 60.0
-# Times the input's jerk that a viewer sees in one frame,
+# Times the input's jerk that a viewer sees in one frame.
 _JERK = 10.0
-# and what that counts as at the least, m / s^3: a clip that stands still has none to be compared with.
-_STILL = 30.0
 # Times what the input has in the same frame, where that is more.
 _OWN_JERK = 2.0
 
@@ -44,7 +43,12 @@ class Seen:
 
 def seen_of(run: Run, after: Motion) -> Seen:
     """Return what a viewer sees of an edited motion."""
-    return Seen(steps_at(run, after) / (_STEP * run.motion.frame_time * _RATE), jerks_at(run, after))
+    return Seen(steps_at(run, after) / _step(run), jerks_at(run, after))
+
+
+def _step(run: Run) -> float:
+    """Return the least step from frame to frame that is seen, rad."""
+    return _STEP * run.motion.frame_time * _RATE
 
 
 def steps_at(run: Run, after: Motion, *, within: FloatArray | None = None) -> FloatArray:
@@ -58,7 +62,7 @@ def steps_at(run: Run, after: Motion, *, within: FloatArray | None = None) -> Fl
         Only steps among the frames at which it is not 0 are looked for.
     """
     before, first = run.motion, run.asked.body.first
-    limit = _STEP * before.frame_time * _RATE
+    limit = _step(run)
     found = np.zeros(len(before))
     looked = np.arange(first, len(before)) if within is None else first + np.flatnonzero(within[first:])
     start, stop = (int(looked[0]), int(looked[-1]) + 1) if len(looked) else (0, 0)
@@ -88,7 +92,7 @@ def jerks_at(run: Run, after: Motion) -> FloatArray:
     if count < 1:
         return found
     was, now = _jerk(before, first), _jerk(after, first)
-    least = max(float(np.sqrt(np.mean(was * was))), _STILL * before.frame_time**3)
+    least = max(float(np.sqrt(np.mean(was * was))), STILL * before.frame_time**3)
     seen = np.where(now > _OWN_JERK * was, now / (_JERK * least), 0.0)
     seen[seen <= 1.0] = 0.0
     # It is seen in the middle of its four frames.

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.body.quality import STILL
 from motionedit.core.body.ranges import bent_back, beyond_range, regions_of
 from motionedit.core.units import STANDARD_LEG
 
@@ -24,9 +25,6 @@ if TYPE_CHECKING:
 _STEP = 10.0
 # Times the input's jerk that a viewer sees.
 _JERK = 2.0
-# The input's jerk counts as this at the least, m / s^3 at leg length 0.85 m: a clip that stands still has none to be
-# compared with. Half a metre within 0.8 s has as much on the smoothest path; captures have from 100 to 4000.
-_STILL = 30.0
 
 
 def rough_lines(
@@ -71,7 +69,7 @@ def _stepping(facts: ClipFacts, steps: Steps) -> str | None:
 
 
 def _jerk(facts: ClipFacts, before: Trace, after: Trace) -> str | None:
-    still = _STILL * facts.anatomy.leg_length / STANDARD_LEG
+    still = STILL * facts.anatomy.leg_length / STANDARD_LEG
     times = after.jerk_rms / max(before.jerk_rms, still) if still > 0.0 else 0.0
     if times <= _JERK:
         return None

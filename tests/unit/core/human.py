@@ -96,3 +96,28 @@ def split(bones, name, middle, share):
         else:
             rows.append((n, parent, offset))
     return rows
+
+
+def names_of(skeleton, joints):
+    return [None if j is None else skeleton.names[j] for j in joints]
+
+
+def legs_of(skeleton, anatomy):
+    return [names_of(skeleton, (leg.thigh, leg.knee, leg.ankle, leg.toe)) for leg in anatomy.legs]
+
+
+def arms_of(skeleton, anatomy):
+    return [names_of(skeleton, (arm.clavicle, arm.shoulder, arm.elbow, arm.wrist)) for arm in anatomy.arms]
+
+
+LEGS = [[side + part for part in ("UpLeg", "Leg", "Foot", "ToeBase")] for side in ("Left", "Right")]
+ARMS = [[side + part for part in ("Shoulder", "Arm", "ForeArm", "Hand")] for side in ("Left", "Right")]
+
+
+def assert_human(skeleton, anatomy):
+    assert legs_of(skeleton, anatomy) == LEGS
+    assert arms_of(skeleton, anatomy) == ARMS
+    assert skeleton.names[anatomy.head] == "Head"
+    assert skeleton.names[anatomy.pelvis] == "Hips"
+    assert skeleton.names[anatomy.chest] == "Spine1"
+    assert anatomy.warnings == ()

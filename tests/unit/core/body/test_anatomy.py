@@ -2,7 +2,23 @@ import time
 
 import numpy as np
 import pytest
-from human import BONES, CHANNELS, ENDS, SHANK, THIGH, above, skeleton_of, split, standing
+from human import (
+    ARMS,
+    BONES,
+    CHANNELS,
+    ENDS,
+    LEGS,
+    SHANK,
+    THIGH,
+    above,
+    arms_of,
+    assert_human,
+    legs_of,
+    names_of,
+    skeleton_of,
+    split,
+    standing,
+)
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -13,31 +29,6 @@ from motionedit.core.skeleton import EndSite, Skeleton
 # y up becomes z up, forward becomes -y.
 Z_UP = [[1, 0, 0], [0, 0, -1], [0, 1, 0]]
 MIRROR = np.diag([-1.0, 1.0, 1.0])
-
-
-def names_of(skeleton, joints):
-    return [None if j is None else skeleton.names[j] for j in joints]
-
-
-def legs_of(skeleton, anatomy):
-    return [names_of(skeleton, (leg.thigh, leg.knee, leg.ankle, leg.toe)) for leg in anatomy.legs]
-
-
-def arms_of(skeleton, anatomy):
-    return [names_of(skeleton, (arm.clavicle, arm.shoulder, arm.elbow, arm.wrist)) for arm in anatomy.arms]
-
-
-LEGS = [[side + part for part in ("UpLeg", "Leg", "Foot", "ToeBase")] for side in ("Left", "Right")]
-ARMS = [[side + part for part in ("Shoulder", "Arm", "ForeArm", "Hand")] for side in ("Left", "Right")]
-
-
-def assert_human(skeleton, anatomy):
-    assert legs_of(skeleton, anatomy) == LEGS
-    assert arms_of(skeleton, anatomy) == ARMS
-    assert skeleton.names[anatomy.head] == "Head"
-    assert skeleton.names[anatomy.pelvis] == "Hips"
-    assert skeleton.names[anatomy.chest] == "Spine1"
-    assert anatomy.warnings == ()
 
 
 def test_a_human_has_legs_arms_and_a_head():
