@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from person import BODY, edited, end, held_feet, swaying
+from person import BODY, edited, end, held_feet, path, swaying
 
 from motionedit.core import rotations as rot
 from motionedit.core.priorities import calming
@@ -97,3 +97,17 @@ def test_frames_that_are_not_solved_on_leave_those_beside_them_where_they_are():
         moved.append(rot.angle_between(after.rotations, motion.rotations).max())
     assert moved[0] > 0.01
     assert moved[1] < 0.05 * moved[0]
+
+
+@pytest.mark.parametrize(("softness", "much"), [(0.01, 0.990099), (1e-3, 0.5), (1e-5, 1e-4)])
+def test_soft_goals_are_eased_by_how_soft_they_are_where_frames_are_not_solved_on(softness, much):
+    run = prepared(reaching(FAR))
+    soft = run_of(replace(run.asked, softness=(*run.asked.softness[:-1], np.full(FRAMES, softness))))
+    share = np.zeros(FRAMES)
+    share[40:45] = 1.0, 0.75, 0.5, 0.25, 0.0
+    own, eased = soft.asked.targets, PassedBefore(None, MOTION, share).eased(soft).asked.targets
+    assert all(one is other for one, other in zip(own[:-1], eased[:-1], strict=True))
+    here = slice(40 - own[-1].first, 45 - own[-1].first)
+    toward = path(MOTION, "RightHand")[40:45] - own[-1].positions[here]
+    part = much * np.array([[0.0], [0.25], [0.5], [0.75], [1.0]])
+    np.testing.assert_allclose(eased[-1].positions[here] - own[-1].positions[here], part * toward, atol=1e-5)
