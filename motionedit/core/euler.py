@@ -15,7 +15,7 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.compiled import compiled
-from motionedit.core.motion import position_columns
+from motionedit.core.motion import position_columns, slice_or_all
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -62,9 +62,10 @@ def joint_angles(motion: Motion, *, start: FloatArray) -> FloatArray:
             angles = nearest_in_runs(solved, np.array(whole, dtype=np.int64), seeds)
             for k in np.flatnonzero(gimbal_locked(solved).any(axis=-1)).tolist():
                 angles[k] = near(motion.rotations[:, joints[k]], group.axes, solved[:, k], seeds[k]).T
+            own = slice_or_all(columns.reshape(-1))
             for block in _blocks(len(motion), len(joints)):
                 rows = np.degrees(angles[:, :, block]).transpose(2, 0, 1)
-                values[block, columns.reshape(-1)] = rows.reshape(len(rows), -1)
+                values[block, own] = rows.reshape(len(rows), -1)
     return values
 
 
