@@ -137,6 +137,17 @@ def test_what_is_compiled_is_that_of_numpy_to_the_bit(work, widths, leading, mon
     np.testing.assert_array_equal(compiled, work(a, b), strict=True)
 
 
+@pytest.mark.compiled
+@pytest.mark.parametrize("axes", list(permutations(range(3))))
+@pytest.mark.parametrize("leading", [(), (0,), (7,), (5, 3)])
+def test_compiled_turns_about_three_axes_are_those_of_numpy_to_the_bit(axes, leading, rng, monkeypatch):
+    angles = rng.uniform(-7.0, 7.0, size=(*leading, 6))[..., ::2]
+    angles[..., :1] = np.where(rng.random(angles[..., :1].shape) < 0.3, np.pi, angles[..., :1])
+    compiled = rot.from_euler(angles, axes)
+    monkeypatch.setenv("MOTIONEDIT_SOLVER", "numpy")
+    np.testing.assert_array_equal(compiled, rot.from_euler(angles, axes), strict=True)
+
+
 def test_dots_and_lengths_are_sums_and_norms_to_the_bit():
     a, b = np.random.default_rng(5).normal(size=(2, 500, 3))
     np.testing.assert_array_equal(rot.dot(a, b), np.sum(a * b, axis=-1))
