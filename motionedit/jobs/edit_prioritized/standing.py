@@ -10,7 +10,7 @@ import numpy as np
 from motionedit.core.body.contacts import Plant
 from motionedit.core.feet.goals import ground_under
 from motionedit.core.feet.keep import onto_stances, shifted, within_legs
-from motionedit.core.feet.reach import LOWERED, reach_of
+from motionedit.core.feet.reach import CALMS_ANOTHER, CALMS_OWN, LOWERED, reach_of
 from motionedit.core.feet.stance import Stance, feet_of, foot_path, runs, stance_of
 from motionedit.core.feet.stands import body_shift, carried, on_height, within_reach
 from motionedit.core.kinematics import forward
@@ -88,6 +88,7 @@ def on_feet(
         ground_under(facts.anatomy, facts.up, floor=max(floors, default=None)),
         travel=facts.travel,
         first=facts.first,
+        calms=CALMS_OWN if reference.clip is facts.clip else CALMS_ANOTHER,
     )
     stood = replace(facts, clip=replace(facts.clip, motion=kept.motion), world=Poses(kept.motion))
     found = replace(
