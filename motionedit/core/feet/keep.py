@@ -84,10 +84,15 @@ def keep_feet(
 
 
 def within_legs(
-    stances: Sequence[tuple[Foot, Stance]], poses: WorldPoses, anatomy: Anatomy, *, up: FloatArray
+    stances: Sequence[tuple[Foot, Stance]],
+    poses: WorldPoses,
+    anatomy: Anatomy,
+    *,
+    up: FloatArray,
+    lowered: float = LOWERED,
 ) -> list[tuple[Foot, Stance]]:
-    """Return stances whose heels come up once the pelvis would have to come down by more than 2 % of a leg for them."""
-    low = LOWERED * anatomy.leg_length * up
+    """Return stances whose heels come up once the pelvis would have to be `lowered` by more of a leg for them."""
+    low = lowered * anatomy.leg_length * up
     held = []
     for foot, stance in stances:
         up_again = released(stance, poses.positions[:, foot.leg.thigh] - low, reach_of(poses, foot))

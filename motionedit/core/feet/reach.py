@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 REACH = 0.994
 # Of a leg: a heel comes up where the pelvis would have to come down by more.
 LOWERED = 0.02
+LOWERED_ON_PATH = 0.04  # where a path is longer than the old one, and steps with it
 # Of a leg: how far a pelvis calms knees at most, where feet keep their own places, and where they go to another's.
 CALMS_OWN, CALMS_ANOTHER = 0.01, 1.0
 _LEAST = float(np.radians(5.0))  # rad
