@@ -142,6 +142,19 @@ def test_feet_stand_on_a_height_and_nothing_of_them_goes_below(edit):
     assert record["metrics"]["after"]["foot_drift_max"] < 1e-5
 
 
+def test_a_body_that_is_far_below_its_floor_is_lifted_as_a_whole(edit):
+    after, record = edit([{"type": "floor", "effector": "all", "height": 1000}], clip=WALK)
+    assert record["status"] == "ok"
+    assert after.poses.positions[..., 1].min() > 1000.0 - 1e-3
+    before = motionedit.read(WALK).motion
+    assert np.abs(after.clip.motion.rotations - before.rotations).max() < 0.01
+
+
+def test_a_floor_that_no_pose_reaches_over_what_goes_first_is_refused(edit):
+    floor = {"type": "floor", "effector": "all", "height": 1000, "priority": 9}
+    assert "nothing of it reaches so far" in edit([FEET, floor], clip=WALK, code=2)
+
+
 def test_plants_of_a_file_or_the_spec_are_taken(edit, tmp_path):
     after, _ = edit([{**FEET, "feet": ["LeftFoot"], "plants": {"LeftFoot": [[24, 30]]}}])
     ankle = after.clip.motion.skeleton.names.index("LeftFoot")
