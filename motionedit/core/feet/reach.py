@@ -51,7 +51,7 @@ def reach_bent(poses: WorldPoses, foot: Foot, knee: Knee, places: FloatArray) ->
     to the hip by no more than the ankle is off its place: one that is there may be as straight as it is.
     """
     way, _ = stretch(poses, foot)
-    off = np.linalg.norm(places - poses.positions[:, foot.leg.ankle], axis=1)
+    off = rot.length(places - poses.positions[:, foot.leg.ankle])
     bent = knee.way(np.full(len(way), _LEAST))
     reach: FloatArray = np.minimum(reach_of(poses, foot), np.maximum(bent, way - off))
     return reach
@@ -71,8 +71,8 @@ def reach_calm(
         Of a leg: so much nearer to the hip than it would be, at most.
     """
     way, length = stretch(poses, foot)
-    far = np.linalg.norm(stance.heel_place - poses.positions[:, foot.leg.thigh], axis=1)
-    off = np.linalg.norm(stance.heel_place - poses.positions[:, foot.leg.ankle], axis=1)
+    far = rot.length(stance.heel_place - poses.positions[:, foot.leg.thigh])
+    off = rot.length(stance.heel_place - poses.positions[:, foot.leg.ankle])
     stands = stance.heel[1:] & stance.heel[:-1] & (stance.whole[1:] == stance.whole[:-1])
     closing = _of_both_sides(np.abs(np.diff(far)), stands)
     own = _of_both_sides(np.abs(np.diff(knee.angle)), np.ones(len(far) - 1, dtype=np.bool_))
@@ -88,8 +88,12 @@ def reach_calm(
 
 def _of_both_sides(steps: FloatArray, there: BoolArray) -> FloatArray:
     """Return the mean of the steps into and out of each frame, shape (F,), of those F - 1 that are there."""
-    total, count = np.pad(np.where(there, steps, 0.0), 1), np.pad(there.astype(float), 1)
-    mean: FloatArray = (total[:-1] + total[1:]) / np.maximum(count[:-1] + count[1:], 1.0)
+    total, count = np.zeros(len(steps) + 1), np.zeros(len(steps) + 1)
+    given = np.where(there, steps, 0.0)
+    for side in (slice(None, -1), slice(1, None)):
+        total[side] += given
+        count[side] += there
+    mean: FloatArray = total / np.maximum(count, 1.0)
     return mean
 
 
