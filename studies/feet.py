@@ -34,23 +34,27 @@ COLUMNS = (*HEADINGS, "body cm", "median", "frames/s")
 
 
 def specs(facts: ClipFacts) -> dict[str, list[dict[str, Any]]]:
-    """Return the constraints of each edit: feet held, on a floor, on a path bent by 20 cm or turned by 30 degrees."""
+    """Return the constraints of each edit: feet held, on a floor, on a path bent by 20 cm or turned."""
     aside = np.zeros(3)
     aside[int(np.argmin(np.abs(facts.up)))] = 0.2 / STANDARD_LEG * facts.anatomy.leg_length
     bent = {facts.first: np.zeros(3), (facts.first + facts.last) // 2: aside, facts.last: np.zeros(3)}
-    way = facts.poses.positions[:, facts.travel]
-    turned = {}
-    for frame, angle in zip(
-        np.linspace(facts.first, facts.last, BENDS), np.radians(np.linspace(0, 30, BENDS)), strict=True
-    ):
-        from_start = way[round(frame)] - way[facts.first]
-        turned[round(frame)] = rot.rotate(rot.exp(angle * facts.up), from_start) - from_start
     return {
         "feet": [FEET],
         "floor": [{**FEET, "height": 0}, {"name": "floor", "type": "floor", "priority": 9}],
         "bent": [{**FEET, "at": "path"}, along(facts, bent)],
-        "turned": [{**FEET, "at": "path"}, along(facts, turned)],
+        "turned": [{**FEET, "at": "path"}, along(facts, turned(facts, 30.0))],
+        "turned by 45": [{**FEET, "at": "path"}, along(facts, turned(facts, 45.0))],
     }
+
+
+def turned(facts: ClipFacts, degrees: float) -> dict[int, FloatArray]:
+    """Return the shifts, by frame, of a path turned evenly from its first frame to its last."""
+    way, shifts = facts.poses.positions[:, facts.travel], {}
+    frames = np.linspace(facts.first, facts.last, BENDS)
+    for frame, angle in zip(frames, np.radians(np.linspace(0.0, degrees, BENDS)), strict=True):
+        from_start = way[round(frame)] - way[facts.first]
+        shifts[round(frame)] = rot.rotate(rot.exp(angle * facts.up), from_start) - from_start
+    return shifts
 
 
 def along(facts: ClipFacts, shifts: Mapping[int, FloatArray]) -> dict[str, Any]:
@@ -113,7 +117,7 @@ def main(arguments: Sequence[str]) -> int:
         return 2
     clips = sorted(Path(arguments[0]).rglob("*.bvh"))
     with tempfile.TemporaryDirectory() as folder:
-        for which in ("feet", "floor", "bent", "turned"):
+        for which in ("feet", "floor", "bent", "turned", "turned by 45"):
             print(f"\n{which}\n" + f"{COLUMNS[0]:<30}" + "".join(f"{word:>10}" for word in COLUMNS[1:]))
             found = list(rows(clips, which, Path(folder)))
             for name, plants, values in found:

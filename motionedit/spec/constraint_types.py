@@ -227,8 +227,8 @@ class FootplantsConstraint(_Timeless):
     at: Literal["input", "path"] = spec_key(
         kinds.word("input", "path"),
         default="input",
-        description="input: plants stay where they are; path: each moves, as a whole, where positions asked of the "
-        "root take it.",
+        description="input: plants stay where they are; path: each moves and turns, as a whole, where positions asked "
+        "of the root take it, and the body turns with the path.",
     )
 
 

@@ -156,12 +156,20 @@ LIMITS = Kind(
 )
 
 
+# Each is solved for itself with those above it, and smoothed, wherever something is out of reach.
+_MOST_LAYERS = 20
+
+
 def _constraints_apart(
     constraints: tuple[ConstraintItem, ...], others: Mapping[str, Any]
 ) -> tuple[ConstraintItem, ...]:
     # Absent where it is faulty itself; then the spec is refused whatever stands here.
     defaults = others.get("defaults", Defaults())
-    return taken_apart([item.with_defaults(defaults) for item in constraints], "constraints")
+    parts = taken_apart([item.with_defaults(defaults) for item in constraints], "constraints")
+    layers = len({part.priority for part in parts})
+    if layers > _MOST_LAYERS:
+        raise faulty(f"have {layers} priorities; one spec has {_MOST_LAYERS} at most: let some share one")
+    return parts
 
 
 def _reference(value: object, context: Context) -> Path:

@@ -102,6 +102,26 @@ def test_plants_go_with_the_path_as_a_whole(edit):
     assert record["metrics"]["after"]["jerk_rms"] < 1.15 * record["metrics"]["before"]["jerk_rms"]
 
 
+def test_feet_and_body_turn_with_a_path_that_turns(edit):
+    before = facts_of(motionedit.read(WALK))
+    places = before.poses.positions[:, before.travel]
+    angle, way = np.radians(40.0), {"type": "position", "effector": "Hips", "priority": 5}
+    turn = np.array([[np.cos(angle), 0.0, np.sin(angle)], [0.0, 1.0, 0.0], [-np.sin(angle), 0.0, np.cos(angle)]])
+    shifts = {frame: turn @ (places[frame] - places[0]) - (places[frame] - places[0]) for frame in range(0, 145, 12)}
+    points = [{"at": frame, "shift": shift.tolist()} for frame, shift in shifts.items()]
+    after, record = edit([{**FEET, "at": "path"}, {**way, "points": points}], clip=WALK)
+    assert record["status"] == "ok"
+    assert drift(after, before.phases) < 0.01
+    assert record["metrics"]["after"]["jerk_rms"] < 1.15 * record["metrics"]["before"]["jerk_rms"]
+    names = before.clip.motion.skeleton.names
+    for start, stop in (("LeftFoot", "LeftToeBase"), ("RightFoot", "RightToeBase"), ("RightUpLeg", "LeftUpLeg")):
+        joints = [names.index(stop), names.index(start)]
+        ways = [np.subtract(*np.moveaxis(each.poses.positions[:, joints], 1, 0)) for each in (before, after)]
+        one, other = (way[:, 2] + 1j * way[:, 0] for way in ways)
+        turned = np.degrees(np.angle(one.conj() * other))[12:-12]
+        assert np.percentile(turned, [10, 50, 90]) == pytest.approx(40.0, abs=3.0)
+
+
 def test_a_foot_on_a_longer_way_stands_where_its_leg_holds_it_to_the_end(edit):
     way = {"type": "position", "effector": "Hips", "priority": 5}
     points = [{"at": 0}, {"at": "100%", "shift": [0, 0, 80]}]
@@ -120,6 +140,19 @@ def test_feet_stand_on_a_height_and_nothing_of_them_goes_below(edit):
         if plant.part == "toe":
             assert tracks[plant.start : plant.stop + 1, plant.point] == pytest.approx(5.0, abs=1e-3)
     assert record["metrics"]["after"]["foot_drift_max"] < 1e-5
+
+
+def test_a_body_that_is_far_below_its_floor_is_lifted_as_a_whole(edit):
+    after, record = edit([{"type": "floor", "effector": "all", "height": 1000}], clip=WALK)
+    assert record["status"] == "ok"
+    assert after.poses.positions[..., 1].min() > 1000.0 - 1e-3
+    before = motionedit.read(WALK).motion
+    assert np.abs(after.clip.motion.rotations - before.rotations).max() < 0.01
+
+
+def test_a_floor_that_no_pose_reaches_over_what_goes_first_is_refused(edit):
+    floor = {"type": "floor", "effector": "all", "height": 1000, "priority": 9}
+    assert "nothing of it reaches so far" in edit([FEET, floor], clip=WALK, code=2)
 
 
 def test_plants_of_a_file_or_the_spec_are_taken(edit, tmp_path):

@@ -117,3 +117,9 @@ def test_more_constraints_than_can_be_solved_in_any_time_are_refused_in_words():
     spec = {"constraints": [{"type": "position", "effector": "LeftHand", "priority": n} for n in range(1000)]}
     with pytest.raises(MotionEditError, match="constraints: are 1000; one spec has 100 at most"):
         load_spec(spec, "edit-prioritized")
+
+
+def test_more_priorities_than_are_solved_in_any_time_are_refused():
+    hands = [{"type": "position", "effector": "Hand", "priority": i} for i in range(21)]
+    with pytest.raises(MotionEditError, match="constraints: have 21 priorities; one spec has 20 at most"):
+        load_spec({"constraints": hands}, "edit-prioritized")

@@ -31,7 +31,7 @@ class AsksToStand(Protocol):
 
     @property
     def follows_path(self) -> bool:
-        """Whether plants move where the root's new path takes them."""
+        """Whether plants move and turn where the root's new path takes them."""
 
     def within(self, goals: Targets, *, number: int) -> Self:
         """Return the constraint with its goals over one stretch of frames."""

@@ -13,7 +13,7 @@ from motionedit.core.feet.goals import FootGoal, Ground, foot_goal, ground_under
 from motionedit.core.feet.knees import knee_of
 from motionedit.core.feet.legs import LegGoal, legs_onto, turns_freely
 from motionedit.core.feet.pelvis import drop_needed, smooth_cover
-from motionedit.core.feet.reach import LOWERED, reach_bent, reach_of, released
+from motionedit.core.feet.reach import CALMS_ANOTHER, CALMS_OWN, LOWERED, handed_on, reach_calm, reach_of, released
 from motionedit.core.feet.stance import feet_of, foot_path, stance_of
 from motionedit.core.kinematics import WorldPoses, forward
 from motionedit.core.motion import Motion
@@ -79,18 +79,25 @@ def keep_feet(
         stances.append((foot, stance_of(foot_path(theirs, foot), here)))
     held = within_legs(stances, poses, anatomy, up=up)
     ground = ground_under(anatomy, up)
-    return onto_stances(motion, poses, held, anatomy, ground, travel=travel, first=first)
+    calms = CALMS_OWN if reference is motion else CALMS_ANOTHER
+    return onto_stances(motion, poses, held, anatomy, ground, travel=travel, first=first, calms=calms)
 
 
 def within_legs(
-    stances: Sequence[tuple[Foot, Stance]], poses: WorldPoses, anatomy: Anatomy, *, up: FloatArray
+    stances: Sequence[tuple[Foot, Stance]],
+    poses: WorldPoses,
+    anatomy: Anatomy,
+    *,
+    up: FloatArray,
+    lowered: float = LOWERED,
 ) -> list[tuple[Foot, Stance]]:
-    """Return stances whose heels come up once the pelvis would have to come down by more than 2 % of a leg for them."""
-    low = LOWERED * anatomy.leg_length * up
-    return [
-        (foot, released(stance, poses.positions[:, foot.leg.thigh] - low, reach_of(poses, foot)))
-        for foot, stance in stances
-    ]
+    """Return stances whose heels come up once the pelvis would have to be `lowered` by more of a leg for them."""
+    low = lowered * anatomy.leg_length * up
+    held = []
+    for foot, stance in stances:
+        up_again = released(stance, poses.positions[:, foot.leg.thigh] - low, reach_of(poses, foot))
+        held.append((foot, handed_on(stance, up_again)))
+    return held
 
 
 def onto_stances(
@@ -102,10 +109,12 @@ def onto_stances(
     *,
     travel: int,
     first: int,
+    calms: float = CALMS_ANOTHER,
 ) -> Kept:
     """Return a motion whose feet stand as given, as `keep_feet`; `poses` are its world transforms.
 
-    A heel that its leg is too short for stays down, and the pelvis goes as low as that takes: see `within_legs`.
+    A heel that its leg is too short for stays down, and the pelvis goes as low as that takes: see `within_legs`. It
+    goes lower by a share `calms` of a leg at most for a knee that would shake beside its heel: see `reach_calm`.
     """
     up = ground.up
     lowered = np.zeros(len(motion))
@@ -121,7 +130,11 @@ def onto_stances(
         # Heels that stand say how low the pelvis is; a foot on its toe rolls on instead.
         for foot, stance in stances:
             hip, places, knee = poses.positions[:, foot.leg.thigh], stance.heel_place, knees.get(foot.side)
-            reach = reach_of(poses, foot) if knee is None else reach_bent(poses, foot, knee, places)
+            reach = (
+                reach_of(poses, foot)
+                if knee is None
+                else reach_calm(poses, foot, knee, stance, motion.frame_time, calms=calms)
+            )
             lowered = np.maximum(lowered, np.where(stance.heel, drop_needed(hip, places, reach, up), 0.0))
         lowered[:first] = 0.0
         lowered[first:] = smooth_cover(lowered[first:], motion.frame_time)

@@ -11,7 +11,7 @@ from motionedit.core import rotations as rot
 from motionedit.core.feet.stance import runs
 
 if TYPE_CHECKING:
-    from motionedit.core.arrays import FloatArray
+    from motionedit.core.arrays import BoolArray, FloatArray
     from motionedit.core.feet.knees import Knee
     from motionedit.core.feet.stance import Foot, Stance
     from motionedit.core.kinematics import WorldPoses
@@ -21,8 +21,15 @@ if TYPE_CHECKING:
 REACH = 0.994
 # Of a leg: a heel comes up where the pelvis would have to come down by more.
 LOWERED = 0.02
+LOWERED_ON_PATH = 0.04  # where a path is longer than the old one, and steps with it
+# Of a leg: how far a pelvis calms knees at most, where feet keep their own places, and where they go to another's.
+CALMS_OWN, CALMS_ANOTHER = 0.01, 1.0
 _LEAST = float(np.radians(5.0))  # rad
 _ROUNDING = 1e-9
+# Rad/s, and times how fast it was about then: a knee that would bend faster beside a heel that stands is bent more.
+_CALM, _FASTER = float(np.radians(300.0)), 1.5
+_ABOUT_THEN = 0.05  # s before and after
+_MOST = float(np.radians(60.0))  # rad: a knee that is bent so far is calm
 
 
 def stretch(poses: WorldPoses, foot: Foot) -> tuple[FloatArray, FloatArray]:
@@ -44,10 +51,50 @@ def reach_bent(poses: WorldPoses, foot: Foot, knee: Knee, places: FloatArray) ->
     to the hip by no more than the ankle is off its place: one that is there may be as straight as it is.
     """
     way, _ = stretch(poses, foot)
-    off = np.linalg.norm(places - poses.positions[:, foot.leg.ankle], axis=1)
+    off = rot.length(places - poses.positions[:, foot.leg.ankle])
     bent = knee.way(np.full(len(way), _LEAST))
     reach: FloatArray = np.minimum(reach_of(poses, foot), np.maximum(bent, way - off))
     return reach
+
+
+def reach_calm(
+    poses: WorldPoses, foot: Foot, knee: Knee, stance: Stance, frame_time: float, *, calms: float
+) -> FloatArray:
+    """Return how far from its hip a heel that stands may be, shape (F,): as `reach_bent`, but no knee shakes.
+
+    w^2 = fixed + turning cos x, so that w w' = -turning sin(x) x' / 2: the straighter a knee, the faster it bends as
+    its hip comes nearer. A leg that sets its heel down all but straight kicks; this is how bent it is to be.
+
+    Parameters
+    ----------
+    calms : float
+        Of a leg: so much nearer to the hip than it would be, at most.
+    """
+    way, length = stretch(poses, foot)
+    far = rot.length(stance.heel_place - poses.positions[:, foot.leg.thigh])
+    off = rot.length(stance.heel_place - poses.positions[:, foot.leg.ankle])
+    stands = stance.heel[1:] & stance.heel[:-1] & (stance.whole[1:] == stance.whole[:-1])
+    closing = _of_both_sides(np.abs(np.diff(far)), stands)
+    own = _of_both_sides(np.abs(np.diff(knee.angle)), np.ones(len(far) - 1, dtype=np.bool_))
+    around = round(_ABOUT_THEN / frame_time)
+    own = np.lib.stride_tricks.sliding_window_view(np.pad(own, around, mode="edge"), 2 * around + 1).max(axis=1)
+    fastest = np.maximum(_FASTER * own, _CALM * frame_time)
+    sine = 2.0 * far * closing / np.maximum(knee.turning * fastest, np.finfo(float).tiny)
+    calm = knee.way(np.arcsin(np.minimum(sine, np.sin(_MOST))))
+    calm = np.maximum(calm, np.maximum(far - calms * length, way - off))
+    reach: FloatArray = np.minimum(reach_bent(poses, foot, knee, stance.heel_place), calm)
+    return reach
+
+
+def _of_both_sides(steps: FloatArray, there: BoolArray) -> FloatArray:
+    """Return the mean of the steps into and out of each frame, shape (F,), of those F - 1 that are there."""
+    total, count = np.zeros(len(steps) + 1), np.zeros(len(steps) + 1)
+    given = np.where(there, steps, 0.0)
+    for side in (slice(None, -1), slice(1, None)):
+        total[side] += given
+        count[side] += there
+    mean: FloatArray = total / np.maximum(count, 1.0)
+    return mean
 
 
 def released(stance: Stance, hip: FloatArray, reach: FloatArray) -> Stance:
@@ -64,3 +111,12 @@ def released(stance: Stance, hip: FloatArray, reach: FloatArray) -> Stance:
             near = np.flatnonzero(~far[start : stop + 1])
             heel[start + (int(near[-1]) + 1 if len(near) else 0) : stop + 1] = False
     return replace(stance, heel=heel)
+
+
+def handed_on(stance: Stance, after: Stance) -> Stance:
+    """Return a stance after heels were released, in which each foot comes from heel to toe by both, for one frame.
+
+    Or it would jump from the one's place to the other's.
+    """
+    on_heel = np.pad(after.heel & ~after.toe, (1, 0))[:-1]
+    return replace(after, heel=after.heel | (on_heel & stance.flat))

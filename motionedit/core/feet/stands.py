@@ -1,4 +1,4 @@
-"""Stands moved as a whole: where the body's new path takes them, or onto one height."""
+"""Stands moved as a whole: within reach of a body that goes on another path, or onto one height."""
 
 from __future__ import annotations
 
@@ -20,15 +20,6 @@ _FOLLOWS = 0.25
 # Rounds, each of which takes half of what a stand lacks: the farthest frames of its two ends share what cannot be had.
 _ROUNDS = 48
 _WELL_WITHIN = 0.999  # of the reach: what a step aims at, so that few of them arrive
-
-
-def carried(stance: Stance, shift: FloatArray) -> Stance:
-    """Return a stance each of whose stands is moved by the mean shift, shape (F, 3), of its frames."""
-    ways = np.zeros((len(shift), 3))
-    for stand in np.unique(stance.whole[stance.whole >= 0]):
-        here = stance.whole == stand
-        ways[here] = shift[here].mean(axis=0)
-    return replace(stance, heel_place=stance.heel_place + ways, toe_place=stance.toe_place + ways)
 
 
 def within_reach(stance: Stance, hip: FloatArray, reach: FloatArray, low: float, up: FloatArray) -> Stance:

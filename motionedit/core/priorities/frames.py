@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.motion import Motion
+from motionedit.core.priorities.far_floors import lifted
 from motionedit.core.priorities.far_turns import parts_of
 from motionedit.core.priorities.groups import Asked, Group, groups_of, part_of, retargeted, spans_of
 from motionedit.core.priorities.problem import Reference
@@ -98,8 +99,11 @@ def solve_frames(run: Run, start: Motion, *, reference: Motion, pull_root: bool,
 
 
 def solve_from_input(run: Run, known: Known | None = None) -> Solved:
-    """Return the motion with every frame solved from the input, and attracted to it; far turns part by part."""
-    motion = start = run.motion
+    """Return the motion with every frame solved from the input, and attracted to it; far turns part by part.
+
+    A body that is far below its floor starts from above it.
+    """
+    motion, start = run.motion, lifted(run.asked)
     for targets, far in parts_of(run.asked):
         idle = ~far if known is None else ~far | known.done
         ranks = np.zeros((len(motion), len(run.asked.levels)), dtype=np.intp)

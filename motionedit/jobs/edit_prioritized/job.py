@@ -28,6 +28,7 @@ from motionedit.jobs.clip.metrics import edit_metrics, feet_of
 from motionedit.jobs.clip.roughness import rough_lines
 from motionedit.jobs.edit_prioritized.body import sized_clip
 from motionedit.jobs.edit_prioritized.constraints import clip_constraints
+from motionedit.jobs.edit_prioritized.floors import refuse_floors_out_of_reach
 from motionedit.jobs.edit_prioritized.loose_feet import loose_feet
 from motionedit.jobs.edit_prioritized.record import edit_record
 from motionedit.jobs.edit_prioritized.recruits import breach_error, breach_warnings, immovable_warnings, layer_lines
@@ -106,6 +107,7 @@ class EditByPriorities:
             sized, constraints = on_feet(self.loaded, sized, constraints, kept, curve=settings.curve)
         if not constraints:
             return self._unedited(clip, sized)
+        refuse_floors_out_of_reach(self.loaded, sized, [c.constraint for c in constraints], curve=settings.curve)
         before = feet_of(sized.facts, blocks_of(sized.facts.poses), masses=sized.masses)
         # What is read off the input has been read, its phases with it: an edit of a long clip needs the room.
         _ = sized.facts.phases

@@ -10,9 +10,10 @@ import numpy as np
 from motionedit.core.body.contacts import Plant
 from motionedit.core.feet.goals import ground_under
 from motionedit.core.feet.keep import onto_stances, shifted, within_legs
-from motionedit.core.feet.reach import LOWERED, reach_of
+from motionedit.core.feet.path import NewPath, carried, new_path, turned
+from motionedit.core.feet.reach import CALMS_ANOTHER, CALMS_OWN, LOWERED, LOWERED_ON_PATH, reach_of
 from motionedit.core.feet.stance import Stance, feet_of, foot_path, runs, stance_of
-from motionedit.core.feet.stands import body_shift, carried, on_height, within_reach
+from motionedit.core.feet.stands import body_shift, on_height, within_reach
 from motionedit.core.kinematics import forward
 from motionedit.core.motion import scaled
 from motionedit.core.priorities.kinds.constraint import Scene, Targets
@@ -23,7 +24,7 @@ from motionedit.jobs.edit_prioritized.body import body_again
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from motionedit.core.arrays import BoolArray, FloatArray
+    from motionedit.core.arrays import BoolArray
     from motionedit.core.feet.asked import AsksToStand
     from motionedit.core.feet.goals import FootGoal
     from motionedit.core.feet.stance import Foot
@@ -57,21 +58,23 @@ def on_feet(
     if not any(stance.down.any() for _, _, stance in stances):
         warned = replace(sized, warnings=(*sized.warnings, "footplants: no foot stands in it; nothing is held"))
         return warned, [each for each in constraints if each not in standing]
-    shift = _path_shift(sized, constraints, curve) if any(ask.follows_path for ask, _, _ in stances) else None
+    path = _new_path(sized, constraints, curve) if any(ask.follows_path for ask, _, _ in stances) else None
     placed: list[tuple[Foot, Stance]] = []
     lifts = []
     for ask, foot, stance in stances:
-        moved = stance if shift is None or not ask.follows_path else carried(stance, shift)
+        moved = stance if path is None or not ask.follows_path else carried(stance, path)
         lifted = moved if ask.height is None else on_height(moved, ask.height, facts.up)
         lifts.append((moved, lifted))
         placed.append((foot, lifted))
     lift = body_shift(lifts, facts.clip.motion.frame_time, facts.up)
-    total = lift if shift is None else shift + lift
+    total = lift if path is None else path.shift + lift
     motion, poses = facts.clip.motion, facts.poses
     if np.any(total):
         motion = shifted(motion, total, poses, facts.travel)
+        motion = motion if path is None else turned(motion, path, poses, facts.travel)
         poses = forward(motion)
-    low = LOWERED * facts.anatomy.leg_length
+    lowered = LOWERED if path is None else LOWERED_ON_PATH
+    low = lowered * facts.anatomy.leg_length
     placed = [
         (foot, within_reach(stance, poses.positions[:, foot.leg.thigh], reach_of(poses, foot), low, facts.up))
         if ask.follows_path
@@ -79,7 +82,7 @@ def on_feet(
         for (ask, _, _), (foot, stance) in zip(stances, placed, strict=True)
     ]
     floors = [each.constraint.least.height / scale for each in constraints if each.constraint.least is not None]
-    held = within_legs(placed, poses, facts.anatomy, up=facts.up)
+    held = within_legs(placed, poses, facts.anatomy, up=facts.up, lowered=lowered)
     kept = onto_stances(
         motion,
         poses,
@@ -88,6 +91,7 @@ def on_feet(
         ground_under(facts.anatomy, facts.up, floor=max(floors, default=None)),
         travel=facts.travel,
         first=facts.first,
+        calms=CALMS_OWN if reference.clip is facts.clip else CALMS_ANOTHER,
     )
     stood = replace(facts, clip=replace(facts.clip, motion=kept.motion), world=Poses(kept.motion))
     found = replace(
@@ -132,8 +136,8 @@ def _stances(
     return list(found.values())
 
 
-def _path_shift(sized: SizedClip, constraints: Sequence[ClipConstraint], curve: Curve) -> FloatArray:
-    """Return how far positions asked of the joint that carries the travel move it, shape (F, 3), clip units."""
+def _new_path(sized: SizedClip, constraints: Sequence[ClipConstraint], curve: Curve) -> NewPath:
+    """Return where positions asked of the joint that carries the travel take the body, clip units."""
     shift, travel = np.zeros((len(sized.motion), 3)), sized.facts.travel
     before = sight_of(sized.motion, [travel], None)
     for each in constraints:
@@ -144,7 +148,15 @@ def _path_shift(sized: SizedClip, constraints: Sequence[ClipConstraint], curve: 
         goal = ask.goal(targets)
         if goal is not None:
             shift[targets.span] = (goal[1] - before.poses.positions[targets.span, travel]) / sized.scale
-    return shift
+    facts = sized.facts
+    return new_path(
+        facts.poses.positions[:, travel],
+        shift,
+        up=facts.up,
+        leg=facts.anatomy.leg_length,
+        frame_time=facts.clip.motion.frame_time,
+        first=facts.first,
+    )
 
 
 def _with_goals(

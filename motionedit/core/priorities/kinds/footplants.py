@@ -27,7 +27,7 @@ class Footplants(Pose):
     height : float or None
         On which height plants stand, clip units along up; None: each on its own.
     follows_path : bool
-        Plants move where the root's new path takes them.
+        Plants move and turn where the root's new path takes them.
     goals : Targets or None
         None until they were found.
     """
