@@ -33,7 +33,7 @@ _MORE, _PLAINLY = 1.1, 1.2
 
 def calmed(found: Reached, smoothing: Passes) -> Solved:
     """Return an edit's solution in which what need not be met gives way where a viewer would see something."""
-    seen = seen_of(found.run, found.state.motion)
+    seen = seen_of(found.run, found.state.motion, steps=found.state.steps)
     if not seen.much.any():
         return found.state
     last, asked = _Layers(found.run.asked, found.state, seen), found.run.asked
@@ -86,7 +86,7 @@ def _calmest(layers: _Layers, members: list[int], before: FloatArray, smoothing:
 def _solved(asked: Asked, smoothing: Passes) -> _Layers:
     run = run_of(asked)
     state = in_passes(run, bent_where_missed(run, solve_from_input(run)), smoothing)
-    return _Layers(asked, state, seen_of(run, state.motion))
+    return _Layers(asked, state, seen_of(run, state.motion, steps=state.steps))
 
 
 def _yielding(asked: Asked, k: int, much: FloatArray) -> BoolArray:

@@ -55,7 +55,8 @@ class Solved:
     """A motion whose frames are solved in place, and how it went: iterations (F,), converged (F,), ranks (F, L).
 
     `left` (F, L) is what was left of each layer before the last step, as `LayeredSolution` has it. `ends`: where the
-    ramps ended in the last pass, None where they were not led.
+    ramps ended in the last pass, None where they were not led. `steps`, shape (F,): those of its joints' changes that
+    are seen, rad, None where nobody has looked.
     """
 
     motion: Motion
@@ -64,6 +65,7 @@ class Solved:
     ranks: IntArray
     left: FloatArray
     ends: Ends | None = None
+    steps: FloatArray | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -55,6 +55,7 @@ def in_passes(run: Run, state: Solved, smoothing: Passes, *, aimed: Callable[[Mo
     found, share = [np.inf] * _PATIENCE, np.ones(len(motion))
     for more in range(_MORE_PASSES + 1 if smoothing.count else 0):
         steps = steps_at(run, state.motion, within=share)
+        state.steps = None if more else steps  # of all frames
         largest = float(steps.max(initial=0.0))
         if largest == 0.0 or more == _MORE_PASSES or largest > _PROGRESS * found[-_PATIENCE]:
             break

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.body.quality import STILL
 from motionedit.core.kinematics import forward
-from motionedit.core.trace import frame_blocks
+from motionedit.core.trace import BLOCK_FRAMES, frame_blocks
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -41,9 +42,9 @@ class Seen:
         return np.maximum(self.steps, self.jerks)
 
 
-def seen_of(run: Run, after: Motion) -> Seen:
-    """Return what a viewer sees of an edited motion."""
-    return Seen(steps_at(run, after) / _step(run), jerks_at(run, after))
+def seen_of(run: Run, after: Motion, *, steps: FloatArray | None = None) -> Seen:
+    """Return what a viewer sees of an edited motion, of which `steps_at` may be known."""
+    return Seen((steps_at(run, after) if steps is None else steps) / _step(run), jerks_at(run, after))
 
 
 def _step(run: Run) -> float:
@@ -91,7 +92,8 @@ def jerks_at(run: Run, after: Motion) -> FloatArray:
     found, count = np.zeros(len(before)), len(before) - first - 3
     if count < 1:
         return found
-    was, now = _jerk(before, first), _jerk(after, first)
+    is_kept = before.is_fixed and len(before) <= BLOCK_FRAMES
+    was, now = (_jerk_again if is_kept else _jerk)(before, first), _jerk(after, first)
     least = max(float(np.sqrt(np.mean(was * was))), STILL * before.frame_time**3)
     seen = np.where(now > _OWN_JERK * was, now / (_JERK * least), 0.0)
     seen[seen <= 1.0] = 0.0
@@ -109,3 +111,7 @@ def _jerk(motion: Motion, first: int) -> FloatArray:
         third = np.diff(forward(motion.at(frames)).positions, n=3, axis=0)
         parts.append(np.sqrt(np.einsum("fja,fja->f", third, third) / third.shape[1]))
     return np.concatenate(parts)
+
+
+# The input of an edit is looked at again and again.
+_jerk_again = lru_cache(maxsize=2)(_jerk)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.arrays import frozen
+from motionedit.core.compiled import compiled
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
@@ -143,12 +144,16 @@ def low_pass(rows: FloatArray, *, sigma: float) -> FloatArray:
     radius = len(taps) - 1
     if radius < 1:
         return rows.copy()
-    kernel = np.concatenate((taps[:0:-1], taps))
+    kernel = compiled()
+    if kernel is not None:
+        passed = np.empty(rows.shape)
+        kernel.low_pass(np.ascontiguousarray(rows), taps, passed, len(rows))
+        return passed
     line = _line_at_end(taps)
     head = 2.0 * np.tensordot(line, rows[: radius + 1], 1)[None] - rows[radius:0:-1]
     tail = 2.0 * np.tensordot(line, rows[: -radius - 2 : -1], 1)[None] - rows[-2 : -radius - 2 : -1]
     padded = np.concatenate((head, rows, tail))
     smooth = np.zeros_like(rows)
-    for k, weight in enumerate(kernel):
+    for k, weight in enumerate(np.concatenate((taps[:0:-1], taps))):
         smooth += weight * padded[k : k + len(rows)]
     return smooth

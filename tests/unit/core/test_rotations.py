@@ -159,10 +159,10 @@ def test_rows_of_another_width_are_an_error_and_no_crash():
     with pytest.raises(ValueError, match="not rows of 4 numbers"):
         rot.multiply(np.zeros((7, 3)), np.zeros((7, 4)))
     for shape in ((7, 3), (5, 4), (7, 7, 4), (4,)):
-        with pytest.raises(ValueError, match="results|rows"):
+        with pytest.raises(ValueError, match=r"results|rows"):
             compiled().multiply(np.zeros((7, 4)), np.zeros((7, 4)), np.empty(shape, np.float32))
     for shape in ((3, 7), (7,), (2, 7, 1)):
-        with pytest.raises(ValueError, match="results|rows"):
+        with pytest.raises(ValueError, match=r"results|rows"):
             compiled().turn(np.zeros((7, 4)), np.zeros((7, 4)), np.empty(shape))
 
 

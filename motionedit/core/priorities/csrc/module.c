@@ -263,6 +263,35 @@ static PyObject *smooth(PyObject *self, PyObject *arguments)
     Py_RETURN_NONE;
 }
 
+static PyObject *low_pass_rows(PyObject *self, PyObject *arguments)
+{
+    enum { ROWS, TAPS, OUT, COUNT };
+    Py_buffer b[COUNT] = {{0}};
+    long long frames;
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "y*y*w*L", b, b + 1, b + 2, &frames))
+        return NULL;
+    const size_t number = sizeof(double);
+    const int64_t width = frames > 0 ? b[ROWS].len / (Py_ssize_t)number / frames : 0;
+    const int64_t radius = b[TAPS].len / (Py_ssize_t)number - 1;
+    int status = -2;
+    if (has_size(b + ROWS, width * frames, number, "rows") &&
+        has_size(b + OUT, width * frames, number, "smooth rows")) {
+        if (radius < 0 || frames <= radius)
+            PyErr_SetString(PyExc_ValueError, "too few frames for the filter");
+        else {
+            Py_BEGIN_ALLOW_THREADS status =
+                low_passed_rows(b[ROWS].buf, frames, width, radius, b[TAPS].buf, b[OUT].buf);
+            Py_END_ALLOW_THREADS if (status < 0) PyErr_NoMemory();
+        }
+    }
+    for (int i = 0; i < COUNT; i++)
+        PyBuffer_Release(b + i);
+    if (status < 0)
+        return NULL;
+    Py_RETURN_NONE;
+}
+
 /* What is done to rows of numbers, two and two: how many numbers a row of each has, and how many axes a row of results
    adds; `planes` are of results, one after the other. */
 typedef struct {
@@ -564,6 +593,7 @@ static PyMethodDef methods[] = {
     {"solve_narrow", solve_narrow, METH_VARARGS, "As solve, with what every processor has: the same to the bit."},
     {"forward", forward_frames, METH_VARARGS, "Write the world transforms of all joints at all frames."},
     {"smooth", smooth, METH_VARARGS, "Write rotations plus their low-passed displacement."},
+    {"low_pass", low_pass_rows, METH_VARARGS, "Write rows smoothed over frames."},
     {"is_set", is_set, METH_VARARGS, "Return whether a variable of the environment has a value."},
     {"multiply", multiply, METH_VARARGS,
         "Write the products of quaternions; False where they lie otherwise in memory."},

@@ -66,6 +66,18 @@ static void low_pass(double *padded, int64_t frames, int64_t width, int64_t radi
             out[i] += taps[k] * (rows[i - k * width] + rows[i + k * width]);
 }
 
+/* As low_pass, of rows that nothing is laid around. rows, out: shape (frames, width). Returns -1 where memory ran out. */
+int low_passed_rows(const double *rows, int64_t frames, int64_t width, int64_t radius, const double *taps, double *out)
+{
+    double *padded = malloc(sizeof *padded * (size_t)((frames + 2 * radius) * width + 1));
+    if (padded == NULL)
+        return -1;
+    memcpy(padded + radius * width, rows, sizeof *rows * (size_t)(frames * width));
+    low_pass(padded, frames, width, radius, taps, out);
+    free(padded);
+    return 0;
+}
+
 /* The rotation vector as a quaternion; any length. */
 static void q_exp_any(const double *v, double *out)
 {

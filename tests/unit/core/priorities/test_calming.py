@@ -19,7 +19,7 @@ from motionedit.core.priorities.settings import LayeredSettings, Passes
 from motionedit.core.priorities.smoothing import PassedBefore
 from motionedit.core.priorities.targets import lefts_of
 from motionedit.core.priorities.trajectories import ControlPoint
-from motionedit.core.priorities.visible import Seen, seen_of
+from motionedit.core.priorities.visible import Seen, seen_of, steps_at
 
 FRAMES = 90
 MOTION = swaying(FRAMES)
@@ -55,6 +55,12 @@ def test_a_viewer_sees_a_joint_that_steps_and_a_body_that_jerks_where_they_do():
     assert list(np.flatnonzero(seen.much)) == list(np.flatnonzero(seen.steps + seen.jerks))
 
 
+def test_what_a_solution_knows_of_its_steps_is_what_is_seen_of_it():
+    run = prepared()
+    state = solve_in_passes(run, Passes()).state
+    assert state.steps.tolist() == steps_at(run, state.motion).tolist()
+
+
 def test_a_body_that_jerks_without_a_step_is_seen():
     seen = seen_of(prepared(), turned(4.0, slice(40, 60, 2), "Hips"))
     assert not seen.steps.any()
@@ -69,8 +75,8 @@ def test_a_clip_of_few_frames_jerks_nowhere():
 
 def looking_so(monkeypatch, *found):
     """Let each look at a solution find what is seen at all frames, one after the other."""
-    looks = iter(found)
-    monkeypatch.setattr(calming, "seen_of", lambda *_: Seen(np.full(FRAMES, float(next(looks))), np.zeros(FRAMES)))
+    seen = (Seen(np.full(FRAMES, float(each)), np.zeros(FRAMES)) for each in found)
+    monkeypatch.setattr(calming, "seen_of", lambda *_, **__: next(seen))
 
 
 def of_two_layers(monkeypatch, *found, shift=FAR):

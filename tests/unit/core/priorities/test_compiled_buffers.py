@@ -24,6 +24,10 @@ def test_buffers_of_a_wrong_size_are_an_error_and_no_crash():
         compiled().forward(np.array([-1]), empty, empty, empty, empty, empty, empty, 1)
     with pytest.raises(ValueError, match="rotations after"):
         compiled().smooth(np.zeros(4), empty, np.zeros(3), np.ones(1), np.zeros(4), 1, 0, 0.0)
+    with pytest.raises(ValueError, match="smooth rows has 0 bytes"):
+        compiled().low_pass(np.zeros(4), np.ones(1), empty, 4)
+    with pytest.raises(ValueError, match="too few frames"):
+        compiled().low_pass(np.zeros(2), np.ones(3), np.zeros(2), 2)
     with pytest.raises(ValueError, match="axes has 0 bytes"):
         compiled().smooth(np.zeros(4), np.zeros(4), empty, np.ones(1), np.zeros(4), 1, 0, 0.0)
 
