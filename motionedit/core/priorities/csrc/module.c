@@ -7,6 +7,7 @@
 #define Py_LIMITED_API 0x030B0000
 #include <Python.h>
 
+#include "../../body/csrc/module.h"
 #include "../../bvh/csrc/text.h"
 #include "arrays.h"
 #include "layered.h"
@@ -637,7 +638,7 @@ static PyObject *record_of(const Field *fields, size_t bytes)
     return record;
 }
 
-/* Add to the module `records`, how its structures lie, by their buffers' names, and `row_kinds`, the rows that it knows. */
+/* Add to the module what measures bodies, `records`, how its structures lie, by their buffers' names, and `row_kinds`, the rows that it knows. */
 static int add_tables(PyObject *module)
 {
     PyObject *records = PyDict_New(), *kinds = PyList_New(0);
@@ -652,7 +653,8 @@ static int add_tables(PyObject *module)
         fits = name != NULL && PyList_Append(kinds, name) == 0;
         Py_XDECREF(name);
     }
-    fits = fits && PyModule_AddObjectRef(module, "records", records) == 0 &&
+    fits = fits && PyModule_AddFunctions(module, body_methods) == 0 &&
+           PyModule_AddObjectRef(module, "records", records) == 0 &&
            PyModule_AddObjectRef(module, "row_kinds", kinds) == 0;
     Py_XDECREF(records);
     Py_XDECREF(kinds);
