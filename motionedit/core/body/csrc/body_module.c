@@ -3,6 +3,7 @@
 
 #include "module.h"
 
+#include "../../feet/csrc/stance.h"
 #include "body.h"
 
 #include <stdlib.h>
@@ -79,7 +80,52 @@ static PyObject *stands(PyObject *self, PyObject *arguments)
     return list;
 }
 
+static PyObject *stance(PyObject *self, PyObject *arguments)
+{
+    enum { ANKLE, TOE_PLACE, TURN, TOE, PLANTS, HEEL_DOWN, TOE_DOWN, HEEL_OUT, TOE_OUT, TURN_OUT, WHOLE, COUNT };
+    static const struct {
+        const char *name;
+        size_t bytes;
+        int64_t width;
+    } items[COUNT] = {{"ankle", 8, 3}, {"toe place", 8, 3}, {"turn", 8, 4}, {"toe", 8, 3}, {"plants", 8, 3},
+        {"heel down", 1, 1}, {"toe down", 1, 1}, {"heel places", 8, 3}, {"toe places", 8, 3}, {"turns", 8, 4},
+        {"stands", 8, 1}};
+    Held held = {.count = 0};
+    PyObject *given[COUNT];
+    void *at[COUNT];
+    long long frames, plants;
+    int status = -2;
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "OOOOOOOOOOOLL", given, given + 1, given + 2, given + 3, given + 4, given + 5,
+            given + 6, given + 7, given + 8, given + 9, given + 10, &frames, &plants))
+        return NULL;
+    int fits = 1;
+    for (int i = 0; fits && i < COUNT; i++) {
+        const int64_t count = items[i].width * (i == PLANTS ? plants : frames);
+        at[i] = items_of(&held, given[i], count, items[i].bytes, i > PLANTS, items[i].name);
+        fits = at[i] != NULL;
+    }
+    for (long long k = 0; fits && k < plants; k++) {
+        const PlantSpan *plant = (const PlantSpan *)at[PLANTS] + k;
+        fits = 0 <= plant->start && plant->start <= plant->stop && plant->stop < frames;
+        if (!fits)
+            PyErr_Format(PyExc_ValueError, "plant %lld is at no frames", k);
+    }
+    if (fits) {
+        const FootTrack track = {frames, at[ANKLE], at[TOE_PLACE], at[TURN], at[TOE]};
+        const StanceFound found = {at[HEEL_DOWN], at[TOE_DOWN], at[HEEL_OUT], at[TOE_OUT], at[TURN_OUT], at[WHOLE]};
+        status = find_stance(&track, at[PLANTS], plants, &found);
+        if (status < 0)
+            PyErr_NoMemory();
+    }
+    let_go(&held);
+    if (status < 0)
+        return NULL;
+    Py_RETURN_NONE;
+}
+
 PyMethodDef body_methods[] = {
     {"stands", stands, METH_VARARGS, "Return the stretches in which points of feet stand."},
+    {"stance", stance, METH_VARARGS, "Write where a foot stands, from the plants of its heel and its toe."},
     {NULL, NULL, 0, NULL},
 };

@@ -28,23 +28,12 @@ void between_all(
     }
 }
 
-/* v turned by (w, u): v + w t + u x t with t = 2 (u x v). */
-static void turn_one(double w, const double *u, const double *v, double *out)
-{
-    double t[3], s[3];
-    cross(u, v, t);
-    t[0] *= 2.0, t[1] *= 2.0, t[2] *= 2.0;
-    cross(u, t, s);
-    for (int axis = 0; axis < 3; axis++)
-        out[axis] = v[axis] + w * t[axis] + s[axis];
-}
-
 void rotate_all(
     const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out, int64_t apart)
 {
     (void)apart;
     for (int64_t i = 0; i < count; i++, a += a_step, b += b_step, out += 3)
-        turn_one(a[0], a + 1, b, out);
+        q_turn(a, b, out);
 }
 
 void unrotate_all(
@@ -52,8 +41,9 @@ void unrotate_all(
 {
     (void)apart;
     for (int64_t i = 0; i < count; i++, a += a_step, b += b_step, out += 3) {
-        const double u[3] = {-a[1], -a[2], -a[3]};
-        turn_one(a[0], u, b, out);
+        double inverse[4];
+        q_conjugate(a, inverse);
+        q_turn(inverse, b, out);
     }
 }
 

@@ -1,0 +1,177 @@
+/* Plants of a heel and a toe as one foot: which hang together, and where each is. */
+
+#include "stance.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define ONE_LANE
+#include "../../priorities/csrc/rotations.h"
+
+/* A frame at which a heel and a toe are down. */
+typedef struct {
+    int64_t heel, toe, frame;
+} Both;
+
+static int in_order(const void *a, const void *b)
+{
+    const Both *one = a, *other = b;
+    if (one->heel != other->heel)
+        return one->heel < other->heel ? -1 : 1;
+    if (one->toe != other->toe)
+        return one->toe < other->toe ? -1 : 1;
+    return (one->frame > other->frame) - (one->frame < other->frame);
+}
+
+/* To which stand each plant belongs, and where it is within it. */
+typedef struct {
+    int64_t count, *whole;
+    double *offsets; /* shape (count, 3) */
+} Stands;
+
+/* Hang a toe on a heel, so that it is `way` from it, with all that hangs on it. */
+static void chain(Stands *stands, int64_t heel, int64_t toe, const double *way)
+{
+    const int64_t from = stands->whole[toe], to = stands->whole[heel];
+    double shift[3];
+    if (from == to)
+        return;
+    for (int a = 0; a < 3; a++)
+        shift[a] = stands->offsets[3 * heel + a] + way[a] - stands->offsets[3 * toe + a];
+    for (int64_t k = 0; k < stands->count; k++) {
+        if (stands->whole[k] != from)
+            continue;
+        stands->whole[k] = to;
+        for (int a = 0; a < 3; a++)
+            stands->offsets[3 * k + a] += shift[a];
+    }
+}
+
+/* Give frames in which heel and toe are down together one turn, and hang the toe on the heel by it. */
+static void link_both(const FootTrack *track, const Both *both, int64_t count, const StanceFound *found, Stands *stands)
+{
+    double sum[4] = {0.0}, arm[3] = {0.0}, way[3];
+    const double *first = track->turn + 4 * both[0].frame;
+    for (int64_t i = 0; i < count; i++) {
+        const double *q = track->turn + 4 * both[i].frame, *toe = track->toe + 3 * both[i].frame;
+        const double sign = q[0] * first[0] + q[1] * first[1] + q[2] * first[2] + q[3] * first[3] < 0.0 ? -1.0 : 1.0;
+        for (int a = 0; a < 4; a++)
+            sum[a] += sign * q[a];
+        for (int a = 0; a < 3; a++)
+            arm[a] += toe[a];
+    }
+    double square = 0.0;
+    for (int a = 0; a < 4; a++) /* rounded once, as in the products of vectors that numpy has made */
+        square = fma(sum[a], sum[a], square);
+    for (int a = 0; a < 4; a++)
+        sum[a] /= sqrt(square);
+    for (int a = 0; a < 3; a++)
+        arm[a] /= (double)count;
+    for (int64_t i = 0; i < count; i++)
+        memcpy(found->turn + 4 * both[i].frame, sum, sizeof sum);
+    q_turn(sum, arm, way);
+    chain(stands, both[0].heel, both[0].toe, way);
+}
+
+/* Hang together heels and toes of which one comes down as the other goes up. */
+static void link_meetings(const FootTrack *track, const PlantSpan *plants, Stands *stands)
+{
+    for (int64_t h = 0; h < stands->count; h++)
+        for (int64_t t = 0; t < stands->count && !plants[h].is_toe; t++) {
+            const PlantSpan *heel = plants + h, *toe = plants + t;
+            if (!toe->is_toe || (toe->start != heel->stop + 1 && toe->stop != heel->start - 1))
+                continue;
+            const int64_t at = heel->start > toe->start ? heel->start : toe->start;
+            double way[3];
+            q_turn(track->turn + 4 * at, track->toe + 3 * at, way);
+            chain(stands, h, t, way);
+        }
+}
+
+/* Where each plant is: the mean of its stand's ways from the motion's own places is nothing. */
+static void place_plants(const FootTrack *track, const PlantSpan *plants, const Stands *stands, double *places)
+{
+    for (int64_t first = 0; first < stands->count; first++) {
+        double mean[3] = {0.0};
+        int64_t frames = 0, before = 0;
+        while (stands->whole[before] != stands->whole[first])
+            before++;
+        if (before < first) /* placed with the first of its stand */
+            continue;
+        for (int64_t k = first; k < stands->count; k++) {
+            const double *tracks = plants[k].is_toe ? track->toe_place : track->ankle;
+            if (stands->whole[k] != stands->whole[first])
+                continue;
+            for (int64_t f = plants[k].start; f <= plants[k].stop; f++, frames++)
+                for (int a = 0; a < 3; a++)
+                    mean[a] += tracks[3 * f + a] - stands->offsets[3 * k + a];
+        }
+        for (int a = 0; a < 3; a++)
+            mean[a] /= (double)frames;
+        for (int64_t k = first; k < stands->count; k++)
+            for (int a = 0; a < 3 && stands->whole[k] == stands->whole[first]; a++)
+                places[3 * k + a] = mean[a] + stands->offsets[3 * k + a];
+    }
+}
+
+/* The frames at which heel and toe are down, by heels and toes; `down` (2, F) are the plants there, -1 where none is. */
+static int64_t find_both(const int64_t *down, int64_t frames, Both *both)
+{
+    int64_t count = 0;
+    for (int64_t f = 0; f < frames; f++)
+        if (down[f] >= 0 && down[frames + f] >= 0)
+            both[count++] = (Both){down[f], down[frames + f], f};
+    qsort(both, (size_t)count, sizeof *both, in_order);
+    return count;
+}
+
+/* Write where each part is at each frame, from the plants' places. */
+static void write_places(
+    const int64_t *down, const Stands *stands, const double *places, int64_t frames, const StanceFound *found)
+{
+    uint8_t *flags[2] = {found->heel, found->toe};
+    double *out[2] = {found->heel_place, found->toe_place};
+    for (int64_t f = 0; f < frames; f++) {
+        const int64_t there = down[f] >= 0 ? down[f] : down[frames + f];
+        found->whole[f] = there < 0 ? -1 : stands->whole[there];
+        for (int part = 0; part < 2; part++) {
+            const int64_t k = down[part * frames + f];
+            flags[part][f] = k >= 0;
+            for (int a = 0; a < 3; a++)
+                out[part][3 * f + a] = k < 0 ? 0.0 : places[3 * k + a];
+        }
+    }
+}
+
+int find_stance(const FootTrack *track, const PlantSpan *plants, int64_t count, const StanceFound *found)
+{
+    const int64_t frames = track->frames;
+    const size_t numbers = 6 * (size_t)count + 1, integers = 2 * (size_t)frames + (size_t)count + 1;
+    double *places = calloc(numbers, sizeof *places);
+    int64_t *down = malloc(sizeof *down * integers);
+    Both *both = malloc(sizeof *both * ((size_t)frames + 1));
+    const int fits = places != NULL && down != NULL && both != NULL;
+    if (fits) {
+        Stands stands = {count, down + 2 * frames, places + 3 * count};
+        for (int64_t f = 0; f < 2 * frames; f++)
+            down[f] = -1;
+        for (int64_t k = 0; k < count; k++) {
+            stands.whole[k] = k;
+            for (int64_t f = plants[k].start; f <= plants[k].stop; f++)
+                down[(plants[k].is_toe ? frames : 0) + f] = k;
+        }
+        memcpy(found->turn, track->turn, 4 * sizeof *found->turn * (size_t)frames);
+        const int64_t pairs = find_both(down, frames, both);
+        for (int64_t i = 0, next; i < pairs; i = next) {
+            for (next = i + 1; next < pairs && both[next].heel == both[i].heel && both[next].toe == both[i].toe;)
+                next++;
+            link_both(track, both + i, next - i, found, &stands);
+        }
+        link_meetings(track, plants, &stands);
+        place_plants(track, plants, &stands, places);
+        write_places(down, &stands, places, frames, found);
+    }
+    free(places), free(down), free(both);
+    return fits ? 0 : -1;
+}
