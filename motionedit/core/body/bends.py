@@ -8,6 +8,7 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
+from motionedit.core.body.in_one_loop import read_off
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -84,12 +85,12 @@ def _bends(
             lower = poses.positions[:, ends[i]] - poses.positions[:, joints[i]]
             sides[:, i], bent[:, i] = rot.cross(lower, towards), True
     carried = poses.rotations[:, parents]
-    own = rot.rotate(rot.conjugate(carried), sides)
+    own = rot.unrotate(carried, sides)
     own[~bent] = 0.0
     axes = own.sum(axis=0)
     uppers = mean_directions(poses, tops, joints, seen_from=parents, first=first)
     lowers = mean_directions(poses, joints, ends, seen_from=joints, first=first)
-    local = rot.multiply(rot.conjugate(carried), poses.rotations[:, joints])
+    local = rot.between(carried, poses.rotations[:, joints])
     directions = rot.rotate(local, lowers)
     found = []
     for i, joint in enumerate(joints.tolist()):
@@ -125,8 +126,11 @@ def mean_directions(
     poses: WorldPoses, starts: IntArray, stops: IntArray, *, seen_from: IntArray, first: int
 ) -> FloatArray:
     """Return `mean_direction` of n pairs of joints, shape (n, 3)."""
-    ways = poses.positions[first:, stops] - poses.positions[first:, starts]
-    own = rot.rotate(rot.conjugate(poses.rotations[first:, seen_from]), ways).sum(axis=0)
+    triples = np.stack((starts, stops, seen_from), axis=1)
+    own = read_off("ways", poses.positions, poses.rotations, triples, shape=(len(triples), 3), first=first)
+    if own is None:
+        ways = poses.positions[first:, stops] - poses.positions[first:, starts]
+        own = rot.unrotate(poses.rotations[first:, seen_from], ways).sum(axis=0)
     directions: FloatArray = own / np.maximum(np.linalg.norm(own, axis=1, keepdims=True), np.finfo(float).tiny)
     return directions
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.arrays import median
+from motionedit.core.arrays import frozen, median
 from motionedit.core.compiled import compiled
 from motionedit.core.kinematics import effector_positions
 from motionedit.core.units import STANDARD_LEG
@@ -113,11 +114,33 @@ def frames_of(plants: Sequence[Plant]) -> PlantFrames | None:
     """Return the frames of plants; None of none."""
     if not plants:
         return None
+    return _frames_again(_These(plants)) if isinstance(plants, tuple) else _frames_of(plants)
+
+
+class _These:
+    """Plants that are asked for again and again: the same ones, which are not compared one by one."""
+
+    def __init__(self, plants: tuple[Plant, ...]) -> None:
+        self.plants = plants
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _These) and other.plants is self.plants
+
+    def __hash__(self) -> int:
+        return id(self.plants)
+
+
+@lru_cache(maxsize=2)
+def _frames_again(these: _These) -> PlantFrames:
+    return _frames_of(these.plants)
+
+
+def _frames_of(plants: Sequence[Plant]) -> PlantFrames:
     starts, stops, points = np.array([(plant.start, plant.stop, plant.point) for plant in plants], dtype=np.intp).T
     counts = stops - starts + 1
     places = np.cumsum(counts) - counts
     frames = np.arange(int(counts.sum())) + np.repeat(starts - places, counts)
-    return PlantFrames(frames, np.repeat(points, counts), places, counts)
+    return PlantFrames(frozen(frames), frozen(np.repeat(points, counts)), frozen(places), frozen(counts))
 
 
 @dataclass(frozen=True)

@@ -23,4 +23,29 @@ typedef struct {
 int64_t find_stands(const double *tracks, int64_t frames, int64_t points, const int64_t *feet, const double *up,
     double metre, const StandRules *rules, Stand **found);
 
+/* World transforms of a motion: positions (F, J, 3) and rotations (F, J, 4). */
+typedef struct {
+    int64_t frames, joints;
+    const double *positions, *rotations;
+} Poses;
+
+/* The sums over frames from `first` on of the ways from joints to others, seen from third ones: n triples, (n, 3). */
+void sum_ways(const Poses *poses, int64_t first, const int64_t *triples, int64_t count, double *out);
+
+/* Sum q q^T over frames from `first` on, of n joints' rotations: shape (n, 4, 4). */
+void sum_products(const Poses *poses, int64_t first, const int64_t *joints, int64_t count, double *out);
+
+/* How far n joints swing bones `along` (n, 3) from where centers (n, 4) have them, and twist about them, at most, from
+   frame `first` on: (n, 2), rad. */
+void widest_turns(const Poses *poses, int64_t first, const int64_t *joints, const double *centers, const double *along,
+    int64_t count, double *out);
+
+/* Where points (n, 3) in the frames of n joints are in the world at each frame: shape (F, n, 3). */
+void carry(const Poses *poses, const int64_t *joints, const double *points, int64_t count, double *out);
+
+/* Of positions (F, J, 3) the square of each frame's third difference, summed over joints, (F - 3,). Returns the largest
+   of any joint, and at which frame and joint. */
+double squared_jerks(
+    const double *positions, int64_t frames, int64_t joints, double *out, int64_t *frame, int64_t *joint);
+
 #endif

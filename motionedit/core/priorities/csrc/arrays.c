@@ -71,6 +71,14 @@ void length_all(
         out[i] = sqrt(dot(b + i * b_step, b + i * b_step));
 }
 
+void half_cosine_all(
+    const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out, int64_t apart)
+{
+    (void)apart;
+    for (int64_t i = 0; i < count; i++, a += a_step, b += b_step)
+        out[i] = fabs(a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]);
+}
+
 void turn_all(
     const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out, int64_t apart)
 {

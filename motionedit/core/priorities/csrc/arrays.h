@@ -11,15 +11,15 @@
 typedef void RowWork(
     const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out, int64_t apart);
 
-RowWork multiply_all; /* out = a b, of quaternions */
-RowWork between_all;  /* out = a^-1 b, of unit quaternions */
-RowWork rotate_all;   /* out = b turned by a */
-RowWork unrotate_all; /* out = b turned by a^-1 */
-RowWork cross_all;    /* out = a x b */
-RowWork dot_all;      /* out = a . b, one number each */
-RowWork length_all;   /* out = |b|, one number each */
-RowWork
-    turn_all; /* of a^-1 b the length of the vector part, and apart from it |w|: sine and cosine of half its angle */
+RowWork multiply_all;    /* out = a b, of quaternions */
+RowWork between_all;     /* out = a^-1 b, of unit quaternions */
+RowWork rotate_all;      /* out = b turned by a */
+RowWork unrotate_all;    /* out = b turned by a^-1 */
+RowWork cross_all;       /* out = a x b */
+RowWork dot_all;         /* out = a . b, one number each */
+RowWork length_all;      /* out = |b|, one number each */
+RowWork half_cosine_all; /* out = |a . b|, of quaternions, one number each */
+RowWork turn_all;        /* of a^-1 b sine and cosine of half the angle, apart from each other */
 
 /* Make a track of Euler angles, rad, `step` numbers from axis to axis, continuous: each frame by whole turns, and with three axes by
    the other solution of its rotation, nearest the frame before, the first one nearest `seed`, shape (axes,). */

@@ -443,6 +443,12 @@ static PyObject *length(PyObject *self, PyObject *arguments)
     return on_rows(&(const OnRows){length_all, 3, 3, 1, 1}, arguments);
 }
 
+static PyObject *half_cosine(PyObject *self, PyObject *arguments)
+{
+    (void)self;
+    return on_rows(&(const OnRows){half_cosine_all, 4, 4, 1, 1}, arguments);
+}
+
 static PyObject *turn(PyObject *self, PyObject *arguments)
 {
     (void)self;
@@ -604,6 +610,7 @@ static PyMethodDef methods[] = {
     {"cross", cross_rows, METH_VARARGS, "Write the cross products of vectors; False as `multiply`."},
     {"dot", dot_rows, METH_VARARGS, "Write the dot products of vectors; False as `multiply`."},
     {"length", length, METH_VARARGS, "Write the lengths of vectors, the second given; False as `multiply`."},
+    {"half_cosine", half_cosine, METH_VARARGS, "Write |a . b| of quaternions; False as `multiply`."},
     {"turn", turn, METH_VARARGS, "Write sines and cosines of half the turns between rotations; False as `multiply`."},
     {"nearest_angles", make_continuous, METH_VARARGS, "Make runs of Euler angles continuous, in place."},
     {"rows_from_text", rows_from_text, METH_VARARGS,

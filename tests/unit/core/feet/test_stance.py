@@ -10,7 +10,7 @@ from motionedit.core.feet.stance import FootPath, stance_of
 
 def foot(rng, frames):
     """Return a foot that goes anywhere, turned a little more at every frame, some of the turns by their other sign."""
-    turns = np.cumsum(rng.normal(scale=0.02, size=(frames, 4)), axis=0) + [1.0, 0.0, 0.0, 0.0]
+    turns = np.cumsum(rng.normal(scale=0.02, size=(frames, 4)), axis=0) + np.eye(4)[0]
     turns *= rng.choice([-1.0, 1.0], size=(frames, 1)) / np.linalg.norm(turns, axis=1, keepdims=True)
     return FootPath(*(rng.normal(size=(frames, 3)) if width == 3 else turns for width in (3, 4, 3)))
 
