@@ -10,7 +10,7 @@ from motionedit.core import rotations as rot
 from motionedit.core.priorities.kinds.constraint import ConstraintErrors, Symbol, Targets
 from motionedit.core.priorities.kinds.effector import EffectorConstraint
 from motionedit.core.priorities.problem import CompiledTask
-from motionedit.core.priorities.trajectories import rotation_targets
+from motionedit.core.priorities.rotation_trajectories import rotation_targets
 from motionedit.core.units import METRES_PER_RADIAN
 from motionedit.dataclass import dataclass
 

@@ -19,9 +19,9 @@ from trajectories_through_points import (
     whole,
 )
 
+from motionedit.core.priorities.rotation_trajectories import rotation_targets
 from motionedit.core.priorities.trajectories import (
     active_interval,
-    rotation_targets,
 )
 
 

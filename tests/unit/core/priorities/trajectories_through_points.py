@@ -3,10 +3,10 @@
 import numpy as np
 
 from motionedit.core import rotations as rot
+from motionedit.core.priorities.rotation_trajectories import rotation_targets
 from motionedit.core.priorities.trajectories import (
     ControlPoint,
     position_targets,
-    rotation_targets,
 )
 
 # Frames so fine that a difference between two of them is a derivative: 10 s at 1000 frames a second.
