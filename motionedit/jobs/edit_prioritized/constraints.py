@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -93,7 +92,7 @@ def clip_constraints(
         met = spec.met_within
         found += [
             ClipConstraint(
-                constraint=replace(constraint, yields=not spec.counts_for_strict),
+                constraint=constraint,
                 tolerance=DEFAULT_TOLERANCE / scale if met.position is None else met.position,
                 angle_tolerance=DEFAULT_ANGLE_TOLERANCE if met.angle is None else met.angle,
                 may_give_way=met.off,
@@ -137,6 +136,7 @@ class _Resolver:
             ease_in=spec.ease_in.in_frames(frame_time),
             ease_out=spec.ease_out.in_frames(frame_time),
             since=self.facts.first,
+            yields=not spec.counts_for_strict,
             follow=spec.follow,
             **given,
         )

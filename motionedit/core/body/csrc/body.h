@@ -23,6 +23,26 @@ typedef struct {
 int64_t find_stands(const double *tracks, int64_t frames, int64_t points, const int64_t *feet, const double *up,
     double metre, const StandRules *rules, Stand **found);
 
+/* The median of values, of which there are some; `room` is for as many. */
+double median(const double *values, int64_t count, double *room);
+
+/* How P points of feet go along tracks (F, P, 3), at `scale` metres a unit, from frame `first` on: `toes` (P,) says
+   which count as toes. They stand at `stood` frames of n plants, one after the other, `counts` (n,) of each. */
+typedef struct {
+    int64_t frames, points, first, plants, stood;
+    const double *tracks, *up;
+    const uint8_t *toes;
+    const int64_t *at, *point, *counts;
+    double scale, frame_time, near_floor, skates, slides, under;
+} FootTracks;
+
+/* As measures.FootMeasures. */
+typedef struct {
+    double skate_mean, skate_ratio, sliding_share, penetration_share, penetration_max, drift_max, floating_max;
+} FootFigures;
+
+void measure_feet(const FootTracks *feet, FootFigures *figures);
+
 /* World transforms of a motion: positions (F, J, 3) and rotations (F, J, 4). */
 typedef struct {
     int64_t frames, joints;

@@ -80,6 +80,87 @@ static PyObject *stands(PyObject *self, PyObject *arguments)
     return list;
 }
 
+/* Whether plants are at frames, and of points, that there are. */
+static int are_plants(const FootTracks *feet)
+{
+    int64_t sum = 0;
+    for (int64_t k = 0; k < feet->plants && sum >= 0; k++)
+        sum = feet->counts[k] < 1 || feet->counts[k] > feet->stood - sum || feet->point[k] < 0 ||
+                      feet->point[k] >= feet->points
+                  ? -1
+                  : sum + feet->counts[k];
+    for (int64_t i = 0; i < feet->stood && sum >= 0; i++)
+        if (feet->at[i] < 0 || feet->at[i] >= feet->frames)
+            sum = -1;
+    if (sum != feet->stood)
+        PyErr_SetString(PyExc_ValueError, "plants are at no frames, or of no points");
+    return sum == feet->stood;
+}
+
+static PyObject *foot_figures(PyObject *self, PyObject *arguments)
+{
+    Held held = {.count = 0};
+    PyObject *given[6], *found = NULL;
+    FootTracks feet = {0};
+    FootFigures figures;
+    long long frames, points, first, plants, stood;
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "OOOOOOLLLLL(dddddd)", given, given + 1, given + 2, given + 3, given + 4,
+            given + 5, &frames, &points, &first, &plants, &stood, &feet.scale, &feet.frame_time, &feet.near_floor,
+            &feet.skates, &feet.slides, &feet.under))
+        return NULL;
+    feet.frames = frames, feet.points = points, feet.first = first, feet.plants = plants, feet.stood = stood;
+    if (frames < 0 || points < 0 || first < 0) {
+        PyErr_SetString(PyExc_ValueError, "no such frames or points");
+        return NULL;
+    }
+    if ((feet.tracks = items_of(&held, given[0], 3 * frames * points, sizeof(double), 0, "tracks")) != NULL &&
+        (feet.up = items_of(&held, given[1], 3, sizeof(double), 0, "up")) != NULL &&
+        (feet.toes = items_of(&held, given[2], points, 1, 0, "toes")) != NULL &&
+        (feet.at = items_of(&held, given[3], stood, sizeof(int64_t), 0, "frames")) != NULL &&
+        (feet.point = items_of(&held, given[4], plants, sizeof(int64_t), 0, "points")) != NULL &&
+        (feet.counts = items_of(&held, given[5], plants, sizeof(int64_t), 0, "counts")) != NULL && are_plants(&feet)) {
+        measure_feet(&feet, &figures);
+        found = Py_BuildValue("ddddddd", figures.skate_mean, figures.skate_ratio, figures.sliding_share,
+            figures.penetration_share, figures.penetration_max, figures.drift_max, figures.floating_max);
+    }
+    let_go(&held);
+    return found;
+}
+
+static PyObject *settled(PyObject *self, PyObject *arguments)
+{
+    Held held = {.count = 0};
+    PyObject *given[4];
+    long long frames, plants, half;
+    double frame_time, faster, above;
+    int status = -2;
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "OOOOLLLddd", given, given + 1, given + 2, given + 3, &frames, &plants, &half,
+            &frame_time, &faster, &above))
+        return NULL;
+    const double *places = items_of(&held, given[0], 3 * frames, sizeof *places, 0, "places");
+    const double *up = places == NULL ? NULL : items_of(&held, given[1], 3, sizeof *up, 0, "up");
+    const int64_t *counts = up == NULL ? NULL : items_of(&held, given[2], plants, sizeof *counts, 0, "counts");
+    int64_t *spans = counts == NULL ? NULL : items_of(&held, given[3], 2 * plants, sizeof *spans, 1, "spans");
+    if (spans != NULL) {
+        int64_t sum = 0;
+        for (long long k = 0; k < plants && sum >= 0; k++)
+            sum = counts[k] < 1 || counts[k] > frames - sum ? -1 : sum + counts[k];
+        if (sum != frames || half < 1)
+            PyErr_SetString(PyExc_ValueError, "counts are not those of the places");
+        else {
+            status = find_settled(places, up, counts, plants, half, frame_time, faster, above, spans);
+            if (status < 0)
+                PyErr_NoMemory();
+        }
+    }
+    let_go(&held);
+    if (status < 0)
+        return NULL;
+    Py_RETURN_NONE;
+}
+
 static PyObject *stance(PyObject *self, PyObject *arguments)
 {
     enum { ANKLE, TOE_PLACE, TURN, TOE, PLANTS, HEEL_DOWN, TOE_DOWN, HEEL_OUT, TOE_OUT, TURN_OUT, WHOLE, COUNT };
@@ -291,6 +372,8 @@ PyMethodDef body_methods[] = {
     {"carried", carried, METH_VARARGS, "Write where points in joints' frames are at each frame."},
     {"jerks", jerks, METH_VARARGS, "Write squared third differences; return the largest, its frame and joint."},
     {"stands", stands, METH_VARARGS, "Return the stretches in which points of feet stand."},
+    {"foot_figures", foot_figures, METH_VARARGS, "Return how well feet stand, in seven figures."},
+    {"settled", settled, METH_VARARGS, "Write which frames of plants are the first and the last that have settled."},
     {"stance", stance, METH_VARARGS, "Write where a foot stands, from the plants of its heel and its toe."},
     {NULL, NULL, 0, NULL},
 };

@@ -80,8 +80,7 @@ static int compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The median of values, of which there are some; `room` is for as many. */
-static double median(const double *values, int64_t count, double *room)
+double median(const double *values, int64_t count, double *room)
 {
     memcpy(room, values, sizeof *room * (size_t)count);
     qsort(room, (size_t)count, sizeof *room, compare);

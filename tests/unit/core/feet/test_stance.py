@@ -1,11 +1,18 @@
 """Where a foot stands, found at once: the compiled part and numpy agree."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from human import skeleton_of
 
+from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.contacts import Plant
 from motionedit.core.compiled import compiled, solver_name
+from motionedit.core.feet.settled import settled
 from motionedit.core.feet.stance import FootPath, stance_of
+
+BODY = find_anatomy(skeleton_of())
 
 
 def foot(rng, frames):
@@ -38,6 +45,27 @@ def test_a_compiled_stance_is_that_of_numpy(seed, monkeypatch):
         np.testing.assert_array_equal(getattr(found, name), getattr(expected, name), strict=True)
     for name in ("heel_place", "toe_place", "turn"):
         np.testing.assert_allclose(getattr(found, name), getattr(expected, name), rtol=0.0, atol=1e-14)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("seed", range(20))
+def test_compiled_plants_settle_as_those_of_numpy(seed, monkeypatch):
+    rng = np.random.default_rng(seed)
+    asked = [replace(plant, point=int(rng.integers(4))) for plant in plants(rng, 40)]
+    tracks = np.cumsum(rng.normal(scale=0.004, size=(40, 4, 3)), axis=0)
+    how = {"up": np.array([0.0, 1.0, 0.0]), "frame_time": 1.0 / float(rng.choice([30, 60, 240]))}
+    found = settled(asked, tracks, BODY, **how)
+    monkeypatch.setenv("MOTIONEDIT_SOLVER", "numpy")
+    assert found == settled(asked, tracks, BODY, **how)
+
+
+@pytest.mark.skipif(solver_name() == "numpy", reason="nothing compiled here")
+def test_counts_that_are_not_those_of_the_places_are_an_error_and_no_crash():
+    for counts in ([3, 3], [5, 0], [-1, 6]):
+        with pytest.raises(ValueError, match="counts are not those"):
+            compiled().settled(
+                np.zeros((5, 3)), np.zeros(3), np.array(counts), np.zeros((2, 2), int), 5, 2, 1, *[1.0] * 3
+            )
 
 
 @pytest.mark.skipif(solver_name() == "numpy", reason="nothing compiled here")
