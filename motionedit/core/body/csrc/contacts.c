@@ -111,19 +111,20 @@ static int any_below(const double *heights, int64_t start, int64_t stop, double 
     return 0;
 }
 
-/* Whether a stretch is the top of a jump or a foot held in the air: the point comes up to it, and goes down from it. */
-static int is_top(Run run, const Run *slow, int64_t slows, const double *heights, const double *lowest, int64_t frames,
-    const StandRules *rules, double *room)
+/* Whether a stretch is the top of a jump or a foot held in the air: the point comes up to it, and goes down from it.
+   `from` is the slow run in which the stretch before began: stretches come in their order. */
+static int is_top(Run run, int64_t *from, const Run *slow, int64_t slows, const double *heights, const double *lowest,
+    int64_t frames, const StandRules *rules, double *room)
 {
     double level = heights[run.first];
     for (int64_t f = run.first; f <= run.last; f++)
         level = heights[f] < level ? heights[f] : level;
-    int64_t from = 0, to = slows - 1;
-    while (slow[from].last < run.first)
-        from++;
-    while (slow[to].first > run.last)
-        to--;
-    const int64_t began = slow[from].first, ended = slow[to].last, while_ = rules->top_while;
+    while (slow[*from].last < run.first)
+        (*from)++;
+    int64_t to = *from;
+    while (to + 1 < slows && slow[to + 1].first <= run.last)
+        to++;
+    const int64_t began = slow[*from].first, ended = slow[to].last, while_ = rules->top_while;
     const int64_t start = began > while_ ? began - while_ : 0;
     const int64_t stop = ended + 1 + while_ < frames ? ended + 1 + while_ : frames;
     const int comes = began > start, goes = stop > ended + 1;
@@ -168,12 +169,12 @@ static int64_t stands_of(const Room *room, int64_t frames, const StandRules *rul
     rolling_minimum(room->low, frames, rules->low_while);
     for (int64_t f = 0; f < frames; f++)
         room->wide[f] = room->wide[f] && room->heights[f] < room->low[f] + rules->low;
-    int64_t count = slow_runs(room->wide, room->speed, rules->enters, frames, room->planted), kept = 0;
+    int64_t count = slow_runs(room->wide, room->speed, rules->enters, frames, room->planted), kept = 0, from = 0;
     count = close_gaps(room->planted, count, room->places, rules);
     for (int64_t k = 0; k < count; k++) {
         const Run run = room->planted[k];
         if (run.last - run.first + 1 >= rules->shortest &&
-            !is_top(run, room->slow, slows, room->heights, room->lowest, frames, rules, room->sorted))
+            !is_top(run, &from, room->slow, slows, room->heights, room->lowest, frames, rules, room->sorted))
             room->planted[kept++] = run;
     }
     return kept;

@@ -61,28 +61,29 @@ static int in_order(const void *a, const void *b)
     return (one->frame > other->frame) - (one->frame < other->frame);
 }
 
-/* To which stand each plant belongs, and where it is within it. */
+/* To which stand each plant belongs, where it is within it, and which of its stand is next, in a ring. */
 typedef struct {
-    int64_t count, *whole;
+    int64_t count, *whole, *next;
     double *offsets; /* shape (count, 3) */
 } Stands;
 
 /* Hang a toe on a heel, so that it is `way` from it, with all that hangs on it. */
 static void chain(Stands *stands, int64_t heel, int64_t toe, const double *way)
 {
-    const int64_t from = stands->whole[toe], to = stands->whole[heel];
     double shift[3];
-    if (from == to)
+    if (stands->whole[toe] == stands->whole[heel])
         return;
     for (int a = 0; a < 3; a++)
         shift[a] = stands->offsets[3 * heel + a] + way[a] - stands->offsets[3 * toe + a];
-    for (int64_t k = 0; k < stands->count; k++) {
-        if (stands->whole[k] != from)
-            continue;
-        stands->whole[k] = to;
+    int64_t k = toe;
+    do {
+        stands->whole[k] = stands->whole[heel];
         for (int a = 0; a < 3; a++)
             stands->offsets[3 * k + a] += shift[a];
-    }
+        k = stands->next[k];
+    } while (k != toe);
+    const int64_t after = stands->next[heel];
+    stands->next[heel] = stands->next[toe], stands->next[toe] = after;
 }
 
 /* Give frames in which heel and toe are down together one turn, and hang the toe on the heel by it. */
@@ -111,44 +112,77 @@ static void link_both(const FootTrack *track, const Both *both, int64_t count, c
     chain(stands, both[0].heel, both[0].toe, way);
 }
 
-/* Hang together heels and toes of which one comes down as the other goes up. */
-static void link_meetings(const FootTrack *track, const PlantSpan *plants, Stands *stands)
+/* Toes by the frame at which they come down, and by that at which they go up: the last of each frame, -1 where there is
+   none, and before each toe another of its frame. */
+typedef struct {
+    int64_t *at, *before;
+} ByFrame;
+
+static void sort_toes(const PlantSpan *plants, int64_t count, int64_t frames, int by_stop, const ByFrame *toes)
 {
-    for (int64_t h = 0; h < stands->count; h++)
-        for (int64_t t = 0; t < stands->count && !plants[h].is_toe; t++) {
-            const PlantSpan *heel = plants + h, *toe = plants + t;
-            if (!toe->is_toe || (toe->start != heel->stop + 1 && toe->stop != heel->start - 1))
-                continue;
+    for (int64_t f = 0; f < frames; f++)
+        toes->at[f] = -1;
+    for (int64_t k = 0; k < count; k++) {
+        const int64_t frame = by_stop ? plants[k].stop : plants[k].start;
+        if (plants[k].is_toe)
+            toes->before[k] = toes->at[frame], toes->at[frame] = k;
+    }
+}
+
+static int ascending(const void *a, const void *b)
+{
+    const int64_t one = *(const int64_t *)a, other = *(const int64_t *)b;
+    return (one > other) - (one < other);
+}
+
+/* Hang together heels and toes of which one comes down as the other goes up; `found` has room for all plants twice. */
+static void link_meetings(const FootTrack *track, const PlantSpan *plants, const ByFrame *by_start,
+    const ByFrame *by_stop, int64_t *found, Stands *stands)
+{
+    for (int64_t h = 0; h < stands->count; h++) {
+        const PlantSpan *heel = plants + h;
+        int64_t meeting = 0;
+        if (heel->is_toe)
+            continue;
+        for (int64_t t = heel->stop + 1 < track->frames ? by_start->at[heel->stop + 1] : -1; t >= 0;
+            t = by_start->before[t])
+            found[meeting++] = t;
+        for (int64_t t = heel->start > 0 ? by_stop->at[heel->start - 1] : -1; t >= 0; t = by_stop->before[t])
+            found[meeting++] = t;
+        qsort(found, (size_t)meeting, sizeof *found, ascending);
+        for (int64_t i = 0; i < meeting; i++) {
+            const PlantSpan *toe = plants + found[i];
             const int64_t at = heel->start > toe->start ? heel->start : toe->start;
             double way[3];
             q_turn(track->turn + 4 * at, track->toe + 3 * at, way);
-            chain(stands, h, t, way);
+            chain(stands, h, found[i], way);
         }
+    }
 }
 
-/* Where each plant is: the mean of its stand's ways from the motion's own places is nothing. */
-static void place_plants(const FootTrack *track, const PlantSpan *plants, const Stands *stands, double *places)
+/* Where each plant is: the mean of its stand's ways from the motion's own places is nothing. `members` has room for all
+   plants; those that have a place are no longer in their ring. */
+static void place_plants(
+    const FootTrack *track, const PlantSpan *plants, const Stands *stands, int64_t *members, double *places)
 {
     for (int64_t first = 0; first < stands->count; first++) {
         double mean[3] = {0.0};
-        int64_t frames = 0, before = 0;
-        while (stands->whole[before] != stands->whole[first])
-            before++;
-        if (before < first) /* placed with the first of its stand */
-            continue;
-        for (int64_t k = first; k < stands->count; k++) {
-            const double *tracks = plants[k].is_toe ? track->toe_place : track->ankle;
-            if (stands->whole[k] != stands->whole[first])
-                continue;
-            for (int64_t f = plants[k].start; f <= plants[k].stop; f++, frames++)
-                for (int a = 0; a < 3; a++)
-                    mean[a] += tracks[3 * f + a] - stands->offsets[3 * k + a];
+        int64_t frames = 0, count = 0;
+        for (int64_t k = first, next; stands->next[k] >= 0; k = next) {
+            members[count++] = k;
+            next = stands->next[k], stands->next[k] = -1;
         }
-        for (int a = 0; a < 3; a++)
-            mean[a] /= (double)frames;
-        for (int64_t k = first; k < stands->count; k++)
-            for (int a = 0; a < 3 && stands->whole[k] == stands->whole[first]; a++)
-                places[3 * k + a] = mean[a] + stands->offsets[3 * k + a];
+        qsort(members, (size_t)count, sizeof *members, ascending);
+        for (int64_t i = 0; i < count; i++) {
+            const PlantSpan *plant = plants + members[i];
+            const double *tracks = plant->is_toe ? track->toe_place : track->ankle;
+            for (int64_t f = plant->start; f <= plant->stop; f++, frames++)
+                for (int a = 0; a < 3; a++)
+                    mean[a] += tracks[3 * f + a] - stands->offsets[3 * members[i] + a];
+        }
+        for (int64_t i = 0; i < count; i++)
+            for (int a = 0; a < 3; a++)
+                places[3 * members[i] + a] = mean[a] / (double)frames + stands->offsets[3 * members[i] + a];
     }
 }
 
@@ -184,17 +218,20 @@ static void write_places(
 int find_stance(const FootTrack *track, const PlantSpan *plants, int64_t count, const StanceFound *found)
 {
     const int64_t frames = track->frames;
-    const size_t numbers = 6 * (size_t)count + 1, integers = 2 * (size_t)frames + (size_t)count + 1;
+    const size_t numbers = 6 * (size_t)count + 1, integers = 4 * (size_t)frames + 6 * (size_t)count + 1;
     double *places = calloc(numbers, sizeof *places);
     int64_t *down = malloc(sizeof *down * integers);
     Both *both = malloc(sizeof *both * ((size_t)frames + 1));
     const int fits = places != NULL && down != NULL && both != NULL;
     if (fits) {
-        Stands stands = {count, down + 2 * frames, places + 3 * count};
+        int64_t *by_frame = down + 2 * frames, *by_plant = by_frame + 2 * frames;
+        Stands stands = {count, by_plant, by_plant + count, places + 3 * count};
+        const ByFrame by_start = {by_frame, by_plant + 2 * count}, by_stop = {by_frame + frames, by_plant + 3 * count};
+        int64_t *some = by_plant + 4 * count;
         for (int64_t f = 0; f < 2 * frames; f++)
             down[f] = -1;
         for (int64_t k = 0; k < count; k++) {
-            stands.whole[k] = k;
+            stands.whole[k] = stands.next[k] = k;
             for (int64_t f = plants[k].start; f <= plants[k].stop; f++)
                 down[(plants[k].is_toe ? frames : 0) + f] = k;
         }
@@ -205,8 +242,9 @@ int find_stance(const FootTrack *track, const PlantSpan *plants, int64_t count, 
                 next++;
             link_both(track, both + i, next - i, found, &stands);
         }
-        link_meetings(track, plants, &stands);
-        place_plants(track, plants, &stands, places);
+        sort_toes(plants, count, frames, 0, &by_start), sort_toes(plants, count, frames, 1, &by_stop);
+        link_meetings(track, plants, &by_start, &by_stop, some, &stands);
+        place_plants(track, plants, &stands, some, places);
         write_places(down, &stands, places, frames, found);
     }
     free(places), free(down), free(both);

@@ -661,7 +661,7 @@ static int add_tables(PyObject *module)
         Py_XDECREF(name);
     }
     fits = fits && PyModule_AddFunctions(module, body_methods) == 0 &&
-           PyModule_AddObjectRef(module, "records", records) == 0 &&
+           PyModule_AddFunctions(module, feet_methods) == 0 && PyModule_AddObjectRef(module, "records", records) == 0 &&
            PyModule_AddObjectRef(module, "row_kinds", kinds) == 0;
     Py_XDECREF(records);
     Py_XDECREF(kinds);
