@@ -99,7 +99,9 @@ def _measured(
     sliding, drift, highest = np.zeros(0), 0.0, 0.0
     if down is not None:
         at = down.of(places)
-        drift = float(rot.length(at - down.spread(down.means(at))).max())
+        # From where each plant begins: what stands still is not off by the rounding of its place.
+        ways = at - down.spread(at[down.starts])
+        drift = float(rot.length(ways - down.spread(down.means(ways))).max())
         of_toes = np.isin(down.points[down.starts], toes)
         highest = float(down.means(down.of(heights))[of_toes].max(initial=0.0))
         # From each frame of a plant to the next: not from its last.

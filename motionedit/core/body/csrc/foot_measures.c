@@ -69,12 +69,14 @@ static void measure_plants(const FootTracks *feet, FootFigures *figures)
     figures->drift_max = figures->floating_max = 0.0;
     for (int64_t k = 0; k < feet->plants; at += feet->counts[k++]) {
         const int64_t count = feet->counts[k], point = feet->point[k];
-        double mean[3] = {0.0}, place[3], height = 0.0;
+        /* From where the plant begins: what stands still is not off by the rounding of its place. */
+        double start[3], mean[3] = {0.0}, place[3], height = 0.0;
+        place_of(feet, at[0], point, start);
         for (int64_t i = 0; i < count; i++) {
             place_of(feet, at[i], point, place);
             height += height_of(feet, place);
             for (int a = 0; a < 3; a++)
-                mean[a] += place[a];
+                mean[a] += place[a] - start[a];
             if (feet->toes[point] && i + 1 < count && at[i] + 1 < feet->frames)
                 steps++, slides += speed_of(feet, at[i], point) > feet->slides;
         }
@@ -82,8 +84,10 @@ static void measure_plants(const FootTracks *feet, FootFigures *figures)
             mean[a] /= (double)count;
         for (int64_t i = 0; i < count; i++) {
             place_of(feet, at[i], point, place);
-            const double x = place[0] - mean[0], y = place[1] - mean[1], z = place[2] - mean[2];
-            figures->drift_max = fmax(figures->drift_max, sqrt(x * x + y * y + z * z));
+            for (int a = 0; a < 3; a++)
+                place[a] = place[a] - start[a] - mean[a];
+            const double square = place[0] * place[0] + place[1] * place[1] + place[2] * place[2];
+            figures->drift_max = fmax(figures->drift_max, sqrt(square));
         }
         if (feet->toes[point])
             figures->floating_max = fmax(figures->floating_max, height / (double)count);

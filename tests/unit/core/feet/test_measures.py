@@ -103,3 +103,8 @@ def test_plants_at_no_frames_or_of_no_points_are_an_error_and_no_crash(at, point
     given = np.zeros((3, 2, 3)), np.zeros(3), np.ones(2, bool), *map(np.array, (at, point, counts))
     with pytest.raises(ValueError, match="plants are at no frames"):
         compiled().foot_figures(*given, 3, 2, 0, len(counts), len(at), (1.0,) * 6)
+
+
+def test_a_foot_that_stands_far_from_the_origin_does_not_drift_at_all():
+    tracks = np.full((FRAMES, len(POINTS), 3), 1234.5678)
+    assert measured(tracks, ("toe", TOE, 1, 18), scale=0.7).drift_max == 0.0
