@@ -4,10 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from person import BODY, edited, end, held_feet, joint, swaying
+from person import BODY, edited, end, held_feet, path, swaying
 
 from motionedit.core import rotations as rot
-from motionedit.core.motion import Motion
 from motionedit.core.priorities import calming
 from motionedit.core.priorities.calming import calmed
 from motionedit.core.priorities.edit import prepare
@@ -19,7 +18,7 @@ from motionedit.core.priorities.settings import LayeredSettings, Passes
 from motionedit.core.priorities.smoothing import PassedBefore
 from motionedit.core.priorities.targets import lefts_of
 from motionedit.core.priorities.trajectories import ControlPoint
-from motionedit.core.priorities.visible import Seen, seen_of, steps_at
+from motionedit.core.priorities.visible import Seen
 
 FRAMES = 90
 MOTION = swaying(FRAMES)
@@ -35,42 +34,6 @@ def reaching(shift, priority=4, first=35, last=50, ease=20):
 
 def prepared(*constraints):
     return prepare(MOTION, [*held_feet(FRAMES), *constraints], BODY, SMOOTH)[0]
-
-
-def turned(degrees, frames, name="Spine"):
-    """Return the motion with a joint turned at some frames."""
-    rotations = MOTION.rotations.copy()
-    turn = rot.exp(np.radians([degrees, 0.0, 0.0]))
-    rotations[frames, joint(name)] = rot.multiply(turn, rotations[frames, joint(name)])
-    return Motion(MOTION.skeleton, rotations, MOTION.translations, MOTION.frame_time)
-
-
-def test_a_viewer_sees_a_joint_that_steps_and_a_body_that_jerks_where_they_do():
-    run = prepared()
-    assert not seen_of(run, MOTION).much.any()
-    seen = seen_of(run, turned(30.0, [40]))
-    assert list(np.flatnonzero(seen.steps)) == [39, 40, 41]
-    assert 8.0 * 0.6 * seen.steps.max() == pytest.approx(30.0)
-    assert {39, 40, 41} <= set(np.flatnonzero(seen.jerks)) <= {38, 39, 40, 41, 42}
-    assert list(np.flatnonzero(seen.much)) == list(np.flatnonzero(seen.steps + seen.jerks))
-
-
-def test_what_a_solution_knows_of_its_steps_is_what_is_seen_of_it():
-    run = prepared()
-    state = solve_in_passes(run, Passes()).state
-    assert state.steps.tolist() == steps_at(run, state.motion).tolist()
-
-
-def test_a_body_that_jerks_without_a_step_is_seen():
-    seen = seen_of(prepared(), turned(4.0, slice(40, 60, 2), "Hips"))
-    assert not seen.steps.any()
-    assert seen.jerks.max() > 1.0
-
-
-def test_a_clip_of_few_frames_jerks_nowhere():
-    short = MOTION.at(slice(0, 3))
-    run = prepare(short, held_feet(3), BODY, SMOOTH)[0]
-    assert not seen_of(run, short).much.any()
 
 
 def looking_so(monkeypatch, *found):
@@ -134,3 +97,17 @@ def test_frames_that_are_not_solved_on_leave_those_beside_them_where_they_are():
         moved.append(rot.angle_between(after.rotations, motion.rotations).max())
     assert moved[0] > 0.01
     assert moved[1] < 0.05 * moved[0]
+
+
+@pytest.mark.parametrize(("softness", "much"), [(0.01, 0.990099), (1e-3, 0.5), (1e-5, 1e-4)])
+def test_soft_goals_are_eased_by_how_soft_they_are_where_frames_are_not_solved_on(softness, much):
+    run = prepared(reaching(FAR))
+    soft = run_of(replace(run.asked, softness=(*run.asked.softness[:-1], np.full(FRAMES, softness))))
+    share = np.zeros(FRAMES)
+    share[40:45] = 1.0, 0.75, 0.5, 0.25, 0.0
+    own, eased = soft.asked.targets, PassedBefore(None, MOTION, share).eased(soft).asked.targets
+    assert all(one is other for one, other in zip(own[:-1], eased[:-1], strict=True))
+    here = slice(40 - own[-1].first, 45 - own[-1].first)
+    toward = path(MOTION, "RightHand")[40:45] - own[-1].positions[here]
+    part = much * np.array([[0.0], [0.25], [0.5], [0.75], [1.0]])
+    np.testing.assert_allclose(eased[-1].positions[here] - own[-1].positions[here], part * toward, atol=1e-5)
