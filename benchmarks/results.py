@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 def machine() -> str:
     """Return the machine in a line: cores, processor, versions."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
-    names = ", ".join(f"{name} {version(name)}" for name in ("numpy", "pydantic", "bvhio"))
+    names = ", ".join(f"{name} {version(name)}" for name in ("numpy", "bvhio"))
     return f"{cores} cores, {_processor()}, Python {platform.python_version()}, {names}"
 
 

@@ -38,8 +38,6 @@ _BLAS_THREADS = (
     "VECLIB_MAXIMUM_THREADS",
 )
 _OBJECTS_BETWEEN_COLLECTIONS = 1_000_000
-# Searching every installed package for plugins of pydantic takes time, and none is to change what a spec means.
-_PYDANTIC_PLUGINS = ("PYDANTIC_DISABLE_PLUGINS", "__all__")
 
 
 class _Program(click.Group):
@@ -50,7 +48,6 @@ class _Program(click.Group):
         take_every_letter()
         for name in _BLAS_THREADS:
             os.environ[name] = "1"
-        os.environ.setdefault(*_PYDANTIC_PLUGINS)
         # Modules and specs make many objects and no garbage: to look for it every 700 of them takes a tenth of a short
         # edit.
         gc.set_threshold(_OBJECTS_BETWEEN_COLLECTIONS)

@@ -15,9 +15,11 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.compiled import compiled
-from motionedit.core.motion import position_columns
+from motionedit.core.motion import position_columns, slice_or_all
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.motion import Motion
 
@@ -26,9 +28,10 @@ _MOST_WOUND = 1e8  # degrees: six of the digits after the point are left
 # Within this angle (rad, 1e-4 degrees) of gimbal lock the last angle is kept. The rebuilt rotation is off by no more
 # than that; a wider band would cost more than the 2e-4 degrees that are promised.
 GIMBAL_BAND = np.radians(1e-4)
-# Rotations that are solved together: a short clip's joints cost less than the calls they would take one by one, and
-# what is solved together stays in the processor's cache.
-TOGETHER = 1 << 13
+# Rotations that are solved together stay in the processor's cache.
+_TOGETHER = 1 << 13
+# Rotations whose angles are held at once, near the processor: all of a short clip, some joints of a long one.
+_HELD = 1 << 16
 
 
 def joint_angles(motion: Motion, *, start: FloatArray) -> FloatArray:
@@ -52,13 +55,67 @@ def joint_angles(motion: Motion, *, start: FloatArray) -> FloatArray:
         for axis, column in position_columns(skeleton, joint):
             values[:, column] = motion.translations[:, p, axis]
     for group in skeleton.rotation_groups:
-        step = max(TOGETHER // len(motion), 1)
-        for first in range(0, len(group.joints), step):
-            joints, columns = group.joints[first : first + step], group.columns[first : first + step]
-            q = np.ascontiguousarray(motion.rotations.transpose(2, 0, 1)[:, :, joints])
-            angles = _angles_of_joints(q, group.axes, radians(start[columns.T]))
-            values[:, columns.reshape(-1)] = np.degrees(angles).transpose(1, 2, 0).reshape(len(motion), -1)
+        for joints, columns in joints_together(group.joints, group.columns, frames=len(motion)):
+            solved = solved_tracks(motion.rotations, joints, group.axes)
+            seeds = radians(start[columns])
+            whole = [(k, 0, len(motion)) for k in range(len(joints))]
+            angles = nearest_in_runs(solved, np.array(whole, dtype=np.int64), seeds)
+            for k in np.flatnonzero(gimbal_locked(solved).any(axis=-1)).tolist():
+                angles[k] = near(motion.rotations[:, joints[k]], group.axes, solved[:, k], seeds[k]).T
+            own = slice_or_all(columns.reshape(-1))
+            for block in _blocks(len(motion), len(joints)):
+                rows = np.degrees(angles[:, :, block]).transpose(2, 0, 1)
+                values[block, own] = rows.reshape(len(rows), -1)
     return values
+
+
+def joints_together(joints: IntArray, columns: IntArray, *, frames: int) -> Iterator[tuple[IntArray, IntArray]]:
+    """Yield as many joints at a time, with their columns (G, A), as are held at once in a clip of so many frames."""
+    step = max(_HELD // frames, 1)
+    for first in range(0, len(joints), step):
+        yield joints[first : first + step], columns[first : first + step]
+
+
+def solved_tracks(rotations: FloatArray, joints: IntArray, axes: tuple[int, ...]) -> FloatArray:
+    """Return one solution of the Euler angles (rad) of some joints at all frames, shape (A, G, F).
+
+    `rotations`, shape (F, J, 4), are those of all joints: block by block, for to pick joint after joint out of a
+    long clip takes longer than to solve them.
+    """
+    solved = np.empty((len(axes), len(joints), len(rotations)))
+    kernel = compiled() if len(axes) == 3 else None
+    rotations = np.ascontiguousarray(rotations, dtype=np.float64)
+    places = np.ascontiguousarray(joints, dtype=np.int64)
+    for block in _blocks(len(rotations), len(joints)):
+        if kernel is None:
+            q = np.ascontiguousarray(rotations[block, joints].transpose(2, 1, 0))
+            solved[:, :, block] = solve_angles(q, axes)
+        else:
+            sums = np.empty((6, len(joints), block.stop - block.start))
+            kernel.euler_sums(rotations[block], rotations.shape[1], places, *axes, sums)
+            solved[:, :, block] = _angles_of_sums(sums, axes)
+    return solved
+
+
+def _angles_of_sums(sums: FloatArray, axes: tuple[int, ...]) -> FloatArray:
+    """Return what `solve_angles` does of three axes, shape (3, ...), from its sums (6, ...), which are used up."""
+    sign = 1.0 if (axes[1] - axes[0]) % 3 == 1 else -1.0
+    for k in (0, 2, 4):
+        np.arctan2(sums[k], sums[k + 1], out=sums[k])
+    plus, minus, middle = sums[::2]
+    np.add(plus, minus, out=sums[1])
+    np.subtract(plus, minus, out=sums[5])
+    sums[5] *= sign
+    np.multiply(middle, 2.0, out=sums[3])
+    sums[3] -= np.pi / 2.0
+    return sums[1::2]
+
+
+def _blocks(frames: int, joints: int) -> Iterator[slice]:
+    """Yield blocks of frames of so many joints that are solved together."""
+    step = max(_TOGETHER // joints, 1)
+    for start in range(0, frames, step):
+        yield slice(start, min(start + step, frames))
 
 
 def angles_near(q: FloatArray, axes: tuple[int, ...], *, seed: FloatArray) -> FloatArray:
@@ -67,12 +124,11 @@ def angles_near(q: FloatArray, axes: tuple[int, ...], *, seed: FloatArray) -> Fl
     `seed`, shape (A,), stands before frame 0. With one axis or two the rotation nearest q is taken; with three,
     within `GIMBAL_BAND` of gimbal lock, the last angle stays that of the frame before. The result has shape (F, A).
     """
-    parts = np.ascontiguousarray(q.T)
-    return near(parts, axes, solve_angles(parts, axes), seed)
+    return near(q, axes, solve_angles(np.ascontiguousarray(q.T), axes), seed)
 
 
 def near(q: FloatArray, axes: tuple[int, ...], solved: FloatArray, seed: FloatArray) -> FloatArray:
-    """Return what `angles_near` does, shape (F, A), from q (4, F) and one solution of each frame, (A, F)."""
+    """Return what `angles_near` does, shape (F, A), from q (F, 4) and one solution of each frame, (A, F)."""
     locked = gimbal_locked(solved)
     if not locked.any():
         return nearest(solved, seed).T
@@ -81,29 +137,13 @@ def near(q: FloatArray, axes: tuple[int, ...], solved: FloatArray, seed: FloatAr
     for start, stop in pairwise(bounds.tolist()):
         if locked[start]:
             undone = rot.conjugate(rot.about_axis(axes[2], seed[2]))
-            turned = rot.multiply(q[:, start:stop].T, undone)
+            turned = rot.multiply(q[start:stop], undone)
             angles[:2, start:stop] = _unwrap(solve_angles(turned.T, axes[:2]), seed[:2])
             angles[2, start:stop] = seed[2]
         else:
             angles[:, start:stop] = nearest(solved[:, start:stop], seed)
         seed = angles[:, stop - 1]
     return angles.T
-
-
-def _angles_of_joints(q: FloatArray, axes: tuple[int, ...], seed: FloatArray) -> FloatArray:
-    """Return what `angles_near` does for G joints at once, shape (A, F, G), from q (4, F, G) and seeds (A, G)."""
-    first = solve_angles(q, axes)
-    if len(axes) < 3:
-        return _unwrap(first, seed)
-    locked = gimbal_locked(first).any(axis=0)
-    distance = _distances(first, first, seed)
-    far = np.flatnonzero((distance >= np.pi).any(axis=0))
-    if len(far):
-        first[:, :, far] = _changed_over(first[:, :, far], seed[:, far], distance[:, far])
-    near = _unwrap(first, seed)
-    for joint in np.flatnonzero(locked).tolist():
-        near[:, :, joint] = angles_near(q[:, :, joint].T, axes, seed=seed[:, joint]).T
-    return near
 
 
 def solve_angles(q: FloatArray, axes: tuple[int, ...]) -> FloatArray:

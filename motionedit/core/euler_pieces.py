@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.euler import (
-    TOGETHER,
     TURN,
     angles_near,
     gimbal_locked,
+    joints_together,
     near,
     nearest_in_runs,
     radians,
-    solve_angles,
+    solved_tracks,
 )
 from motionedit.dataclass import dataclass
 
@@ -63,13 +63,10 @@ def touched_pieces(motion: Motion, touched: BoolArray, *, given: GivenRows, size
     pieces: dict[int, list[Piece]] = {}
     for group in motion.skeleton.rotation_groups:
         places = np.flatnonzero(turned[group.joints])
-        step = max(TOGETHER // len(motion), 1)
-        for first in range(0, len(places), step):
-            some = places[first : first + step]
-            joints, columns = group.joints[some], group.columns[some]
-            q = np.ascontiguousarray(motion.rotations.transpose(2, 1, 0)[:, joints])
+        for joints, columns in joints_together(group.joints[places], group.columns[places], frames=len(motion)):
             runs = _runs_of(touched[:, joints].T)
-            angles, seeds, plain = _angles_of(q, group.axes, columns, runs, values)
+            tracks = _Tracks(motion.rotations, joints, group.axes)
+            angles, seeds, plain = _angles_of(tracks, columns, runs, values)
             degrees = np.degrees(angles) if len(motion) <= size or not plain.all() else angles
             for i, (k, start, stop) in enumerate(runs.tolist()):
                 keep, seed = len(motion) <= size or not plain[i], seeds[i]
@@ -81,12 +78,13 @@ def touched_pieces(motion: Motion, touched: BoolArray, *, given: GivenRows, size
 
 
 class _Given:
-    """The input's channel values, rad: the rows that are asked for, or all of a short clip at once."""
+    """The input's channel values, rad: the rows that are asked for, or all of a short clip where these are several."""
 
     def __init__(self, given: GivenRows, *, whole: bool, frames: int) -> None:
         # Joints mostly ask for the same few rows.
         self._rows = cache(lambda start, stop: radians(given(start, stop)))
-        self._whole = self._rows(0, frames) if whole else None
+        self._frames = frames if whole else None
+        self._whole: FloatArray | None = None
 
     def between(self, start: int, stop: int) -> FloatArray:
         """Return the values of some frames, shape (stop - start, C)."""
@@ -94,21 +92,40 @@ class _Given:
 
     def at(self, frames: IntArray, columns: IntArray) -> FloatArray:
         """Return the values of R frames, of each the columns, shape (R, A), that are its own."""
+        if len(frames) and (frames == frames[0]).all():
+            # Where every joint is touched from the first frame on, nothing else is read.
+            one: FloatArray = self.between(int(frames[0]), int(frames[0]) + 1)[0, columns]
+            return one
+        if self._whole is None and self._frames is not None:
+            self._whole = self._rows(0, self._frames)
         if self._whole is not None:
             return self._whole[frames[:, None], columns]
         rows = [self._rows(frame, frame + 1)[0, own] for frame, own in zip(frames.tolist(), columns, strict=True)]
         return np.array(rows).reshape(columns.shape)
 
 
+@dataclass(frozen=True, eq=False)
+class _Tracks:
+    """G `joints` that turn about the same `axes`, among those of `rotations` (F, J, 4)."""
+
+    rotations: FloatArray
+    joints: IntArray
+    axes: tuple[int, ...]
+
+    def between(self, k: int, start: int, stop: int) -> FloatArray:
+        """Return the rotations of the k-th joint at some frames, shape (stop - start, 4)."""
+        return self.rotations[start:stop, self.joints[k]]
+
+
 def _angles_of(
-    q: FloatArray, axes: tuple[int, ...], columns: IntArray, runs: IntArray, given: _Given
+    tracks: _Tracks, columns: IntArray, runs: IntArray, given: _Given
 ) -> tuple[FloatArray, FloatArray, BoolArray]:
     """Return the angles (rad) of joints in their runs of touched frames, the runs' seeds, and which are plain.
 
     Parameters
     ----------
-    q, columns : shape (4, G, F), (G, A)
-        The joints' rotations, and the columns of their channels.
+    columns : shape (G, A)
+        The columns of the joints' channels.
     runs : shape (R, 3)
         By `_runs_of`.
 
@@ -122,15 +139,17 @@ def _angles_of(
         Whether nothing was put right where the run ends.
     """
     of, starts, stops = runs.T
-    solved = solve_angles(q, axes)
+    axes, frames = tracks.axes, len(tracks.rotations)
+    solved = solved_tracks(tracks.rotations, tracks.joints, axes)
     seeds = given.at(np.maximum(starts - 1, 0), columns[of])
     angles = nearest_in_runs(solved, runs, seeds)
     for k in np.flatnonzero(gimbal_locked(solved).any(axis=-1)).tolist():
         for i in np.flatnonzero(of == k).tolist():
-            frames = slice(int(starts[i]), int(stops[i]))
-            angles[k, :, frames] = near(q[:, k, frames], axes, solved[:, k, frames], seeds[i]).T
+            start, stop = int(starts[i]), int(stops[i])
+            q = tracks.between(k, start, stop)
+            angles[k, :, start:stop] = near(q, axes, solved[:, k, start:stop], seeds[i]).T
     plain = np.ones(len(runs), dtype=np.bool_)
-    inner = np.flatnonzero(stops < q.shape[2])
+    inner = np.flatnonzero(stops < frames)
     if not len(inner):
         return angles, seeds, plain
     own = columns[of[inner]]
@@ -138,7 +157,7 @@ def _angles_of(
     turned = _turns(last - angles[of[inner], :, stops[inner] - 1]).any(axis=1)
     for i in np.flatnonzero(turned).tolist():
         k, start, stop = runs[inner[i]].tolist()
-        track = _Track(q[:, k, start:stop], axes, solved[:, k, start:stop])
+        track = _Track(tracks.between(k, start, stop), axes, solved[:, k, start:stop])
         ends = seeds[inner[i]], last[i], following[i]
         steps = np.diff(given.between(start, stop)[:, columns[k]], axis=0, prepend=ends[0][None])
         angles[k, :, start:stop] = _meet_end(track, angles[k, :, start:stop].T, steps, ends).T
@@ -148,7 +167,7 @@ def _angles_of(
 
 @dataclass(frozen=True, eq=False)
 class _Track:
-    """A joint's rotations `q` (4, n) in a run, its `axes`, and one solution of each frame, `solved` (A, n) rad."""
+    """A joint's rotations `q` (n, 4) in a run, its `axes`, and one solution of each frame, `solved` (A, n) rad."""
 
     q: FloatArray
     axes: tuple[int, ...]
@@ -201,7 +220,7 @@ def _meet_end(
     carried = angles + TURN * np.cumsum(np.rint(steps / TURN), axis=0)
     if not _turns(last - carried[-1]).any():
         return carried
-    backward = near(track.q[:, ::-1], track.axes, track.solved[:, ::-1], following)[::-1]
+    backward = near(track.q[::-1], track.axes, track.solved[:, ::-1], following)[::-1]
     jumps = np.abs(backward - np.concatenate((before[None], angles[:-1]))).sum(axis=-1)
     change = int(np.argmin(jumps))
     return np.concatenate((angles[:change], backward[change:]))

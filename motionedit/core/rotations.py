@@ -276,12 +276,16 @@ def _from_three_angles(angles: FloatArray, axes: Sequence[int]) -> FloatArray:
     """
     i, j, k = axes
     sign = 1.0 if (j - i) % 3 == 1 else -1.0  # e_i e_j = sign e_k
-    half = 0.5 * np.moveaxis(angles, -1, 0)
-    a, b, c = np.tan(half, out=half)
+    half = np.multiply(np.moveaxis(angles, -1, 0), 0.5, order="C")
+    np.tan(half, out=half)
+    q, kernel = np.empty((*angles.shape[:-1], 4)), compiled()
+    if kernel is not None:
+        kernel.from_tangents(half, i, j, k, q)
+        return q
+    a, b, c = half
     c *= sign
     scale = 1.0 / np.sqrt((1.0 + a * a) * (1.0 + b * b) * (1.0 + c * c))
     ab, bc, ac = a * b, b * c, a * c
-    q = np.empty((*angles.shape[:-1], 4))
     q[..., 0] = (1.0 - ab * c) * scale
     q[..., 1 + i] = (a + bc) * scale
     q[..., 1 + j] = (b - ac) * scale

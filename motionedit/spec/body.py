@@ -1,13 +1,11 @@
 """What a body's joints are, where a spec says it: a head, legs, arms, which the tool then need not find."""
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any
-
-from pydantic import Field
+from typing import Any
 
 from motionedit.spec import kinds, values
 from motionedit.spec.faults import Fault, faulty, show
-from motionedit.spec.model import Context, Kind, SpecModel
+from motionedit.spec.model import Context, Kind, SpecModel, spec_key
 
 _PAIRS = (("left_leg", "right_leg"), ("left_arm", "right_arm"))
 # What a part is that the body does not have.
@@ -33,17 +31,15 @@ ARM = _limb("an arm's joints [shoulder, elbow, wrist] or [clavicle, shoulder, el
 class BodySpec(SpecModel):
     """Which joint is what, where names and lengths do not tell; `none` is what the body does not have."""
 
-    head: Annotated[str | None, kinds.JOINT] = Field(
-        default=None, description="The joint at the base of the skull, or none."
+    head: str | None = spec_key(kinds.JOINT, default=None, description="The joint at the base of the skull, or none.")
+    left_leg: tuple[str, ...] | None = spec_key(
+        LEG, default=None, description="Thigh, knee, ankle, and the toe if there is one."
     )
-    left_leg: Annotated[tuple[str, ...] | None, LEG] = Field(
-        default=None, description="Thigh, knee, ankle, and the toe if there is one."
+    right_leg: tuple[str, ...] | None = spec_key(LEG, default=None, description="The other leg.")
+    left_arm: tuple[str, ...] | None = spec_key(
+        ARM, default=None, description="Shoulder, elbow, wrist, with the clavicle before them if there is one."
     )
-    right_leg: Annotated[tuple[str, ...] | None, LEG] = Field(default=None, description="The other leg.")
-    left_arm: Annotated[tuple[str, ...] | None, ARM] = Field(
-        default=None, description="Shoulder, elbow, wrist, with the clavicle before them if there is one."
-    )
-    right_arm: Annotated[tuple[str, ...] | None, ARM] = Field(default=None, description="The other arm.")
+    right_arm: tuple[str, ...] | None = spec_key(ARM, default=None, description="The other arm.")
 
     @classmethod
     def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
@@ -59,7 +55,7 @@ class BodySpec(SpecModel):
     @property
     def plain(self) -> dict[str, Any]:
         """What is given, as a spec has it."""
-        given = {key: value for key, value in self if value is not None}
+        given = {key: value for key, value in self.attributes() if value is not None}
         return {
             key: NONE if value == () else list(value) if isinstance(value, tuple) else value
             for key, value in given.items()

@@ -1,15 +1,14 @@
 """The types of constraints of edit-prioritized, each with the keys it may have; a new one is a class here, [PRIO] 4."""
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
-
-from pydantic import BeforeValidator, Field
+from typing import Any, Literal
 
 from motionedit.spec import kinds
 from motionedit.spec.constraints import TYPES, ConstraintItem, Placed, Recruiting, type_words
 from motionedit.spec.faults import Fault, FaultyValueError, faulty, show
 from motionedit.spec.items import EffectorItem
-from motionedit.spec.model import mappings_in
+from motionedit.spec.model import Context, Kind, mappings_in, spec_key
+from motionedit.spec.nested import reference_to
 from motionedit.spec.plants import PLANTS, PlantsSpec
 from motionedit.spec.points import LENGTH_KEYS, SPLINE_KEYS
 from motionedit.spec.scalars import Vector, one_of, word
@@ -22,9 +21,9 @@ class PositionConstraint(Recruiting, Placed, EffectorItem, ConstraintItem):
     point_keys = ("position", "shift", *SPLINE_KEYS)
     measure_keys = ("frame", "relative_to", "axes")
 
-    type: Literal["position"] = Field(description="The type: position.")
-    axes: Annotated[tuple[int, ...], kinds.AXES] = Field(
-        default=(0, 1, 2), description="Axes that count; default: all of [x, y, z]."
+    type: Literal["position"] = spec_key(kinds.constant("position"), description="The type: position.")
+    axes: tuple[int, ...] = spec_key(
+        kinds.AXES, default=(0, 1, 2), description="Axes that count; default: all of [x, y, z]."
     )
 
 
@@ -35,7 +34,7 @@ class OrientationConstraint(Recruiting, Placed, EffectorItem, ConstraintItem):
     has_position = False
     has_angle = True
 
-    type: Literal["orientation"] = Field(description="The type: orientation.")
+    type: Literal["orientation"] = spec_key(kinds.constant("orientation"), description="The type: orientation.")
 
 
 class PoseConstraint(Recruiting, Placed, EffectorItem, ConstraintItem):
@@ -44,7 +43,7 @@ class PoseConstraint(Recruiting, Placed, EffectorItem, ConstraintItem):
     point_keys = ("position", "shift", "orientation", *SPLINE_KEYS)
     has_angle = True
 
-    type: Literal["pose"] = Field(description="The type: pose.")
+    type: Literal["pose"] = spec_key(kinds.constant("pose"), description="The type: pose.")
 
 
 class ComConstraint(Recruiting, ConstraintItem):
@@ -54,19 +53,22 @@ class ComConstraint(Recruiting, ConstraintItem):
     measure_keys = ("frame", "axes")
     only_warns = True
 
-    type: Literal["com"] = Field(description="The type: com.")
-    support: Annotated[tuple[str, ...] | None, kinds.FEET] = Field(
-        default=None, description="Joints the body stands on, the set A; default: feet and toes found in the skeleton."
+    type: Literal["com"] = spec_key(kinds.constant("com"), description="The type: com.")
+    support: tuple[str, ...] | None = spec_key(
+        kinds.FEET,
+        default=None,
+        description="Joints the body stands on, the set A; default: feet and toes found in the skeleton.",
     )
-    relative_to: Annotated[Literal["support", "world"], kinds.word("support", "world")] = Field(
+    relative_to: Literal["support", "world"] = spec_key(
+        kinds.word("support", "world"),
         default="support",
         description="support: moves as the other constraints move the support; world: the input's own path.",
     )
-    frame: Annotated[kinds.Frame, kinds.FRAME] = Field(
-        default="world", description="Axes of shifts: world, or the character's heading."
+    frame: kinds.Frame = spec_key(
+        kinds.FRAME, default="world", description="Axes of shifts: world, or the character's heading."
     )
-    axes: Annotated[tuple[int, ...], kinds.AXES] = Field(
-        default=(0, 1, 2), description="Axes that count; default: all of [x, y, z]."
+    axes: tuple[int, ...] = spec_key(
+        kinds.AXES, default=(0, 1, 2), description="Axes that count; default: all of [x, y, z]."
     )
 
     @property
@@ -102,12 +104,10 @@ class AimConstraint(Recruiting, Placed, EffectorItem, ConstraintItem):
         },
     )
 
-    type: Literal["aim"] = Field(description="The type: aim.")
-    axis: Annotated[Vector, kinds.DIRECTION] = Field(
-        description="The direction that looks, in the joint's frame; any length."
-    )
-    target: Annotated[str | None, kinds.JOINT] = Field(
-        default=None, description="The joint that is looked at, instead of positions in points."
+    type: Literal["aim"] = spec_key(kinds.constant("aim"), description="The type: aim.")
+    axis: Vector = spec_key(kinds.DIRECTION, description="The direction that looks, in the joint's frame; any length.")
+    target: str | None = spec_key(
+        kinds.JOINT, default=None, description="The joint that is looked at, instead of positions in points."
     )
 
     @classmethod
@@ -134,8 +134,8 @@ class PostureConstraint(ConstraintItem):
     has_angle = True
     only_warns = True
 
-    type: Literal["posture"] = Field(description="The type: posture.")
-    joints: Annotated[tuple[str, ...], kinds.JOINTS] = Field(description="The joints that keep their rotations.")
+    type: Literal["posture"] = spec_key(kinds.constant("posture"), description="The type: posture.")
+    joints: tuple[str, ...] = spec_key(kinds.JOINTS, description="The joints that keep their rotations.")
 
     @property
     def default_name(self) -> str:
@@ -148,8 +148,8 @@ class DistanceConstraint(Recruiting, EffectorItem, ConstraintItem):
 
     point_keys = LENGTH_KEYS
 
-    type: Literal["distance"] = Field(description="The type: distance.")
-    to: Annotated[EffectorSpec, kinds.EFFECTOR] = Field(description="The point that the distance is to.")
+    type: Literal["distance"] = spec_key(kinds.constant("distance"), description="The type: distance.")
+    to: EffectorSpec = spec_key(kinds.EFFECTOR, description="The point that the distance is to.")
 
     @classmethod
     def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
@@ -192,13 +192,14 @@ class FloorConstraint(_Timeless):
 
     only_warns = True
 
-    type: Literal["floor"] = Field(description="The type: floor.")
-    effector: Annotated[str | tuple[EffectorSpec, ...], kinds.BODY_POINTS] = Field(
+    type: Literal["floor"] = spec_key(kinds.constant("floor"), description="The type: floor.")
+    effector: str | tuple[EffectorSpec, ...] = spec_key(
+        kinds.BODY_POINTS,
         default="feet",
         description="What stays above: feet (feet and toes found in the skeleton), all (joints and end sites), or a "
         "list of effectors, which is one constraint.",
     )
-    height: Annotated[float, kinds.HEIGHT] = Field(default=0.0, description="The floor's height along up, clip units.")
+    height: float = spec_key(kinds.HEIGHT, default=0.0, description="The floor's height along up, clip units.")
 
 
 class FootplantsConstraint(_Timeless):
@@ -207,29 +208,31 @@ class FootplantsConstraint(_Timeless):
     has_angle = True
     only_warns = True
 
-    type: Literal["footplants"] = Field(description="The type: footplants.")
-    feet: Annotated[str | tuple[str, ...], kinds.ANKLES] = Field(
-        default="auto", description="Which feet: auto (both), or a list of ankles."
+    type: Literal["footplants"] = spec_key(kinds.constant("footplants"), description="The type: footplants.")
+    feet: str | tuple[str, ...] = spec_key(
+        kinds.ANKLES, default="auto", description="Which feet: auto (both), or a list of ankles."
     )
-    plants: Annotated[PlantsSpec, PLANTS] = Field(
+    plants: PlantsSpec = spec_key(
+        PLANTS,
         default=PlantsSpec(),
         description="When they stand: auto (as `info --contacts` shows them), a CSV file (clip,foot,part,first,last), "
         "or intervals by ankle.",
     )
-    height: Annotated[str | float, kinds.OWN_HEIGHT] = Field(
+    height: str | float = spec_key(
+        kinds.OWN_HEIGHT,
         default="input",
         description="input: each plant keeps its own height; a number: the lower of heel and toe stands on that height "
         "along up, clip units, and the body comes along.",
     )
-    at: Annotated[Literal["input", "path"], kinds.word("input", "path")] = Field(
+    at: Literal["input", "path"] = spec_key(
+        kinds.word("input", "path"),
         default="input",
         description="input: plants stay where they are; path: each moves, as a whole, where positions asked of the "
         "root take it.",
     )
 
 
-def _with_known_type(value: object) -> object:
-    """Return the value itself where it is a mapping whose type is known; pydantic's union needs no words then."""
+def _constraint(value: object, context: Context) -> ConstraintItem:
     if not isinstance(value, dict):
         raise faulty(f"must be a mapping with a type, not {show(value)}")
     names = tuple(TYPES)
@@ -239,15 +242,15 @@ def _with_known_type(value: object) -> object:
         word(value["type"], names)
     except FaultyValueError as error:
         raise faulty(str(error), "type") from None
-    return value
+    return TYPES[value["type"]].parse(value, context)
 
 
-if TYPE_CHECKING:
-    Constraint = ConstraintItem
-else:
-    Constraint = Annotated[
-        Union[tuple(TYPES.values())], Field(discriminator="type"), BeforeValidator(_with_known_type)  # noqa: UP007
-    ]
+CONSTRAINT = Kind(
+    _constraint,
+    "a mapping with a type",
+    {"oneOf": [reference_to(model) for model in TYPES.values()]},
+    models=tuple(TYPES.values()),
+)
 
 
 def _foreign_keys(type_name: str) -> dict[str, str]:

@@ -1,16 +1,14 @@
 """What constraints of edit-prioritized share: the keys that every type has, and those of several, [PRIO] section 4."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from functools import cache
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, get_args
-
-from pydantic import Field
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 from motionedit.dataclass import dataclass
 from motionedit.spec import kinds
 from motionedit.spec.faults import Fault, Keys
 from motionedit.spec.items import NOT_TWO_FRAMES, Item, measured_in_itself, without
-from motionedit.spec.model import Kind, SpecModel, mappings_in
+from motionedit.spec.model import Kind, SpecModel, mappings_in, spec_key
+from motionedit.spec.nested import list_of, mapping
 from motionedit.spec.points import Point
 from motionedit.spec.scalars import one_of
 from motionedit.spec.times import Duration
@@ -54,43 +52,51 @@ class ConstraintItem(Item):
     if TYPE_CHECKING:
         type: str
 
-    @classmethod
-    def __pydantic_init_subclass__(cls, **kwargs: object) -> None:
+    def __init_subclass__(cls) -> None:
         """Make a type known by its name, and to editors what its points and its tolerance may not have."""
-        super().__pydantic_init_subclass__(**kwargs)
-        if "type" in cls.model_fields:
-            (name,) = get_args(cls.model_fields["type"].annotation)
-            TYPES[name] = cls
-            foreign = [key for key in Point.model_fields if key not in (*_TIME_KEYS, *cls.point_keys)]
+        super().__init_subclass__()
+        if "type" in cls.model_keys:
+            TYPES[cls.model_keys["type"].kind.wanted] = cls
+            foreign = [name for name in Point.key_names() if name not in (*_TIME_KEYS, *cls.point_keys)]
             lacking = [key for key, has in (("position", cls.has_position), ("angle", cls.has_angle)) if not has]
-            rules = (("points", {"items": {"allOf": [without(key) for key in foreign]}}),)
+            rules = (("points", {"items": {"allOf": [without(name) for name in foreign]}}),)
             rules += tuple(("tolerance", without(key)) for key in lacking)
             cls.between_keys = (*cls.between_keys, *({"properties": {key: rule}} for key, rule in rules))
 
-    priority: Annotated[int, kinds.whole()] = Field(
-        default=1, description="Larger is more important; only the order matters. Equal ones share by weight."
+    priority: int = spec_key(
+        kinds.whole(),
+        default=1,
+        description="Larger is more important; only the order matters. Equal ones share by weight.",
     )
-    weight: Annotated[float, kinds.number(above=0.0)] = Field(
-        default=1.0, description="Weight among constraints of the same priority (see defaults)."
+    weight: float = spec_key(
+        kinds.number(above=0.0),
+        default=1.0,
+        description="Weight among constraints of the same priority (see defaults).",
     )
-    tolerance: Annotated[Tolerance | None, kinds.TOLERANCE] = Field(
+    tolerance: Tolerance | None = spec_key(
+        kinds.TOLERANCE,
         default=None,
         description="How near is met: clip units, degrees for what only turns, {position, angle} for what does both; "
         "off: may give way. Default 1 mm and 0.1 degree at leg length 0.85 m. Where none is given, --strict counts "
         "what has a point with at or hold, but for types that only follow or keep something: these warn alone.",
     )
-    ease_in: Annotated[Duration, kinds.DURATION] = Field(
-        default=EASE, description="Ramp from the input's trajectory before the first point (see defaults)."
+    ease_in: Duration = spec_key(
+        kinds.DURATION,
+        default=EASE,
+        description="Ramp from the input's trajectory before the first point (see defaults).",
     )
-    ease_out: Annotated[Duration, kinds.DURATION] = Field(
-        default=EASE, description="Ramp back to the input's trajectory after the last point (see defaults)."
+    ease_out: Duration = spec_key(
+        kinds.DURATION,
+        default=EASE,
+        description="Ramp back to the input's trajectory after the last point (see defaults).",
     )
-    follow: Annotated[Literal["input", "reference"], kinds.word("input", "reference")] = Field(
+    follow: Literal["input", "reference"] = spec_key(
+        kinds.word("input", "reference"),
         default="input",
         description="Whose paths and postures shifts, rides and eases start from: the input's, or the reference's.",
     )
-    points: tuple[Point, ...] = Field(
-        default=(), description="When and where; none: as in the input, over the whole clip."
+    points: tuple[Point, ...] = spec_key(
+        list_of(mapping(Point)), default=(), description="When and where; none: as in the input, over the whole clip."
     )
 
     @property
@@ -108,21 +114,21 @@ class ConstraintItem(Item):
 
     def with_defaults(self, defaults: "Defaults") -> Self:
         """Return the constraint with the spec's defaults for keys that it does not give itself."""
-        own = type(self).model_fields
-        keys = [key for key in Defaults.model_fields if key in own and key not in self.model_fields_set]
-        return self.model_copy(update={key: getattr(defaults, key) for key in keys})
+        own = self.model_keys.keys() - self.given
+        return self.changed({name: value for name, value in defaults.attributes() if name in own})
 
     def own_values(self) -> Iterator[OwnValue]:
         """Yield the values of the keys that not every constraint has."""
-        for name, key, kind in _own_fields(type(self)):
-            yield OwnValue(key, self.keys_of(key), kind, getattr(self, name))
+        for attribute, found in self.model_keys.items():
+            if attribute != "type" and attribute not in ConstraintItem.model_keys:
+                yield OwnValue(found.name, self.keys_of(found.name), found.kind, getattr(self, attribute))
 
     @classmethod
     def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
         """Yield what is wrong between keys."""
         for i, point in mappings_in(data, "points"):
             for key in point:
-                if key in Point.model_fields and key not in (*_TIME_KEYS, *cls.point_keys):
+                if key in Point.model_keys and key not in (*_TIME_KEYS, *cls.point_keys):
                     types = [name for name, other in TYPES.items() if key in other.point_keys]
                     yield Fault(f"belongs to {type_words(types)}, not {data.get('type')}", ("points", i, key))
         tolerance = data.get("tolerance")
@@ -133,21 +139,11 @@ class ConstraintItem(Item):
                     yield Fault(f"does not go with {data.get('type')}: its tolerance is {what}", ("tolerance", key))
 
 
-@cache
-def _own_fields(model: type[ConstraintItem]) -> tuple[tuple[str, str, Kind], ...]:
-    """Return the name, the key and the kind of what a type of constraint has of its own."""
-    found = []
-    for name, info in model.model_fields.items():
-        value_kinds = [each for each in info.metadata if isinstance(each, Kind)]
-        if name not in ConstraintItem.model_fields and value_kinds:
-            found.append((name, info.alias or name, value_kinds[0]))
-    return tuple(found)
-
-
 class Recruiting(SpecModel):
     """What a constraint has that chooses its joints."""
 
-    recruit: Annotated[Recruit, kinds.RECRUIT] = Field(
+    recruit: Recruit = spec_key(
+        kinds.RECRUIT,
         default=Recruit(),
         description="Joints that may move: all (to the root, with its translation), {up_to: joint}, {levels: n}, "
         "{joints: [...]} (see defaults).",
@@ -160,11 +156,13 @@ class Placed(SpecModel):
     measure_keys: ClassVar[tuple[str, ...]] = ("frame", "relative_to")
     between_keys: ClassVar[tuple[Mapping[str, Any], ...]] = (NOT_TWO_FRAMES,)
 
-    frame: Annotated[kinds.Frame, kinds.FRAME] = Field(
-        default="world", description="Axes of positions, shifts and orientations: world, or the character's heading."
+    frame: kinds.Frame = spec_key(
+        kinds.FRAME,
+        default="world",
+        description="Axes of positions, shifts and orientations: world, or the character's heading.",
     )
-    relative_to: Annotated[str | None, kinds.JOINT] = Field(
-        default=None, description="Measure in this joint's frame instead of the world's."
+    relative_to: str | None = spec_key(
+        kinds.JOINT, default=None, description="Measure in this joint's frame instead of the world's."
     )
 
     @classmethod
@@ -179,11 +177,11 @@ class Placed(SpecModel):
 class Defaults(SpecModel):
     """What constraints use that do not say otherwise."""
 
-    ease_in: Annotated[Duration, kinds.DURATION] = Field(
-        default=EASE, description="Ramp from the input before the first point."
+    ease_in: Duration = spec_key(
+        kinds.DURATION, default=EASE, description="Ramp from the input before the first point."
     )
-    ease_out: Annotated[Duration, kinds.DURATION] = Field(
-        default=EASE, description="Ramp back to the input after the last point."
+    ease_out: Duration = spec_key(
+        kinds.DURATION, default=EASE, description="Ramp back to the input after the last point."
     )
-    weight: Annotated[float, kinds.number(above=0.0)] = Field(default=1.0, description="Weight in a layer.")
-    recruit: Annotated[Recruit, kinds.RECRUIT] = Field(default=Recruit(), description="Joints that may move.")
+    weight: float = spec_key(kinds.number(above=0.0), default=1.0, description="Weight in a layer.")
+    recruit: Recruit = spec_key(kinds.RECRUIT, default=Recruit(), description="Joints that may move.")

@@ -2,18 +2,15 @@
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal
-
-from pydantic import Field
+from typing import Any, ClassVar, Literal
 
 from motionedit.spec import kinds
 from motionedit.spec.body import BodySpec
-from motionedit.spec.events import EventSpec, OrFrame, event_faults
+from motionedit.spec.events import EventSpec, event, event_faults
 from motionedit.spec.faults import Fault
-from motionedit.spec.model import SpecModel
+from motionedit.spec.model import SpecModel, spec_key
+from motionedit.spec.nested import by_name, mapping
 from motionedit.spec.values import Unit
-
-Events = dict[str, Annotated[EventSpec, OrFrame()]]
 
 
 class Document(SpecModel):
@@ -22,22 +19,27 @@ class Document(SpecModel):
     # Whether times may name events that the spec does not list.
     knows_other_events: ClassVar[bool] = False
 
-    events: Events = Field(
+    events: Mapping[str, EventSpec] = spec_key(
+        by_name(event(EventSpec)),
         default={},
         description="Names for instants, used wherever a time stands.",
-        json_schema_extra={"propertyNames": dict(kinds.EVENT_NAME.json)},
+        more={"propertyNames": dict(kinds.EVENT_NAME.json)},
     )
-    unit: Annotated[Unit | None, kinds.UNIT] = Field(
+    unit: Unit | None = spec_key(
+        kinds.UNIT,
         default=None,
         description="What a length of the clips is: m, cm, mm, in, cmu (1/0.45 inch) or a number of metres. Converts "
         "nothing; serves reports in millimetres and the damped solver.",
     )
-    up: Annotated[Literal["y", "z", "auto"], kinds.word("y", "z", "auto")] = Field(
+    up: Literal["y", "z", "auto"] = spec_key(
+        kinds.word("y", "z", "auto"),
         default="auto",
         description="The axis that points up; auto: by the floor, the OFFSETs and the way the body stands.",
     )
-    body: BodySpec = Field(
-        default=BodySpec(), description="Which joint is what, where it cannot be told by names and lengths."
+    body: BodySpec = spec_key(
+        mapping(BodySpec),
+        default=BodySpec(),
+        description="Which joint is what, where it cannot be told by names and lengths.",
     )
 
     @property
@@ -50,7 +52,7 @@ class Document(SpecModel):
     def key_names(cls) -> tuple[str, ...]:
         """Return the keys of the spec, its own before those that all specs share."""
         names = super().key_names()
-        shared = Document.model_fields
+        shared = Document.model_keys
         return tuple(sorted(names, key=lambda name: name in shared))
 
     @classmethod

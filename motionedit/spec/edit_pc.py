@@ -1,15 +1,14 @@
 """The spec of edit-pc: goals at single frames, met in the space of motion principal coefficients, [PC] 4.2-4.3."""
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, ClassVar, Literal
-
-from pydantic import AfterValidator, Field
+from typing import Any, ClassVar, Literal
 
 from motionedit.spec import kinds
 from motionedit.spec.document import Document
 from motionedit.spec.faults import Fault
 from motionedit.spec.items import NOT_TWO_FRAMES, EffectorItem, measured_in_itself, repeated_names, taken_apart, without
-from motionedit.spec.model import SpecModel, mappings_in
+from motionedit.spec.model import SpecModel, mappings_in, spec_key
+from motionedit.spec.nested import list_of, mapping
 from motionedit.spec.scalars import Vector
 from motionedit.spec.times import Time
 from motionedit.spec.values import UNITS, OrientationSpec, Tolerance, Unit
@@ -28,34 +27,41 @@ class PcGoal(EffectorItem):
         {"if": {"not": {"required": ["orientation"]}}, "then": {"properties": {"tolerance": without("angle")}}},
     )
 
-    at: Annotated[Time, kinds.TIME] = Field(description="The instant of the goal.")
-    position: Annotated[Vector | None, kinds.VECTOR] = Field(
+    at: Time = spec_key(kinds.TIME, description="The instant of the goal.")
+    position: Vector | None = spec_key(
+        kinds.VECTOR,
         default=None,
         description="Where the effector shall be, in clip units. One of position, shift, orientation is needed.",
     )
-    shift: Annotated[Vector | None, kinds.VECTOR] = Field(
-        default=None, description="How far the effector shall move from where it is at that frame, in clip units."
+    shift: Vector | None = spec_key(
+        kinds.VECTOR,
+        default=None,
+        description="How far the effector shall move from where it is at that frame, in clip units.",
     )
-    orientation: Annotated[OrientationSpec | None, kinds.ORIENTATION] = Field(
+    orientation: OrientationSpec | None = spec_key(
+        kinds.ORIENTATION,
         default=None,
         description="How the effector's joint shall be turned, in degrees; alone or beside position or shift.",
     )
-    frame: Annotated[kinds.Frame, kinds.FRAME] = Field(
-        default="world", description="Axes of position, shift and orientation: world, or the character's heading."
+    frame: kinds.Frame = spec_key(
+        kinds.FRAME,
+        default="world",
+        description="Axes of position, shift and orientation: world, or the character's heading.",
     )
-    relative_to: Annotated[str | None, kinds.JOINT] = Field(
-        default=None, description="Measure in this joint's frame instead of the world's."
+    relative_to: str | None = spec_key(
+        kinds.JOINT, default=None, description="Measure in this joint's frame instead of the world's."
     )
-    axes: Annotated[tuple[int, ...], kinds.AXES] = Field(
-        default=(0, 1, 2), description="Axes that count for position or shift; default: all of [x, y, z]."
+    axes: tuple[int, ...] = spec_key(
+        kinds.AXES, default=(0, 1, 2), description="Axes that count for position or shift; default: all of [x, y, z]."
     )
-    weight: Annotated[float, kinds.number(above=0.0)] = Field(
-        default=1.0, description="Weight among goals of the same priority."
+    weight: float = spec_key(
+        kinds.number(above=0.0), default=1.0, description="Weight among goals of the same priority."
     )
-    priority: Annotated[int, kinds.whole()] = Field(
-        default=1, description="Larger is more important; goals of equal priority are weighted together."
+    priority: int = spec_key(
+        kinds.whole(), default=1, description="Larger is more important; goals of equal priority are weighted together."
     )
-    tolerance: Annotated[Tolerance | None, kinds.TOLERANCE] = Field(
+    tolerance: Tolerance | None = spec_key(
+        kinds.TOLERANCE,
         default=None,
         description="How near is met: clip units (degrees for an orientation alone), {position, angle}, or off; "
         "default 1 mm and 0.1 degree at leg length 0.85 m.",
@@ -102,22 +108,29 @@ class PcSolver(SpecModel):
         },
     )
 
-    method: Annotated[Literal["map", "gauss-newton", "damped"], kinds.word("map", "gauss-newton", "damped")] = Field(
+    method: Literal["map", "gauss-newton", "damped"] = spec_key(
+        kinds.word("map", "gauss-newton", "damped"),
         default="map",
         description="map: the likeliest change, components as a prior beside a pose residual that fades; gauss-newton: "
         "the components alone; damped: the paper's Algorithm 1, which needs unit:.",
     )
-    damping: Annotated[float, kinds.number(at_least=0.0)] = Field(
-        default=10.0, description="damped only: the damping xi, in damping_unit; 0 is a plain pseudo-inverse."
+    damping: float = spec_key(
+        kinds.number(at_least=0.0),
+        default=10.0,
+        description="damped only: the damping xi, in damping_unit; 0 is a plain pseudo-inverse.",
     )
-    damping_unit: Annotated[Unit, kinds.UNIT] = Field(
-        default=Unit("cm", UNITS["cm"]), description="damped only: the unit the solver works in, as unit:."
+    damping_unit: Unit = spec_key(
+        kinds.UNIT, default=Unit("cm", UNITS["cm"]), description="damped only: the unit the solver works in, as unit:."
     )
-    max_iterations: Annotated[int | None, kinds.whole(at_least=1, null=True, largest=1_000_000)] = Field(
-        default=1500, description="damped only: iterations at most; null for no bound."
+    max_iterations: int | None = spec_key(
+        kinds.whole(at_least=1, null=True, largest=1_000_000),
+        default=1500,
+        description="damped only: iterations at most; null for no bound.",
     )
-    tolerance: Annotated[float, kinds.number(above=0.0)] = Field(
-        default=1.0, description="damped only: the solver stops when the error is below this, in damping_unit."
+    tolerance: float = spec_key(
+        kinds.number(above=0.0),
+        default=1.0,
+        description="damped only: the solver stops when the error is below this, in damping_unit.",
     )
 
     @classmethod
@@ -130,7 +143,7 @@ class PcSolver(SpecModel):
                     yield Fault(f"belongs to method: damped; {method} needs no settings", (key,))
 
 
-def _goals_apart(goals: tuple[PcGoal, ...]) -> tuple[PcGoal, ...]:
+def _goals_apart(goals: tuple[PcGoal, ...], _others: Mapping[str, Any]) -> tuple[PcGoal, ...]:
     return taken_apart(goals, "goals")
 
 
@@ -141,47 +154,58 @@ class EditPcSpec(Document):
     # An event may be the model's own.
     knows_other_events: ClassVar[bool] = True
 
-    schema_id: Annotated[str, kinds.schema_id("edit-pc")] = Field(
-        default="motionedit/edit-pc/v1", alias="schema", description="Which spec this is."
+    schema_id: str = spec_key(
+        kinds.schema_id("edit-pc"), default="motionedit/edit-pc/v1", name="schema", description="Which spec this is."
     )
-    components: Annotated[int | None, kinds.whole(at_least=1)] = Field(
-        default=None, description="How many of the model's components are used; default: all."
+    components: int | None = spec_key(
+        kinds.whole(at_least=1), default=None, description="How many of the model's components are used; default: all."
     )
-    explained_variance: Annotated[float | None, kinds.number(above=0.0, at_most=1.0)] = Field(
-        default=None, description="Use as many components as explain this share of the variance, 0 to 1."
+    explained_variance: float | None = spec_key(
+        kinds.number(above=0.0, at_most=1.0),
+        default=None,
+        description="Use as many components as explain this share of the variance, 0 to 1.",
     )
-    goals: Annotated[tuple[PcGoal, ...], AfterValidator(_goals_apart)] = Field(
-        description="What shall be where, at which frame; [] changes nothing."
+    goals: tuple[PcGoal, ...] = spec_key(
+        list_of(mapping(PcGoal)),
+        after=_goals_apart,
+        description="What shall be where, at which frame; [] changes nothing.",
     )
-    solver: PcSolver = Field(default=PcSolver(), description="How the coefficients are found.")
-    residual_share: Annotated[float | str, kinds.either(("auto",), kinds.number(at_least=0.0, at_most=1.0))] = Field(
+    solver: PcSolver = spec_key(mapping(PcSolver), default=PcSolver(), description="How the coefficients are found.")
+    residual_share: float | str = spec_key(
+        kinds.either(("auto",), kinds.number(at_least=0.0, at_most=1.0)),
         default="auto",
         description="method: map; the share of a change that may leave the components, 0 to 1; auto: from the share of "
         "an unseen clip that the model does not explain.",
     )
-    feet: Annotated[Literal["keep", "move", "off"] | None, kinds.or_off(kinds.word("keep", "move", "off"))] = Field(
+    feet: Literal["keep", "move", "off"] | None = spec_key(
+        kinds.or_off(kinds.word("keep", "move", "off")),
         default=None,
         description="Planted feet: keep stands them where the input's stand, move where the edit takes each plant as a "
         "whole, off leaves them to the solver; default keep (off with the other methods, residual: drop and timing: "
         "normalized).",
     )
-    plausibility: Annotated[float | str | None, kinds.or_off(kinds.either(("off",), kinds.number(above=0.0)))] = Field(
+    plausibility: float | str | None = spec_key(
+        kinds.or_off(kinds.either(("off",), kinds.number(above=0.0))),
         default=None,
         description="Bound, or off; default 3. map: on the change from the input, in standard deviations of the "
         "database, times what makes of one of its clips another; gauss-newton: on the coefficients' Mahalanobis norm, "
         "times the database's largest; damped: off, its iterations bound it.",
     )
-    coefficients: Annotated[Literal["constant", "per_goal"], kinds.word("constant", "per_goal")] = Field(
+    coefficients: Literal["constant", "per_goal"] = spec_key(
+        kinds.word("constant", "per_goal"),
         default="constant",
         description="constant: one change of coefficients for the whole clip; per_goal: each frame with goals is "
         "solved by itself, the coefficients between are interpolated over time.",
     )
-    residual: Annotated[Literal["keep", "drop"], kinds.word("keep", "drop")] = Field(
+    residual: Literal["keep", "drop"] = spec_key(
+        kinds.word("keep", "drop"),
         default="keep",
         description="keep what the model cannot express of the clip, or drop it (the paper's eq. 3 alone).",
     )
-    timing: Annotated[Literal["original", "normalized"], kinds.word("original", "normalized")] = Field(
-        default="original", description="Timing of the edited clip: the input's own, or the model's timeline."
+    timing: Literal["original", "normalized"] = spec_key(
+        kinds.word("original", "normalized"),
+        default="original",
+        description="Timing of the edited clip: the input's own, or the model's timeline.",
     )
 
     @property

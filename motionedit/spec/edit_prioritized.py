@@ -3,17 +3,16 @@
 from collections.abc import Iterator, Mapping
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any, Literal, NamedTuple
-
-from pydantic import AfterValidator, Field, ValidationInfo
+from typing import Any, Literal, NamedTuple
 
 from motionedit.spec import kinds, scalars, values
-from motionedit.spec.constraint_types import Constraint
+from motionedit.spec.constraint_types import CONSTRAINT
 from motionedit.spec.constraints import ConstraintItem, Defaults
 from motionedit.spec.document import Document
 from motionedit.spec.faults import Fault, faulty, show
 from motionedit.spec.items import repeated_names, taken_apart
-from motionedit.spec.model import Context, Kind, SpecModel
+from motionedit.spec.model import Context, Kind, SpecModel, spec_key
+from motionedit.spec.nested import list_of, mapping
 from motionedit.spec.times import Duration
 
 # Passes of each method of smoothing where the spec does not say.
@@ -31,19 +30,25 @@ class Smoothing(SpecModel):
         },
     )
 
-    method: Annotated[Literal["passes", "paper"], kinds.word("passes", "paper")] = Field(
+    method: Literal["passes", "paper"] = spec_key(
+        kinds.word("passes", "paper"),
         default="passes",
         description="passes: low-pass the displacement and solve again; paper: eq. (4) and a filter on the root.",
     )
-    passes: Annotated[int | None, kinds.whole(at_least=0, largest=1000)] = Field(
-        default=None, description="Passes after the first solve; default 3, with method: paper 2."
+    passes: int | None = spec_key(
+        kinds.whole(at_least=0, largest=1000),
+        default=None,
+        description="Passes after the first solve; default 3, with method: paper 2.",
     )
-    sigma: Annotated[Duration, kinds.DURATION] = Field(
+    sigma: Duration = spec_key(
+        kinds.DURATION,
         default=Duration("0.062s", 0.062, is_seconds=True),
         description="passes only: width of the Gaussian low-pass.",
     )
-    cutoff: Annotated[float, kinds.number(above=0.0, smallest=0.01)] = Field(
-        default=3.0, description="paper only: cutoff of the root's low-pass, Hz."
+    cutoff: float = spec_key(
+        kinds.number(above=0.0, smallest=0.01),
+        default=3.0,
+        description="paper only: cutoff of the root's low-pass, Hz.",
     )
 
     @property
@@ -64,8 +69,8 @@ class Smoothing(SpecModel):
 class LayeredSolver(SpecModel):
     """Settings of the layered solver, section 3."""
 
-    max_iterations: Annotated[int, kinds.whole(at_least=1, largest=100_000)] = Field(
-        default=40, description="Iterations at most for each frame and pass."
+    max_iterations: int = spec_key(
+        kinds.whole(at_least=1, largest=100_000), default=40, description="Iterations at most for each frame and pass."
     )
 
 
@@ -151,9 +156,11 @@ LIMITS = Kind(
 )
 
 
-def _constraints_apart(constraints: tuple[ConstraintItem, ...], info: ValidationInfo) -> tuple[ConstraintItem, ...]:
+def _constraints_apart(
+    constraints: tuple[ConstraintItem, ...], others: Mapping[str, Any]
+) -> tuple[ConstraintItem, ...]:
     # Absent where it is faulty itself; then the spec is refused whatever stands here.
-    defaults = info.data.get("defaults", Defaults())
+    defaults = others.get("defaults", Defaults())
     return taken_apart([item.with_defaults(defaults) for item in constraints], "constraints")
 
 
@@ -168,45 +175,64 @@ REFERENCE = Kind(_reference, "a clip or a folder", {"type": "string", "minLength
 class EditPrioritizedSpec(Document):
     """Everything edit-prioritized is told."""
 
-    schema_id: Annotated[str, kinds.schema_id("edit-prioritized")] = Field(
-        default="motionedit/edit-prioritized/v1", alias="schema", description="Which spec this is."
+    schema_id: str = spec_key(
+        kinds.schema_id("edit-prioritized"),
+        default="motionedit/edit-prioritized/v1",
+        name="schema",
+        description="Which spec this is.",
     )
-    defaults: Defaults = Field(default=Defaults(), description="What constraints use that do not say otherwise.")
-    constraints: Annotated[tuple[Constraint, ...], AfterValidator(_constraints_apart)] = Field(
-        description="What shall hold, and how important it is; [] changes nothing."
+    defaults: Defaults = spec_key(
+        mapping(Defaults), default=Defaults(), description="What constraints use that do not say otherwise."
     )
-    masses: Annotated[dict[str, float], MASSES] = Field(
-        default={}, description="Kilograms by joint; default: an anthropometric table laid on the skeleton."
+    constraints: tuple[ConstraintItem, ...] = spec_key(
+        list_of(CONSTRAINT),
+        after=_constraints_apart,
+        description="What shall hold, and how important it is; [] changes nothing.",
     )
-    hinges: Annotated[str | tuple[str, ...], kinds.or_off(kinds.either(("auto", "off"), kinds.JOINTS))] = Field(
+    masses: dict[str, float] = spec_key(
+        MASSES, default={}, description="Kilograms by joint; default: an anthropometric table laid on the skeleton."
+    )
+    hinges: str | tuple[str, ...] = spec_key(
+        kinds.or_off(kinds.either(("auto", "off"), kinds.JOINTS)),
         default="auto",
         description="Joints that bend about one axis only: auto (knees and elbows), off, or a list of joints.",
     )
-    stiffness: Annotated[str | dict[str, float], STIFFNESS] = Field(
+    stiffness: str | dict[str, float] = spec_key(
+        STIFFNESS,
         default="human",
         description="How little joints give: human (a table laid on the skeleton), none (all alike, as in the paper), "
         "or numbers by joint: larger gives less, 1 is as the others.",
     )
-    limits: Annotated[str | dict[str, JointRange], kinds.or_off(LIMITS)] = Field(
+    limits: str | dict[str, JointRange] = spec_key(
+        kinds.or_off(LIMITS),
         default="human",
         description="How far joints turn from where the clip has them: human (ranges laid on the skeleton, never "
         "tighter than what the clip does), off (as in the paper), or swing and twist by joint, degrees.",
     )
-    attraction: Annotated[float, kinds.number(at_least=0.0, largest=10.0)] = Field(
-        default=1.0, description="Pull towards the input where the layers leave freedom: the vector z of eq. (1)."
+    attraction: float = spec_key(
+        kinds.number(at_least=0.0, largest=10.0),
+        default=1.0,
+        description="Pull towards the input where the layers leave freedom: the vector z of eq. (1).",
     )
-    smoothing: Smoothing = Field(default=Smoothing(), description="How the edit is kept continuous in time.")
-    curve: Annotated[Literal["time", "index"], kinds.word("time", "index")] = Field(
+    smoothing: Smoothing = spec_key(
+        mapping(Smoothing), default=Smoothing(), description="How the edit is kept continuous in time."
+    )
+    curve: Literal["time", "index"] = spec_key(
+        kinds.word("time", "index"),
         default="time",
         description="Parameter of the trajectory S: time, or the paper's index with piecewise-linear T(t).",
     )
-    solver: LayeredSolver = Field(default=LayeredSolver(), description="Settings of the solver.")
-    reference: Annotated[Path | None, REFERENCE] = Field(
+    solver: LayeredSolver = spec_key(
+        mapping(LayeredSolver), default=LayeredSolver(), description="Settings of the solver."
+    )
+    reference: Path | None = spec_key(
+        REFERENCE,
         default=None,
         description="Another version of the clip, or a folder with clips of the same relative names: footplants take "
         "plants and places from it, and constraints that say follow: reference their paths.",
     )
-    recruiting_rule: Annotated[Literal["expand", "error", "ignore"], kinds.word("expand", "error", "ignore")] = Field(
+    recruiting_rule: Literal["expand", "error", "ignore"] = spec_key(
+        kinds.word("expand", "error", "ignore"),
         default="expand",
         description="What a breach of eq. (2) leads to: expand the layer above, an error, or nothing.",
     )

@@ -1,17 +1,15 @@
 """Events of a spec: instants with names, given by frame, by clip, by a CSV file, or found by a rule."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import field
+from dataclasses import field, replace
 from pathlib import Path
-from typing import Annotated, Any, Literal, get_args
-
-from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler
-from pydantic_core import CoreSchema, core_schema
+from typing import Any, Literal, get_args
 
 from motionedit.dataclass import dataclass
 from motionedit.spec import kinds, scalars
 from motionedit.spec.faults import Fault, FaultyValueError, faulty, show
-from motionedit.spec.model import Context, Kind, SpecModel
+from motionedit.spec.model import Context, Kind, SpecModel, spec_key
+from motionedit.spec.nested import mapping, reference_to
 from motionedit.spec.times import Interval, parse_event_name, parse_interval, unknown_event
 from motionedit.spec.values import EffectorSpec
 
@@ -108,23 +106,26 @@ class DetectRule(SpecModel):
         },
     )
 
-    effector: Annotated[EffectorSpec, kinds.EFFECTOR] = Field(description="The point that is watched.")
-    minimum_of: Annotated[Measure | None, MEASURE] = Field(
+    effector: EffectorSpec = spec_key(kinds.EFFECTOR, description="The point that is watched.")
+    minimum_of: Measure | None = spec_key(
+        MEASURE,
         default=None,
         description="The event is where this is smallest: height over the ground, speed, or distance to the point "
         "`to`. One of minimum_of, maximum_of is needed.",
     )
-    maximum_of: Annotated[Measure | None, MEASURE] = Field(
-        default=None, description="The event is where this is largest; as minimum_of."
+    maximum_of: Measure | None = spec_key(
+        MEASURE, default=None, description="The event is where this is largest; as minimum_of."
     )
-    to: Annotated[scalars.Vector | None, kinds.VECTOR] = Field(
-        default=None, description="The point distances are measured to, in clip units; needed for distance."
+    to: scalars.Vector | None = spec_key(
+        kinds.VECTOR,
+        default=None,
+        description="The point distances are measured to, in clip units; needed for distance.",
     )
-    between: Annotated[Interval | None, kinds.INTERVAL] = Field(
-        default=None, description="Only frames of this interval are looked at (default: all)."
+    between: Interval | None = spec_key(
+        kinds.INTERVAL, default=None, description="Only frames of this interval are looked at (default: all)."
     )
-    after: Annotated[str | None, EVENT] = Field(
-        default=None, description="Only frames after this other event are looked at; instead of between."
+    after: str | None = spec_key(
+        EVENT, default=None, description="Only frames after this other event are looked at; instead of between."
     )
 
     @property
@@ -155,12 +156,17 @@ class EventSpec(SpecModel):
 
     at_least_one = (("frames", "detect"),)
 
-    frames: Annotated[EventFrames | None, FRAMES] = Field(
+    frames: EventFrames | None = spec_key(
+        FRAMES,
         default=None,
         description="0-based frames in the input clips: one for all, a CSV file (columns clip,frame; relative to the "
         "spec), or by clip (relative path or unique stem).",
     )
-    detect: DetectRule | None = Field(default=None, description="How to find the frame in clips that are not listed.")
+    detect: DetectRule | None = spec_key(
+        replace(mapping(DetectRule), null=True),
+        default=None,
+        description="How to find the frame in clips that are not listed.",
+    )
 
     @classmethod
     def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
@@ -169,24 +175,17 @@ class EventSpec(SpecModel):
             yield Fault("needs a value: a rule with an effector and minimum_of or maximum_of", ("detect",))
 
 
-class OrFrame:
-    """Lets a bare frame, ``hit: 94``, stand for ``hit: {frames: 94}``."""
+def event(model: type[EventSpec]) -> Kind:
+    """Return the kind of events: a bare frame, ``hit: 94``, stands for ``hit: {frames: 94}``."""
+    words = "a frame such as 94, or {frames: ...} or {detect: ...}"
 
-    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_before_validator_function(self._mapping, handler(source))
-
-    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        return {"anyOf": [_FRAME, handler(schema)]}
-
-    @staticmethod
-    def _mapping(value: object) -> object:
-        if value is None:
-            raise faulty("needs a value: a frame such as 94, or {frames: ...} or {detect: ...}")
+    def parse(value: object, context: Context) -> EventSpec:
         if isinstance(value, (str, bool, list)):
-            raise faulty(f"must be a frame such as 94, or {{frames: ...}} or {{detect: ...}}; not {show(value)}")
-        if isinstance(value, (int, float)):
-            return {"frames": scalars.whole(value, at_least=0)}
-        return value
+            raise faulty(f"must be {words}; not {show(value)}")
+        frame = isinstance(value, (int, float))
+        return model.parse({"frames": scalars.whole(value, at_least=0)} if frame else value, context)
+
+    return Kind(parse, words, {"anyOf": [_FRAME, reference_to(model)]}, models=(model,))
 
 
 def event_faults(events: object) -> Iterator[Fault]:

@@ -33,7 +33,7 @@ class Fault:
 
 
 class FaultyValueError(ValueError):
-    """A value with one or several faults; a ValueError, so that pydantic collects it."""
+    """A value with one or several faults; a ValueError, as what a value that is none raises."""
 
     def __init__(self, faults: Iterable[Fault]) -> None:
         self.faults = tuple(faults)

@@ -1,23 +1,23 @@
 """Goals and constraints: items of a list with names and effectors, where a list of effectors is one item each."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Annotated, Any, Self, TypeVar
-
-from pydantic import Field, PrivateAttr
+from typing import Any, Self, TypeVar
 
 from motionedit.spec import kinds
 from motionedit.spec.faults import Fault, Keys, dotted, faulty
-from motionedit.spec.model import SpecModel, mappings_in
+from motionedit.spec.model import SpecModel, mappings_in, spec_key
 from motionedit.spec.values import EffectorSpec
 
 
 class Item(SpecModel):
     """A named item of a list, which knows where it stands in the file."""
 
-    name: Annotated[str, kinds.NAME] = Field(
-        default="", description="Name in reports and for --set; default: the effector's, numbered where repeated."
+    name: str = spec_key(
+        kinds.NAME,
+        default="",
+        description="Name in reports and for --set; default: the effector's, numbered where repeated.",
     )
-    _keys: Keys = PrivateAttr(default=())
+    _keys: Keys = ()
 
     @property
     def keys(self) -> Keys:
@@ -35,21 +35,21 @@ class Item(SpecModel):
 
     def apart(self) -> Iterator[Self]:
         """Yield the items that this one stands for."""
-        yield self.model_copy()
+        yield self
 
     def _place(self, keys: Keys, name: str) -> Self:
-        item = self.model_copy(update={"name": name})
-        item._keys = keys  # noqa: SLF001 (its own class)
-        return item
+        return self.changed({"name": name, "_keys": keys})
 
 
 class EffectorItem(Item):
     """An item with an effector."""
 
-    effectors: Annotated[tuple[EffectorSpec, ...], kinds.EFFECTORS] = Field(
-        alias="effector", description="The point of the body that is meant; a list stands for one item each."
+    effectors: tuple[EffectorSpec, ...] = spec_key(
+        kinds.EFFECTORS,
+        name="effector",
+        description="The point of the body that is meant; a list stands for one item each.",
     )
-    _list_index: int | None = PrivateAttr(default=None)
+    _list_index: int | None = None
 
     @property
     def effector(self) -> EffectorSpec:
@@ -74,9 +74,8 @@ class EffectorItem(Item):
     def apart(self) -> Iterator[Self]:
         """Yield one item for each effector."""
         for i, effector in enumerate(self.effectors):
-            item = self.model_copy(update={"effectors": (effector,)})
-            item._list_index = i if len(self.effectors) > 1 else None  # noqa: SLF001 (its own class)
-            yield item
+            index = i if len(self.effectors) > 1 else None
+            yield self.changed({"effectors": (effector,), "_list_index": index})
 
 
 # For `between_keys`: the heading's frame beside a joint's.

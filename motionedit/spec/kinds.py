@@ -128,6 +128,11 @@ def word(*choices: str) -> Kind:
     return Kind(lambda value, _context: scalars.word(value, choices), scalars.one_of(choices), {"enum": list(choices)})
 
 
+def constant(text: str) -> Kind:
+    """Return the kind of one word alone."""
+    return Kind(lambda value, _context: scalars.word(value, (text,)), text, {"const": text, "type": "string"})
+
+
 def either(choices: Sequence[str], other: Kind) -> Kind:
     """Return the kind of a few words or values of another kind."""
     words = scalars.one_of((*choices, other.wanted))

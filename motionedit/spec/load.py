@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Generic, Literal, SupportsIndex, TypedDic
 from motionedit.dataclass import dataclass
 from motionedit.errors import MotionEditError, SpecError, together
 from motionedit.spec import SPEC_COMMANDS, model_of, schema_name
-from motionedit.spec.faults import Fault, Keys, dotted
+from motionedit.spec.faults import Fault, FaultyValueError, Keys, dotted
 from motionedit.spec.mapping_tree import NO_LINE, tree_of
 from motionedit.spec.overrides import apply_overrides
 from motionedit.spec.text_files import read_text
@@ -142,7 +142,7 @@ def load_spec(spec: Spec, command: str, **changes: Unpack[Overrides]) -> LoadedS
     tree, found = _with_events(tree, changes.get("events", {}))
     faults += found
     overrides = changes.get("overrides", ())
-    tree, found = apply_overrides(tree, overrides, known=model_of(command).model_fields if overrides else ())
+    tree, found = apply_overrides(tree, overrides, known=model_of(command).key_names() if overrides else ())
     faults += found
     data = tree.plain()
     if other := _other_command(data, command):
@@ -159,7 +159,7 @@ def load_spec(spec: Spec, command: str, **changes: Unpack[Overrides]) -> LoadedS
 
 def with_reference(loaded: LoadedSpec[EditPrioritizedSpec], reference: str) -> LoadedSpec[EditPrioritizedSpec]:
     """Return a spec with another reference, a path as the command line has it; reports tell it, too."""
-    model = loaded.model.model_copy(update={"reference": Path(reference)})
+    model = loaded.model.changed({"reference": Path(reference)})
     return replace(loaded, model=model, data={**loaded.data, "reference": reference})
 
 
@@ -233,9 +233,7 @@ def _other_command(data: dict[str, Any], command: str) -> str | None:
 
 def _validated(data: dict[str, Any], command: str, folder: Path) -> tuple[Document | None, list[Fault]]:
     # Imported here: the time it takes is not spent on a file that cannot be read.
-    from pydantic import ValidationError
-
-    from motionedit.spec.model import Context, faults_of
+    from motionedit.spec.model import Context
 
     model = model_of(command)
     events = data.get("events", {})
@@ -243,9 +241,9 @@ def _validated(data: dict[str, Any], command: str, folder: Path) -> tuple[Docume
     known = frozenset(events) if isinstance(events, dict) and not model.knows_other_events else None
     context = Context(folder, "" if folder == Path() else str(folder), known)
     try:
-        return model.model_validate(data, context=context), []
-    except ValidationError as error:
-        return None, faults_of(error, data)
+        return model.parse(data, context), []
+    except FaultyValueError as error:
+        return None, list(error.faults)
 
 
 def _together(faults: Sequence[Fault], tree: Node, file: str) -> MotionEditError:

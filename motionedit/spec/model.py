@@ -1,28 +1,18 @@
-"""What all spec models share: kinds of values with their JSON Schema, and all faults of a mapping reported at once."""
+"""What all spec models share: keys with kinds of values, and all faults of a mapping reported at once."""
 
 from collections.abc import Callable, Iterator, Mapping
-from itertools import combinations
+from itertools import chain
 from pathlib import Path
-from typing import Any, ClassVar, Self
-
-from pydantic import (
-    BaseModel,
-    ConfigDict,
-    GetCoreSchemaHandler,
-    GetJsonSchemaHandler,
-    ModelWrapValidatorHandler,
-    ValidationError,
-    ValidationInfo,
-    model_validator,
-)
-from pydantic_core import CoreSchema, core_schema
+from typing import Any, ClassVar, NoReturn, Self
 
 from motionedit.dataclass import dataclass
-from motionedit.spec.faults import Fault, FaultyValueError, Keys, faulty, nearest, show
+from motionedit.spec.faults import Fault, FaultyValueError, faulty, nearest, show
 from motionedit.spec.values import unknown_key
 
 # Named in the contract for later work, so that nobody takes the names for something else.
 LATER_KEYS = frozenset({"above", "feet", "joint_map", "limits", "outside", "scale"})
+# The default of a key that must be given.
+REQUIRED: Any = object()
 
 
 @dataclass(frozen=True)
@@ -45,33 +35,86 @@ NO_CONTEXT = Context()
 class Kind:
     """A kind of value: `parse` makes it from a plain value, `wanted` names it, `json` is its JSON Schema.
 
-    It stands in ``Annotated[type, kind]``. An empty value is refused unless `null`.
+    An empty value is refused unless `null`, which gives None; `parse` never sees one. `models` are those that `json`
+    refers to.
     """
 
     parse: Callable[[Any, Context], object]
     wanted: str
     json: Mapping[str, Any]
     null: bool = False
+    models: "tuple[type[SpecModel], ...]" = ()
 
-    def __get_pydantic_core_schema__(self, _source: object, _handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.with_info_plain_validator_function(self._validated)
+    def value_of(self, value: object, context: Context) -> object:
+        """Return the value that a plain one means.
 
-    def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        return dict(self.json)
-
-    def _validated(self, value: object, info: ValidationInfo) -> object:
+        Raises
+        ------
+        FaultyValueError
+            It is none of this kind.
+        """
         if value is None:
             if self.null:
                 return None
             raise faulty(f"needs a value: {self.wanted}")
-        return self.parse(value, info.context or NO_CONTEXT)
+        return self.parse(value, context)
 
 
-class SpecModel(BaseModel):
-    """A mapping of a spec: frozen, without unknown keys, and with all of its faults in one error."""
+@dataclass(frozen=True, eq=False)
+class SpecKey:
+    """A key of a mapping, as `spec_key` makes it: `name` is its name in YAML."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    name: str
+    kind: Kind
+    default: Any
+    description: str
+    after: Callable[[Any, Mapping[str, Any]], object] | None
+    more: Mapping[str, Any]
 
+    @property
+    def is_required(self) -> bool:
+        """Whether it must be given."""
+        return self.default is REQUIRED
+
+
+def spec_key(
+    kind: Kind,
+    *,
+    description: str,
+    default: Any = REQUIRED,  # noqa: ANN401  of the attribute's type
+    name: str = "",
+    after: Callable[[Any, Mapping[str, Any]], object] | None = None,
+    more: Mapping[str, Any] | None = None,
+) -> Any:  # noqa: ANN401  it stands for the attribute's value
+    """Return what makes an attribute of a `SpecModel` a key of its mapping.
+
+    Parameters
+    ----------
+    kind : Kind
+        Of its values.
+    description : str
+        For the JSON Schema, and the documentation.
+    default
+        The attribute's value where the key is not given; without it, it must be.
+    name : str
+        The key; the attribute's name if not given.
+    after : callable
+        Makes the attribute of the parsed value and of those of the keys before it, by their attributes' names; of keys
+        that are at fault it has none.
+    more : mapping
+        What else its JSON Schema has.
+    """
+    return SpecKey(name, kind, default, description, after, {} if more is None else more)
+
+
+class SpecModel:
+    """A mapping of a spec: frozen, without unknown keys, and with all of its faults in one error.
+
+    Two are equal where all their keys are. A new one has the defaults of all its keys.
+    """
+
+    # By the names of attributes; those of the most general class come first.
+    model_keys: ClassVar[Mapping[str, SpecKey]] = {}
     # Groups of keys of which exactly, at most or at least one is given.
     exactly_one: ClassVar[tuple[tuple[str, ...], ...]] = ()
     at_most_one: ClassVar[tuple[tuple[str, ...], ...]] = ()
@@ -80,6 +123,45 @@ class SpecModel(BaseModel):
     between_keys: ClassVar[tuple[Mapping[str, Any], ...]] = ()
     # What stands at a key that is unknown here but not elsewhere: "belongs to ...".
     foreign_keys: ClassVar[Mapping[str, str]] = {}
+
+    # The attributes whose keys were given.
+    given: frozenset[str]
+
+    def __init_subclass__(cls) -> None:
+        own = chain.from_iterable(vars(base).items() for base in reversed(cls.__mro__))
+        keys = {attribute: found for attribute, found in own if isinstance(found, SpecKey)}
+        cls.model_keys = {
+            attribute: found if found.name else _named(found, attribute) for attribute, found in keys.items()
+        }
+
+    def __init__(self) -> None:
+        vars(self).update({attribute: found.default for attribute, found in self.model_keys.items()})
+        vars(self)["given"] = frozenset()
+
+    def __setattr__(self, name: str, value: object) -> NoReturn:
+        raise AttributeError(f"{type(self).__name__} is frozen: '{name}' stays")
+
+    def __eq__(self, other: object) -> bool:
+        if type(other) is not type(self):
+            return NotImplemented
+        return all(getattr(self, attribute) == getattr(other, attribute) for attribute in self.model_keys)
+
+    def __hash__(self) -> int:
+        return hash((type(self), *(getattr(self, attribute) for attribute in self.model_keys)))
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in self.attributes())})"
+
+    def attributes(self) -> Iterator[tuple[str, Any]]:
+        """Yield the name and the value of each attribute that is a key."""
+        for attribute in self.model_keys:
+            yield attribute, getattr(self, attribute)
+
+    def changed(self, values: Mapping[str, object]) -> Self:
+        """Return a copy with other values of some attributes, whatever they are."""
+        copy = object.__new__(type(self))
+        vars(copy).update(vars(self) | dict(values))
+        return copy
 
     @classmethod
     def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
@@ -90,124 +172,87 @@ class SpecModel(BaseModel):
     @classmethod
     def key_names(cls) -> tuple[str, ...]:
         """Return the keys of the mapping, as YAML has them."""
-        return tuple(info.alias or name for name, info in cls.model_fields.items())
+        return tuple(found.name for found in cls.model_keys.values())
 
     @classmethod
-    def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        json = handler.resolve_ref_schema(handler(schema))
-        json["properties"] = {key: value for key, value in json["properties"].items() if key in cls.key_names()}
-        rules: list[dict[str, Any]] = [dict(rule) for rule in cls.between_keys]
-        for kind, groups in (("oneOf", cls.exactly_one), ("anyOf", cls.at_least_one)):
-            rules += [{kind: [{"required": [key]} for key in group]} for group in groups]
-        for group in cls.at_most_one:
-            rules += [{"not": {"required": list(pair)}} for pair in combinations(group, 2)]
-        if rules:
-            json["allOf"] = rules
-        return json
+    def wanted(cls) -> str:
+        """Return what a mapping of this model is, in words."""
+        return f"a mapping with the keys {', '.join(cls.key_names())}"
 
-    @model_validator(mode="wrap")
     @classmethod
-    def _with_all_faults(cls, data: object, handler: ModelWrapValidatorHandler[Self], _info: ValidationInfo) -> Self:
+    def parse(cls, data: object, context: Context = NO_CONTEXT) -> Self:
+        """Return the model of plain data.
+
+        Raises
+        ------
+        FaultyValueError
+            With all faults: those of its keys as such, then of their values in the model's order.
+        """
         if not isinstance(data, dict):
-            if isinstance(data, cls):
-                return data
-            wanted = f"a mapping with the keys {', '.join(cls.key_names())}"
-            raise faulty(f"needs a value: {wanted}" if data is None else f"must be {wanted}; not {show(data)}")
+            raise faulty(f"must be {cls.wanted()}; not {show(data)}")
         faults = list(cls._unknown_keys(data))
         meant = cls._as_meant(data) if faults else data
         faults += [*cls._missing_keys(meant), *cls._faults_in_groups(meant), *cls.faults_between_keys(meant)]
-        try:
-            model = handler(data)
-        except ValidationError as error:
-            faults += faults_of(error, data)
+        values: dict[str, Any] = {}
+        for attribute, found in cls.model_keys.items():
+            if found.name not in data:
+                values[attribute] = found.default
+                continue
+            try:
+                value = found.kind.value_of(data[found.name], context)
+                values[attribute] = value if found.after is None else found.after(value, values)
+            except FaultyValueError as error:
+                faults += [fault.under(found.name) for fault in error.faults]
         if faults:
             raise FaultyValueError(faults)
-        return model
+        values["given"] = frozenset(attribute for attribute, found in cls.model_keys.items() if found.name in data)
+        return cls().changed(values)
 
     @classmethod
     def _unknown_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
         names = cls.key_names()
-        for key in data:
-            if key in names:
+        for name in data:
+            if name in names:
                 continue
-            if key in cls.foreign_keys:
-                yield Fault(cls.foreign_keys[key], (key,))
-            elif key in LATER_KEYS:
-                yield Fault("not supported yet", (key,))
+            if name in cls.foreign_keys:
+                yield Fault(cls.foreign_keys[name], (name,))
+            elif name in LATER_KEYS:
+                yield Fault("not supported yet", (name,))
             else:
-                yield Fault(unknown_key(key, names), (key,))
+                yield Fault(unknown_key(name, names), (name,))
 
     @classmethod
     def _as_meant(cls, data: Mapping[str, Any]) -> dict[str, Any]:
         """Return the data with misspelt keys put right, so that one slip is not reported as a missing key too."""
         names = cls.key_names()
-        return {(key if key in names else nearest(key, names) or key): value for key, value in data.items()}
+        return {(name if name in names else nearest(name, names) or name): value for name, value in data.items()}
 
     @classmethod
     def _faults_in_groups(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
         for group in (*cls.exactly_one, *cls.at_least_one):
-            if not any(key in data for key in group):
+            if not any(name in data for name in group):
                 yield Fault(f"needs one of {', '.join(group)}")
         for group in (*cls.exactly_one, *cls.at_most_one):
-            given = [key for key in data if key in group]
-            for key in given[1:]:
-                yield Fault(f"stands beside {given[0]}; give one of {', '.join(group)}", (key,))
+            given = [name for name in data if name in group]
+            for name in given[1:]:
+                yield Fault(f"stands beside {given[0]}; give one of {', '.join(group)}", (name,))
 
     @classmethod
     def _missing_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
-        for name, info in cls.model_fields.items():
-            key = info.alias or name
-            if info.is_required() and key not in data:
-                kinds = [kind for kind in info.metadata if isinstance(kind, Kind)]
-                yield Fault(f"is missing; it is {kinds[0].wanted}" if kinds else "is missing", (key,))
+        for found in cls.model_keys.values():
+            if found.is_required and found.name not in data:
+                yield Fault(
+                    f"is missing; it is {found.kind.wanted}" if found.kind.wanted else "is missing", (found.name,)
+                )
 
 
-def faults_of(error: ValidationError, data: object) -> list[Fault]:
-    """Return pydantic's errors as faults in plain words; what `SpecModel` reports itself is left out."""
-    faults: list[Fault] = []
-    for item in error.errors(include_url=False):
-        keys = _keys_in(data, item["loc"])
-        cause = item.get("ctx", {}).get("error")
-        if isinstance(cause, FaultyValueError):
-            faults += [fault.under(*keys) for fault in cause.faults]
-        elif item["type"] in ("missing", "extra_forbidden"):
-            continue
-        else:
-            faults.append(Fault(_shape_words(item["type"], item["input"]), keys))
-    return faults
+def _named(found: SpecKey, attribute: str) -> SpecKey:
+    return SpecKey(attribute, found.kind, found.default, found.description, found.after, found.more)
 
 
-def _keys_in(data: object, loc: tuple[str | int, ...]) -> Keys:
-    """Return the keys of a pydantic location; a union's tag is no key of the file."""
-    keys: list[str | int] = []
-    here: Any = data
-    for part in loc:
-        if isinstance(here, dict) and part not in here and part in (here.get("type"), here.get("method")):
-            continue
-        keys.append(part)
-        if isinstance(here, dict):
-            here = here.get(part)
-        elif isinstance(here, list) and isinstance(part, int):
-            here = here[part]
-    return tuple(keys)
-
-
-def _shape_words(kind: str, value: object) -> str:
-    wanted = {
-        "tuple_type": "a list",
-        "list_type": "a list",
-        "dict_type": "a mapping",
-        "model_type": "a mapping",
-        "model_attributes_type": "a mapping",
-    }.get(kind, "something else")
-    if value is None:
-        return f"needs a value: {wanted}" + (", [] for an empty one" if wanted == "a list" else "")
-    return f"must be {wanted}, not {show(value)}"
-
-
-def mappings_in(data: Mapping[str, Any], key: str) -> Iterator[tuple[int, dict[str, Any]]]:
+def mappings_in(data: Mapping[str, Any], name: str) -> Iterator[tuple[int, dict[str, Any]]]:
     """Yield the mappings of a list with their indices, whatever else may stand there."""
-    value = data.get(key)
+    value = data.get(name)
     if isinstance(value, list):
         for i, item in enumerate(value):
             if isinstance(item, dict):

@@ -1,15 +1,14 @@
 """The spec of normalize: clips of one behaviour onto one timeline, [PC] section 5."""
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, Literal
-
-from pydantic import Field
+from typing import Any, Literal
 
 from motionedit.spec import kinds, times
 from motionedit.spec.document import Document
-from motionedit.spec.events import EventSpec, OrFrame
+from motionedit.spec.events import EventSpec, event
 from motionedit.spec.faults import Fault, faulty
-from motionedit.spec.model import Context, Kind, SpecModel
+from motionedit.spec.model import Context, Kind, SpecModel, spec_key
+from motionedit.spec.nested import by_name, mapping
 from motionedit.spec.times import Time
 
 
@@ -44,19 +43,20 @@ ALIGN_AT = Kind(_align_at, "first or an event's name", {**kinds.EVENT_NAME.json,
 class Align(SpecModel):
     """How clips are laid over each other on the ground plane."""
 
-    heading: Annotated[bool, kinds.FLAG] = Field(default=True, description="Turn all clips to one heading.")
-    position: Annotated[bool, kinds.FLAG] = Field(
-        default=True, description="Move all clips to one place on the ground."
-    )
-    at: Annotated[str, ALIGN_AT] = Field(
-        default="first", description="The instant at which they are aligned: first (frame), or an event's name."
+    heading: bool = spec_key(kinds.FLAG, default=True, description="Turn all clips to one heading.")
+    position: bool = spec_key(kinds.FLAG, default=True, description="Move all clips to one place on the ground.")
+    at: str = spec_key(
+        ALIGN_AT,
+        default="first",
+        description="The instant at which they are aligned: first (frame), or an event's name.",
     )
 
 
 class TimelineEvent(EventSpec):
     """An event, and where it goes on the common timeline."""
 
-    target: Annotated[Time | str, TARGET] = Field(
+    target: Time | str = spec_key(
+        TARGET,
         default="mean",
         description="Where the event goes: mean (the mean key frame, eq. 14) or a time of the normalized clip.",
     )
@@ -65,32 +65,43 @@ class TimelineEvent(EventSpec):
 class NormalizeSpec(Document):
     """Everything normalize is told."""
 
-    schema_id: Annotated[str, kinds.schema_id("normalize")] = Field(
-        default="motionedit/normalize/v1", alias="schema", description="Which spec this is."
+    schema_id: str = spec_key(
+        kinds.schema_id("normalize"),
+        default="motionedit/normalize/v1",
+        name="schema",
+        description="Which spec this is.",
     )
-    frames: Annotated[int | str, kinds.either(("mean",), kinds.whole(at_least=2, largest=1_000_000))] = Field(
-        default="mean", description="Frames of the normalized clips: mean (the mean duration, eq. 13) or a number."
+    frames: int | str = spec_key(
+        kinds.either(("mean",), kinds.whole(at_least=2, largest=1_000_000)),
+        default="mean",
+        description="Frames of the normalized clips: mean (the mean duration, eq. 13) or a number.",
     )
-    frame_rate: Annotated[float | None, kinds.number(above=0.0, smallest=0.01, largest=1e5)] = Field(
-        default=None, description="Hz of the normalized clips; default: the clips' own, an error where they differ."
-    )
-    align: Align = Field(default=Align(), description="Alignment on the ground; edit-pc undoes it on output.")
-    from_time: Annotated[Time | None, kinds.TIME] = Field(
+    frame_rate: float | None = spec_key(
+        kinds.number(above=0.0, smallest=0.01, largest=1e5),
         default=None,
-        alias="from",
+        description="Hz of the normalized clips; default: the clips' own, an error where they differ.",
+    )
+    align: Align = spec_key(
+        mapping(Align), default=Align(), description="Alignment on the ground; edit-pc undoes it on output."
+    )
+    from_time: Time | None = spec_key(
+        kinds.TIME,
+        default=None,
+        name="from",
         description="Where each clip begins to count, an event or another time; default: its first frame. Of a cyclic "
         "motion one cycle, from one heel strike to the next, is normalized.",
     )
-    to_time: Annotated[Time | None, kinds.TIME] = Field(
-        default=None, alias="to", description="Where each clip ends to count; default: its last frame."
+    to_time: Time | None = spec_key(
+        kinds.TIME, default=None, name="to", description="Where each clip ends to count; default: its last frame."
     )
-    rest_pose: Annotated[Literal["drop", "keep"], kinds.word("drop", "keep")] = Field(
-        default="drop", description="What becomes of a T-pose in front of a take."
+    rest_pose: Literal["drop", "keep"] = spec_key(
+        kinds.word("drop", "keep"), default="drop", description="What becomes of a T-pose in front of a take."
     )
-    events: dict[str, Annotated[TimelineEvent, OrFrame()]] = Field(  # type: ignore[assignment]
+    events: Mapping[str, TimelineEvent] = spec_key(
+        by_name(event(TimelineEvent)),
         default={},
         description="Instants that are brought to the same frame in all clips; none: durations only.",
-        json_schema_extra={"propertyNames": dict(kinds.EVENT_NAME.json)},
+        more={"propertyNames": dict(kinds.EVENT_NAME.json)},
     )
 
     @classmethod

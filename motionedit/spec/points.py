@@ -1,13 +1,11 @@
 """Points of a constraint: when and where an effector shall be, [PRIO] section 4.2."""
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, Literal
-
-from pydantic import Field
+from typing import Any, Literal
 
 from motionedit.spec import kinds
 from motionedit.spec.faults import Fault
-from motionedit.spec.model import SpecModel
+from motionedit.spec.model import SpecModel, spec_key
 from motionedit.spec.scalars import Vector
 from motionedit.spec.times import Interval, Time
 from motionedit.spec.values import OrientationSpec
@@ -28,44 +26,50 @@ class Point(SpecModel):
     at_most_one = (("position", "shift"), LENGTH_KEYS)
     between_keys = tuple({"not": {"required": ["during", key]}} for key in ("position", "orientation"))
 
-    hold: Annotated[Interval | None, kinds.INTERVAL] = Field(
-        default=None, description="Stands still from a to b, [a, b]. One of hold, during, at is needed."
+    hold: Interval | None = spec_key(
+        kinds.INTERVAL, default=None, description="Stands still from a to b, [a, b]. One of hold, during, at is needed."
     )
-    during: Annotated[Interval | None, kinds.INTERVAL] = Field(
-        default=None, description="Rides the input's own trajectory from a to b, [a, b], plus shift."
+    during: Interval | None = spec_key(
+        kinds.INTERVAL, default=None, description="Rides the input's own trajectory from a to b, [a, b], plus shift."
     )
-    at: Annotated[Time | None, kinds.TIME] = Field(default=None, description="One instant.")
-    position: Annotated[Vector | None, kinds.VECTOR] = Field(
-        default=None, description="Where the effector shall be, in clip units; at most one of position, shift."
+    at: Time | None = spec_key(kinds.TIME, default=None, description="One instant.")
+    position: Vector | None = spec_key(
+        kinds.VECTOR,
+        default=None,
+        description="Where the effector shall be, in clip units; at most one of position, shift.",
     )
-    shift: Annotated[Vector | None, kinds.VECTOR] = Field(
+    shift: Vector | None = spec_key(
+        kinds.VECTOR,
         default=None,
         description="Displacement in clip units from the input's place: at the start of a hold, along a ride, at an "
         "instant; default [0, 0, 0].",
     )
-    orientation: Annotated[OrientationSpec | None, kinds.ORIENTATION] = Field(
-        default=None, description="How the effector's joint shall be turned, in degrees; default: as in the input."
+    orientation: OrientationSpec | None = spec_key(
+        kinds.ORIENTATION,
+        default=None,
+        description="How the effector's joint shall be turned, in degrees; default: as in the input.",
     )
-    distance: Annotated[float | None, _LENGTH] = Field(
+    distance: float | None = spec_key(
+        _LENGTH,
         default=None,
         description="distance only: how far the two points shall be from each other, in clip units; default: as in the "
         "input (a hold: as at its start). At most one of distance, at_least, at_most.",
     )
-    at_least: Annotated[float | None, _LENGTH] = Field(
-        default=None, description="distance only: the least that the distance may be, in clip units."
+    at_least: float | None = spec_key(
+        _LENGTH, default=None, description="distance only: the least that the distance may be, in clip units."
     )
-    at_most: Annotated[float | None, _LENGTH] = Field(
-        default=None, description="distance only: the most that the distance may be, in clip units."
+    at_most: float | None = spec_key(
+        _LENGTH, default=None, description="distance only: the most that the distance may be, in clip units."
     )
-    tension: Annotated[float, _SPLINE] = Field(
-        default=0.0, description="Kochanek-Bartels tension of an instant, -1 to 1; default 0. A hold implies 1."
+    tension: float = spec_key(
+        _SPLINE,
+        default=0.0,
+        description="Kochanek-Bartels tension of an instant, -1 to 1; default 0. A hold implies 1.",
     )
-    continuity: Annotated[float, _SPLINE] = Field(
-        default=0.0, description="Kochanek-Bartels continuity of an instant, -1 to 1; default 0."
+    continuity: float = spec_key(
+        _SPLINE, default=0.0, description="Kochanek-Bartels continuity of an instant, -1 to 1; default 0."
     )
-    bias: Annotated[float, _SPLINE] = Field(
-        default=0.0, description="Kochanek-Bartels bias of an instant, -1 to 1; default 0."
-    )
+    bias: float = spec_key(_SPLINE, default=0.0, description="Kochanek-Bartels bias of an instant, -1 to 1; default 0.")
 
     @property
     def start(self) -> Time:

@@ -61,7 +61,7 @@ def test_a_kind_of_constraint_is_one_file_one_model_and_a_line_in_the_registry()
 @pytest.mark.parametrize("name", list(KINDS))
 def test_what_a_kinds_model_has_of_its_own_is_what_its_constraint_takes(name):
     model, kind = TYPES[name], KINDS[name]
-    keys = {kind.called.get(key, key) for key in (info.alias or key for key, info in model.model_fields.items())}
+    keys = {kind.called.get(key.name, key.name) for key in model.model_keys.values()}
     takes = {field.name for field in fields(kind)} - {"measure", "since", "yields", "goals"}
     # What is common to all, what becomes the measure, where the clip begins, and what yields is resolved for all alike;
     # where feet stand is found later.

@@ -152,7 +152,7 @@ def test_poses_are_yaml_that_a_spec_takes_and_say_where_the_effector_is(run, wri
     poses = forward(motion)
     local = {"RightHand": {0: [0.0, -92.0, 0.5], 1: [0.0, -92.0, 5.0]}, "Spine": {0: [0.0, 0.0, 0.0]}}
     for goal in goals:
-        PcGoal.model_validate(goal)
+        PcGoal.parse(goal)
         effector = goal["effector"] if isinstance(goal["effector"], dict) else {"joint": goal["effector"]}
         name = effector.get("joint") or effector["end_site"]
         j = INDEX[name]

@@ -95,6 +95,14 @@ def test_words_are_replaced_where_they_are_touched(values, touched, places, blan
     assert compiled().splice(text + b" 1", cells, values, places, np.empty(len(out) + 2, np.uint8)) == -1
 
 
+@given(st.lists(st.sampled_from([" ", "\n", "\t", "\r", "  "]), min_size=1, max_size=600), st.integers(-1, 1))
+def test_gaps_are_plain_where_they_are_single_blanks_and_line_feeds(gaps, more):
+    text = "".join(f"{n}{gap}" for n, gap in enumerate(gaps))
+    found = [blank for gap in gaps for blank in gap]
+    plain = len(found) == len(gaps) + more and set(found) <= {" ", "\n"}
+    assert compiled().plain_gaps(text.encode(), len(gaps) + more) is plain
+
+
 @pytest.mark.parametrize("large", [1e15, -1e300, np.inf, np.nan])
 def test_a_number_that_is_too_large_is_left_to_others(large):
     out = np.empty(6 + LONGEST_WHOLE + 1, np.uint8)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     TakeRows = Callable[[int, FloatArray], None]
 
 # A block and its arrays stay in the processor's cache.
-BLOCK_BYTES = 1 << 17
+BLOCK_BYTES = 1 << 18
 _CTRL_Z = b"\x1a"
 _BLANK = b" \t\n\r\v\f" + _CTRL_Z
 _CUT_NUMBER = re.compile(rb"[+-]?[0-9]*\.?[0-9]*(?:[eE][+-]?)?[0-9]*")

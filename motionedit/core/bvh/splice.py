@@ -138,7 +138,7 @@ def _spliced_rows(clip: Written, edit: _Edit, first: int, at: int) -> Generator[
             begin, end = int(rows.starts[first + block]), int(rows.stops[first + chosen.stop - 1])
             yield data[at:begin]
             if edit.cells[chosen].all() and _is_plain(clip, (begin, end), edit.columns, chosen.stop - block):
-                yield memoryview(rows_text(edit.values[chosen], decimals=decimals, ending=b"\n"))[:-1]
+                yield rows_text(edit.values[chosen], decimals=decimals, ending=b"\n")[:-1]
                 at = end
                 continue
             cells, values = edit.cells[chosen].reshape(-1), edit.values[chosen].reshape(-1)
@@ -151,12 +151,18 @@ def _is_plain(clip: Written, span: tuple[int, int], columns: IntArray, count: in
     """Return whether so many whole rows are written, and nothing stands between values but single blanks and LF.
 
     Such rows need no splicing: all their bytes are new. N values have N - 1 gaps, so as many blanks leave no room for
-    a second one anywhere. (All blanks are counted at once: where each value has one, numpy is quicker than `count`.)
+    a second one anywhere.
     """
     width = clip.text.motion.skeleton.channel_count
-    text = clip.text.data[span[0] : span[1]]
-    if len(columns) < width or any(blank in text for blank in (b"\t", b"\r", b"\v", b"\f")):
+    if len(columns) < width:
         return False
+    kernel = compiled()
+    if kernel is not None:
+        return bool(kernel.plain_gaps(memoryview(clip.text.data)[span[0] : span[1]], count * width - 1))
+    text = clip.text.data[span[0] : span[1]]
+    if any(blank in text for blank in (b"\t", b"\r", b"\v", b"\f")):
+        return False
+    # All at once: where each value has one, numpy is quicker than `count`.
     blanks = np.count_nonzero(np.frombuffer(text, np.uint8) <= ord(" "))
     return bool(blanks == count * width - 1)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from io import BytesIO
+from io import SEEK_END, BytesIO
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +14,8 @@ from motionedit.core.euler import joint_angles
 from motionedit.errors import BvhError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
     from motionedit.core.arrays import BoolArray, FloatArray
     from motionedit.core.bvh.text import Written
     from motionedit.core.motion import Motion
@@ -42,7 +44,7 @@ def resampled_bytes(clip: Written, motion: Motion) -> bytes:
     data, header = clip.text.data, clip.text.header
     head = head_bytes(clip, frames=len(values), frame_time=motion.frame_time)
     ending = _line_ending(data, header.rows_start)
-    return head + ending + rows_text(values, decimals=decimals_of_edits(clip), ending=ending)
+    return _joined(head + ending, rows_pieces(values, decimals=decimals_of_edits(clip), ending=ending))
 
 
 def new_bytes(motion: Motion, *, decimals: int = FEWEST_DECIMALS) -> bytes:
@@ -58,7 +60,7 @@ def new_bytes(motion: Motion, *, decimals: int = FEWEST_DECIMALS) -> bytes:
     lines = [*hierarchy_lines(skeleton, decimals), "MOTION", f"Frames: {len(values)}"]
     lines.append(f"Frame Time: {plain_number(motion.frame_time)}")
     head = "".join(f"{line}\n" for line in lines).encode()
-    return head + rows_text(values, decimals=decimals, ending=b"\n")
+    return _joined(head, rows_pieces(values, decimals=decimals, ending=b"\n"))
 
 
 def plain_number(value: float) -> str:
@@ -94,28 +96,39 @@ def head_bytes(clip: Written, *, frames: int, frame_time: float | None = None) -
     return data[:start] + count + data[stop:time_start] + time + data[time_stop : header.rows_start]
 
 
-def rows_text(values: FloatArray, *, decimals: int, ending: bytes) -> bytes:
-    """Return rows of values with a blank between two and the line ending after each."""
+def _joined(head: bytes, pieces: Iterable[bytes | memoryview]) -> bytes:
+    """Return a head and pieces in one: a stream grows in place, where joining them would hold the file twice."""
+    stream = BytesIO(head)
+    stream.seek(0, SEEK_END)
+    stream.writelines(pieces)
+    return stream.getvalue()
+
+
+def rows_pieces(values: FloatArray, *, decimals: int, ending: bytes) -> Iterator[bytes | memoryview]:
+    """Yield the text of rows of values, with a blank between two and the line ending after each, block by block."""
+    # A value that moves takes about ten characters.
+    step = max(BLOCK_BYTES // (10 * values.shape[1]), 1)
+    for start in range(0, len(values), step):
+        yield rows_text(values[start : start + step], decimals=decimals, ending=ending)
+
+
+def rows_text(values: FloatArray, *, decimals: int, ending: bytes) -> memoryview:
+    """Return the text of a block of rows, as `rows_pieces` does."""
     kernel = compiled()
     if kernel is not None:
         text = np.empty(values.size * (decimals + LONGEST_WHOLE) + len(values) * len(ending), np.uint8)
         length = kernel.rows_to_text(np.ascontiguousarray(values), values.shape[1], decimals, ending, text)
         if length >= 0:
-            return text[:length].tobytes()
+            return text.data[:length]
     ends = np.full(values.shape[1], ord(" "), np.uint8)
     ends[-1] = ord("\n")
-    step = max(BLOCK_BYTES // (10 * values.shape[1]), 1)
-    stream = BytesIO()
-    for start in range(0, len(values), step):
-        block = values[start : start + step]
-        words = format_fixed(block.reshape(-1), decimals=decimals, ends=np.tile(ends, len(block)))
-        margin = words.chars.shape[1]
-        stops = np.cumsum(words.lengths)
-        text = np.empty(margin + int(stops[-1]), np.uint8)
-        place(words.chars, stops, out=text, margin=margin)
-        text = text[margin:]
-        stream.write(text.data if ending == b"\n" else text.tobytes().replace(b"\n", ending))
-    return stream.getvalue()
+    words = format_fixed(values.reshape(-1), decimals=decimals, ends=np.tile(ends, len(values)))
+    margin = words.chars.shape[1]
+    stops = np.cumsum(words.lengths)
+    text = np.empty(margin + int(stops[-1]), np.uint8)
+    place(words.chars, stops, out=text, margin=margin)
+    text = text[margin:]
+    return text.data if ending == b"\n" else memoryview(text.tobytes().replace(b"\n", ending))
 
 
 def _line_ending(data: bytes, at: int) -> bytes:

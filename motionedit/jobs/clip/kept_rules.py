@@ -68,7 +68,7 @@ def kept_body(rules: Mapping[str, Any], skeleton: Skeleton, *, label: str, clip:
     from motionedit.spec.body import BodySpec
 
     try:
-        spec = BodySpec.model_validate(rules.get("body", {}))
+        spec = BodySpec.parse(rules.get("body", {}))
     except ValueError as error:
         raise ClipError(
             "its rules for the body are damaged; make it again with 'motionedit normalize'", file=label

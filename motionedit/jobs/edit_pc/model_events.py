@@ -97,11 +97,7 @@ def _model_rules(model: MotionModel, names: Sequence[str], *, label: str) -> dic
     rules = model.rules["events"]
     context = Context()
     try:
-        return {
-            name: EventSpec.model_validate({"detect": rules[name]}, context=context)
-            for name in names
-            if rules.get(name)
-        }
-    except ValueError as error:  # pydantic's is one
+        return {name: EventSpec.parse({"detect": rules[name]}, context) for name in names if rules.get(name)}
+    except ValueError as error:
         message = "its rules for events are damaged; make it again with 'motionedit fit-pca'"
         raise ModelError(message, file=label) from error

@@ -1,6 +1,8 @@
 """Quick frozen dataclasses are those of the library in all but the time they take."""
 
+import inspect
 import pickle
+import threading
 from dataclasses import FrozenInstanceError, dataclass, field, fields, replace
 from functools import cached_property
 
@@ -65,3 +67,38 @@ def test_without_eq_it_is_itself_alone(make):
 
 def test_it_goes_through_a_pickle():
     assert pickle.loads(pickle.dumps(Sent("a"))) == Sent("a")  # noqa: S301  its own
+
+
+ASKED_FIRST = {
+    "made": lambda cls: cls([1]).y,
+    "fields": fields,
+    "signature": inspect.signature,
+    "subclass": lambda cls: cls.sub([1], note="a"),
+    "threads": lambda cls: [each.join() for each in [start(cls, [1]) for _ in range(8)]],
+}
+
+
+def start(cls, value):
+    thread = threading.Thread(target=cls, args=(value,))
+    thread.start()
+    return thread
+
+
+@MAKERS
+@pytest.mark.parametrize("ask", ASKED_FIRST.values(), ids=ASKED_FIRST)
+def test_it_is_the_same_whatever_it_is_asked_for_first(make, ask):
+    @make(frozen=True)
+    class Point:
+        y: list = field(default_factory=list)
+
+    @make(frozen=True)
+    class Sub(Point):
+        note: str = ""
+
+    Point.sub = Sub
+    ask(Point)
+    assert [each.name for each in fields(Sub)] == ["y", "note"]
+    assert list(inspect.signature(Sub).parameters) == ["y", "note"]
+    assert Sub() == Sub([], "")
+    assert Sub().y is not Sub().y
+    assert inspect.getdoc(Sub)

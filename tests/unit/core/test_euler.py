@@ -7,12 +7,14 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from motionedit.core import rotations as rot
+from motionedit.core.compiled import compiled, solver_name
 from motionedit.core.euler import (
     GIMBAL_BAND,
     angles_near,
     joint_angles,
     other_solution,
     solve_angles,
+    solved_tracks,
 )
 from motionedit.core.euler_pieces import piece_angles, runs, touched_pieces
 from motionedit.core.motion import Motion
@@ -73,6 +75,27 @@ def test_the_compiled_choice_is_that_of_numpy_to_the_bit(axes, size, rng, monkey
     compiled = angles_near(q, axes, seed=seed)
     monkeypatch.setenv("MOTIONEDIT_SOLVER", "numpy")
     np.testing.assert_array_equal(compiled, angles_near(q, axes, seed=seed))
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("axes", [*ORDERS, (1, 2)])
+def test_tracks_in_blocks_are_those_of_numpy_to_the_bit(axes, rng, monkeypatch):
+    q = rot.normalize(rng.normal(size=(4000, 5, 4)))
+    solved = solved_tracks(q, np.array([4, 0, 3]), axes)
+    np.testing.assert_array_equal(solved[:, 1], solve_angles(q[:, 0].T, axes))
+    monkeypatch.setenv("MOTIONEDIT_SOLVER", "numpy")
+    np.testing.assert_array_equal(solved, solved_tracks(q, np.array([4, 0, 3]), axes))
+
+
+@pytest.mark.skipif(solver_name() == "numpy", reason="nothing compiled here")
+def test_wrong_sizes_axes_and_joints_are_errors_and_no_crash():
+    q, sums = np.zeros((2, 3, 4)), np.empty((6, 1, 2))
+    for joint, axes, out in ((3, (0, 1, 2), sums), (-1, (0, 1, 2), sums), (0, (0, 1, 1), sums), (0, (0, 1, 2), q)):
+        with pytest.raises(ValueError, match=r"joints|axes|sums"):
+            compiled().euler_sums(q, 3, np.array([joint]), *axes, out)
+    for tangents, axes in ((np.zeros(5), (0, 1, 2)), (np.zeros(6), (0, 3, 1))):
+        with pytest.raises(ValueError, match=r"tangents|axes"):
+            compiled().from_tangents(tangents, *axes, np.empty((2, 4)))
 
 
 @pytest.mark.parametrize("size", [0.3, 1.5, 10.0])

@@ -166,6 +166,17 @@ def test_rows_of_another_width_are_an_error_and_no_crash():
             compiled().turn(np.zeros((7, 4)), np.zeros((7, 4)), np.empty(shape))
 
 
+@pytest.mark.compiled
+@pytest.mark.parametrize("axes", list(permutations(range(3))))
+@pytest.mark.parametrize("leading", [(), (0,), (7,), (5, 3)])
+def test_compiled_turns_about_three_axes_are_those_of_numpy_to_the_bit(axes, leading, rng, monkeypatch):
+    angles = rng.uniform(-7.0, 7.0, size=(*leading, 6))[..., ::2]
+    angles[..., :1] = np.where(rng.random(angles[..., :1].shape) < 0.3, np.pi, angles[..., :1])
+    compiled = rot.from_euler(angles, axes)
+    monkeypatch.setenv("MOTIONEDIT_SOLVER", "numpy")
+    np.testing.assert_array_equal(compiled, rot.from_euler(angles, axes), strict=True)
+
+
 def test_dots_and_lengths_are_sums_and_norms_to_the_bit():
     a, b = np.random.default_rng(5).normal(size=(2, 500, 3))
     np.testing.assert_array_equal(rot.dot(a, b), np.sum(a * b, axis=-1))

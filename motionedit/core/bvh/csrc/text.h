@@ -31,6 +31,9 @@ int write_number(double value, int decimals, char *out);
 int64_t write_rows(
     const double *values, int64_t rows, int64_t columns, int decimals, const char *ending, int64_t after, char *out);
 
+/* Return whether a text's blanks are `count` single ones, a blank or a line feed each, given that it has that many gaps. */
+int has_plain_gaps(const char *text, int64_t length, int64_t count);
+
 /* Copy text with `count` words, those of the touched cells replaced by numbers; returns the length of the new text, or -1
    where a number is too large, or the words are not as many. */
 int64_t splice_words(const char *text, int64_t length, const uint8_t *cells, const double *values, int64_t count,

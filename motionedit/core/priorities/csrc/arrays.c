@@ -90,6 +90,37 @@ void turn_all(
     }
 }
 
+void from_tangents(const double *tangents, const int *axes, int64_t count, double *out)
+{
+    const int i = 1 + axes[0], j = 1 + axes[1], k = 1 + axes[2];
+    const double sign = (axes[1] - axes[0] + 3) % 3 == 1 ? 1.0 : -1.0; /* e_i e_j = sign e_k */
+    for (int64_t n = 0; n < count; n++, out += 4) {
+        const double a = tangents[n], b = tangents[count + n], c = sign * tangents[2 * count + n];
+        const double scale = 1.0 / sqrt((1.0 + a * a) * (1.0 + b * b) * (1.0 + c * c));
+        out[0] = (1.0 - a * b * c) * scale;
+        out[i] = (a + b * c) * scale;
+        out[j] = (b - a * c) * scale;
+        out[k] = (c + a * b) * (scale * sign);
+    }
+}
+
+void euler_sums(const double *rotations, int64_t step, const int64_t *joints, int64_t count, int64_t frames,
+    const int *axes, double *out)
+{
+    const int i = 1 + axes[0], j = 1 + axes[1], k = 1 + axes[2];
+    const double sign = (axes[1] - axes[0] + 3) % 3 == 1 ? 1.0 : -1.0;
+    const int64_t all = count * frames;
+    for (int64_t n = 0; n < count; n++) {
+        const double *q = rotations + 4 * joints[n];
+        for (int64_t f = 0; f < frames; f++, q += step, out++) {
+            const double z = sign * q[k], sine = q[i] + z, cosine = q[0] + q[j], other = q[i] - z, last = q[0] - q[j];
+            out[0] = sine, out[all] = cosine, out[2 * all] = other, out[3 * all] = last;
+            out[4 * all] = sqrt(sine * sine + cosine * cosine);
+            out[5 * all] = sqrt(other * other + last * last);
+        }
+    }
+}
+
 /* The sum of the steps between two triples of angles, each by whole turns the shortest. */
 static double distance_of(const double *from, const double *to)
 {

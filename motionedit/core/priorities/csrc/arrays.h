@@ -21,6 +21,16 @@ RowWork length_all;      /* out = |b|, one number each */
 RowWork half_cosine_all; /* out = |a . b|, of quaternions, one number each */
 RowWork turn_all;        /* of a^-1 b sine and cosine of half the angle, apart from each other */
 
+/* Quaternions of `count` products of three turns about the axes, 0 to 2 and different, each by the tangent of half its
+   angle: first all of the first turns, then of the second, of the third. */
+void from_tangents(const double *tangents, const int *axes, int64_t count, double *out);
+
+/* What the Euler angles of rotations about three axes are arc tangents of, shape (6, joints, frames): sine and cosine of
+   half the sum of the outer angles, of half their difference, and the lengths of both pairs. The frames begin at
+   `rotations`, and are `step` numbers apart; `joints` are the places of those that are wanted. */
+void euler_sums(const double *rotations, int64_t step, const int64_t *joints, int64_t count, int64_t frames,
+    const int *axes, double *out);
+
 /* Make a track of Euler angles, rad, `step` numbers from axis to axis, continuous: each frame by whole turns, and with three axes by
    the other solution of its rotation, nearest the frame before, the first one nearest `seed`, shape (axes,). */
 void nearest_angles(double *angles, int64_t axes, int64_t step, int64_t frames, const double *seed);

@@ -455,6 +455,69 @@ static PyObject *turn(PyObject *self, PyObject *arguments)
     return on_rows(&(const OnRows){turn_all, 4, 4, 1, 2}, arguments);
 }
 
+static int are_three_axes(const int *axes)
+{
+    for (int i = 0; i < 3; i++)
+        if (axes[i] < 0 || axes[i] > 2 || axes[i] == axes[(i + 1) % 3]) {
+            PyErr_SetString(PyExc_ValueError, "three different axes are 0, 1 and 2 in some order");
+            return 0;
+        }
+    return 1;
+}
+
+static PyObject *turns_from_tangents(PyObject *self, PyObject *arguments)
+{
+    Py_buffer b[2] = {{0}};
+    int axes[3];
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "y*iiiw*", b, axes, axes + 1, axes + 2, b + 1))
+        return NULL;
+    const int64_t count = b[1].len / (Py_ssize_t)(4 * sizeof(double));
+    int fits =
+        has_size(b, 3 * count, sizeof(double), "tangents") && has_size(b + 1, 4 * count, sizeof(double), "turns");
+    fits = fits && are_three_axes(axes);
+    if (fits) {
+        Py_BEGIN_ALLOW_THREADS from_tangents(b[0].buf, axes, count, b[1].buf);
+        Py_END_ALLOW_THREADS
+    }
+    PyBuffer_Release(b);
+    PyBuffer_Release(b + 1);
+    if (!fits)
+        return NULL;
+    Py_RETURN_NONE;
+}
+
+static PyObject *sums_of_euler(PyObject *self, PyObject *arguments)
+{
+    enum { ROTATIONS, JOINTS, OUT, COUNT };
+    Py_buffer b[COUNT] = {{0}};
+    long long joints;
+    int axes[3];
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "y*Ly*iiiw*", b, &joints, b + 1, axes, axes + 1, axes + 2, b + 2))
+        return NULL;
+    const Py_ssize_t number = sizeof(double);
+    const int64_t count = b[JOINTS].len / (Py_ssize_t)sizeof(int64_t);
+    const int64_t frames = joints > 0 ? b[ROTATIONS].len / number / 4 / joints : 0;
+    int fits = are_three_axes(axes) && has_size(b + ROTATIONS, frames * joints * 4, sizeof(double), "rotations") &&
+               has_size(b + JOINTS, count, sizeof(int64_t), "joints") &&
+               has_size(b + OUT, 6 * count * frames, sizeof(double), "sums");
+    for (int64_t i = 0; fits && i < count; i++)
+        if (((const int64_t *)b[JOINTS].buf)[i] < 0 || ((const int64_t *)b[JOINTS].buf)[i] >= joints) {
+            PyErr_Format(PyExc_ValueError, "there are %lld joints", joints);
+            fits = 0;
+        }
+    if (fits) {
+        Py_BEGIN_ALLOW_THREADS euler_sums(b[ROTATIONS].buf, 4 * joints, b[JOINTS].buf, count, frames, axes, b[OUT].buf);
+        Py_END_ALLOW_THREADS
+    }
+    for (int i = 0; i < COUNT; i++)
+        PyBuffer_Release(b + i);
+    if (!fits)
+        return NULL;
+    Py_RETURN_NONE;
+}
+
 /* Whether each run is of a joint that there is, and of frames that it has. */
 static int are_runs(const int64_t *runs, int64_t count, int64_t joints, int64_t frames)
 {
@@ -560,6 +623,18 @@ static PyObject *rows_to_text(PyObject *self, PyObject *arguments)
     return length < -1 ? NULL : PyLong_FromLongLong(length);
 }
 
+static PyObject *plain_gaps(PyObject *self, PyObject *arguments)
+{
+    Py_buffer text = {0};
+    long long count;
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "y*L", &text, &count))
+        return NULL;
+    const int are_plain = has_plain_gaps(text.buf, text.len, count);
+    PyBuffer_Release(&text);
+    return PyBool_FromLong(are_plain);
+}
+
 static PyObject *splice(PyObject *self, PyObject *arguments)
 {
     enum { TEXT, CELLS, VALUES, OUT, COUNT };
@@ -612,11 +687,16 @@ static PyMethodDef methods[] = {
     {"length", length, METH_VARARGS, "Write the lengths of vectors, the second given; False as `multiply`."},
     {"half_cosine", half_cosine, METH_VARARGS, "Write |a . b| of quaternions; False as `multiply`."},
     {"turn", turn, METH_VARARGS, "Write sines and cosines of half the turns between rotations; False as `multiply`."},
+    {"from_tangents", turns_from_tangents, METH_VARARGS,
+        "Write the quaternions of three turns, given the tangents of half their angles."},
+    {"euler_sums", sums_of_euler, METH_VARARGS,
+        "Write the sines, cosines and lengths that the Euler angles of some joints are arc tangents of."},
     {"nearest_angles", make_continuous, METH_VARARGS, "Make runs of Euler angles continuous, in place."},
     {"rows_from_text", rows_from_text, METH_VARARGS,
         "Read rows of numbers; return how many and the most decimals, or None where it is no such text."},
     {"rows_to_text", rows_to_text, METH_VARARGS,
         "Write rows of numbers; return the text's length, -1 where one is large."},
+    {"plain_gaps", plain_gaps, METH_VARARGS, "Return whether a text's blanks are so many, single ones and line feeds."},
     {"splice", splice, METH_VARARGS,
         "Copy text with some words replaced by numbers; return its length, -1 where one is large."},
     {NULL, NULL, 0, NULL},
