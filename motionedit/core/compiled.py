@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from functools import cache
 from typing import Any
 
@@ -21,7 +20,8 @@ def _module() -> Any:  # noqa: ANN401  a module without types
 
 def compiled() -> Any:  # noqa: ANN401  as above
     """Return the compiled module, or None where there is none or numpy alone is wanted."""
-    return None if os.environ.get(CHOICE) == "numpy" else _module()
+    module = _module()
+    return None if module is None or module.is_set(CHOICE, "numpy") else module
 
 
 def solver_name() -> str:

@@ -40,6 +40,11 @@ class Measure:
         """The axes that count, shape (k, 3)."""
         return frozen(self.axes[list(self.counted)])
 
+    @cached_property
+    def _is_worlds(self) -> bool:
+        """Whether the axes are the world's, or the base's own: what is along them needs no turning."""
+        return bool(np.array_equal(self.axes, np.eye(3)))
+
     @property
     def is_whole(self) -> bool:
         """Whether a position is all of a place in the world."""
@@ -54,18 +59,18 @@ class Measure:
     def directions(self, vectors: FloatArray, poses: WorldPoses) -> FloatArray:
         """Return world vectors (N, 3) along the axes, A R_b^T v."""
         if self.base is not None:
-            vectors = rot.rotate(rot.conjugate(poses.rotations[:, self.base]), vectors)
-        return vectors @ self.axes.T
+            vectors = rot.unrotate(poses.rotations[:, self.base], vectors)
+        return vectors if self._is_worlds else vectors @ self.axes.T
 
     def rotations(self, turns: FloatArray, poses: WorldPoses) -> FloatArray:
         """Return world rotations (N, 4) as they are in the base's frame, q_b^-1 q."""
         if self.base is None:
             return turns
-        return rot.multiply(rot.conjugate(poses.rotations[:, self.base]), turns)
+        return rot.between(poses.rotations[:, self.base], turns)
 
     def in_world(self, places: FloatArray, poses: WorldPoses) -> FloatArray:
         """Return places (N, 3) along the axes as world positions, p = p_b + R_b A^T x."""
-        points: FloatArray = places @ self.axes
+        points: FloatArray = places if self._is_worlds else places @ self.axes
         if self.base is None:
             return points
         turned: FloatArray = rot.rotate(poses.rotations[:, self.base], points)

@@ -42,6 +42,12 @@ def multiply(a: FloatArray, b: FloatArray) -> FloatArray:
     return product
 
 
+def between(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Return a^-1 b of unit quaternions, shape (..., 4): the turn that leads from a to b, in the frame of a."""
+    product = _in_one_loop("between", a, b, 4)
+    return multiply(conjugate(a), b) if product is None else product
+
+
 def conjugate(q: FloatArray) -> FloatArray:
     """Return the inverse of unit quaternions, shape (..., 4)."""
     inverse: FloatArray = q * _CONJUGATE
@@ -62,6 +68,12 @@ def rotate(q: FloatArray, v: FloatArray) -> FloatArray:
     w, xyz = q[..., :1], q[..., 1:]
     t = 2.0 * cross(xyz, v)
     return v + w * t + cross(xyz, t)
+
+
+def unrotate(q: FloatArray, v: FloatArray) -> FloatArray:
+    """Return vectors v turned by the inverse of unit quaternions q, shape (..., 3)."""
+    turned = _in_one_loop("unrotate", q, v, 3)
+    return rotate(conjugate(q), v) if turned is None else turned
 
 
 def cross(a: FloatArray, b: FloatArray) -> FloatArray:
@@ -91,15 +103,13 @@ def dot(a: FloatArray, b: FloatArray) -> FloatArray:
 
 def length(v: FloatArray) -> FloatArray:
     """Return the lengths of vectors, shape (...): a norm over a short last axis takes several times as long."""
-    found: FloatArray = np.sqrt(dot(v, v))
-    return found
+    found = _in_one_loop("length", v, v)
+    return np.sqrt(dot(v, v)) if found is None else found
 
 
-# Numbers: of more than these no second copy is made only to have them in one shape.
-_FEW = 1 << 18
-
-
-def _in_one_loop(what: str, a: FloatArray, b: FloatArray, *width: int) -> FloatArray | None:
+def _in_one_loop(
+    what: str, a: FloatArray, b: FloatArray, *width: int, planes: tuple[int, ...] = ()
+) -> FloatArray | None:
     """Return what the compiled part makes of rows of numbers, the same to the bit; None where numpy makes it.
 
     `width` is how many numbers a row of the result has; none where it is one without an axis of its own.
@@ -108,17 +118,11 @@ def _in_one_loop(what: str, a: FloatArray, b: FloatArray, *width: int) -> FloatA
     if kernel is None:
         return None
     one, other = a.shape[:-1], b.shape[:-1]
-    if one == other or one[len(one) - len(other) :] == other:
-        leading = one
-    elif other[len(other) - len(one) :] == one:
-        leading = other
-    else:
-        leading = np.broadcast_shapes(one, other)
-        if max(a.size, b.size) > _FEW:
-            return None
-        a, b = (np.broadcast_to(each, (*leading, each.shape[-1])) for each in (a, b))
-    out = np.empty(leading + width)
-    getattr(kernel, what)(np.ascontiguousarray(a, np.float64), np.ascontiguousarray(b, np.float64), out)
+    leading = one if one == other else np.broadcast_shapes(one, other)
+    out = np.empty(planes + leading + width)
+    work = getattr(kernel, what)
+    if not work(a, b, out):
+        work(np.ascontiguousarray(a, np.float64), np.ascontiguousarray(b, np.float64), out)
     return out
 
 
@@ -162,9 +166,20 @@ def log(q: FloatArray) -> FloatArray:
 
 def angle_between(a: FloatArray, b: FloatArray) -> FloatArray:
     """Return the geodesic angles (rad, 0 to pi) between rotations a and b, shape (...)."""
-    d = multiply(conjugate(a), b)
-    angle: FloatArray = 2.0 * np.arctan2(length(d[..., 1:]), np.abs(d[..., 0]))
+    halves = _in_one_loop("turn", a, b, planes=(2,))
+    if halves is None:
+        d = multiply(conjugate(a), b)
+        angle: FloatArray = 2.0 * np.arctan2(length(d[..., 1:]), np.abs(d[..., 0]))
+        return angle
+    angle = np.arctan2(halves[0], halves[1])
+    angle *= 2.0
     return angle
+
+
+def half_cosines(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Return the cosines of half the angles between rotations, |a . b|, shape (...): they cost less than the angles."""
+    found = _in_one_loop("half_cosine", a, b)
+    return np.abs(np.einsum("...i,...i->...", a, b)) if found is None else found
 
 
 def to_matrix(q: FloatArray) -> FloatArray:

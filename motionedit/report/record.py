@@ -13,6 +13,7 @@ SCHEMA = "motionedit/report/v1"
 # Enough for any comparison, and few enough that the last bits of two machines do not show.
 _DIGITS = 9
 _INDENT = "\n  "
+_AS_THEY_ARE = frozenset({type(None), bool, int, str})
 
 
 def report_bytes(
@@ -88,6 +89,10 @@ def _scalar(value: Any) -> str:  # noqa: ANN401  a number, a text, or a list of 
 
 def plain(value: Any) -> Any:  # noqa: ANN401  any value that a report may hold
     """Return a value as JSON holds it: numbers rounded, arrays as lists, what is not finite as null."""
+    if type(value) in _AS_THEY_ARE:
+        return value
+    if isinstance(value, float):
+        return _rounded(value)
     if isinstance(value, (list, tuple)):
         # Most are numbers of frames, for which the other questions take longer than the answer.
         return [_rounded(item) if type(item) is float else plain(item) for item in value]
@@ -95,11 +100,7 @@ def plain(value: Any) -> Any:  # noqa: ANN401  any value that a report may hold
         return {str(key): plain(item) for key, item in value.items()}
     if hasattr(value, "tolist"):  # numpy's numbers and arrays
         return plain(value.tolist())
-    if isinstance(value, float):
-        return _rounded(value)
-    if value is None or isinstance(value, (bool, int, str)):
-        return value
-    return str(value)
+    return value if isinstance(value, (int, str)) else str(value)
 
 
 def _rounded(value: float) -> float | None:

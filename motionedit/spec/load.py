@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, Literal, SupportsIndex, TypedDict, TypeVar, Unpack, overload
 
@@ -80,7 +81,15 @@ class LoadedSpec(Generic[Model_co]):
 
     def has(self, keys: Sequence[str | int]) -> bool:
         """Return whether the spec gives the key."""
-        return len(_way(self.tree, tuple(keys))) == len(keys) + 1
+        asked = tuple(keys)
+        if asked not in self._given:
+            self._given[asked] = len(_way(self.tree, asked)) == len(asked) + 1
+        return self._given[asked]
+
+    @cached_property
+    def _given(self) -> dict[Keys, bool]:
+        """The keys that were asked for, which every clip asks for again, and whether the spec gives them."""
+        return {}
 
 
 class Overrides(TypedDict, total=False):

@@ -8,6 +8,7 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
+from motionedit.core.body.in_one_loop import read_off
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -84,32 +85,38 @@ def _bends(
             lower = poses.positions[:, ends[i]] - poses.positions[:, joints[i]]
             sides[:, i], bent[:, i] = rot.cross(lower, towards), True
     carried = poses.rotations[:, parents]
-    own = rot.rotate(rot.conjugate(carried), sides)
+    own = rot.unrotate(carried, sides)
     own[~bent] = 0.0
     axes = own.sum(axis=0)
     uppers = mean_directions(poses, tops, joints, seen_from=parents, first=first)
     lowers = mean_directions(poses, joints, ends, seen_from=joints, first=first)
-    local = rot.multiply(rot.conjugate(carried), poses.rotations[:, joints])
-    directions = rot.rotate(local, lowers)
+    local = rot.between(carried, poses.rotations[:, joints])
+    lengths = np.array([np.linalg.norm(axis) for axis in axes])
+    axes /= np.where(lengths > 0.0, lengths, 1.0)[:, None]
+    turns = turns_about(axes, uppers, rot.rotate(local, lowers))
     found = []
     for i, joint in enumerate(joints.tolist()):
-        length = float(np.linalg.norm(axes[i]))
-        if length == 0.0:
+        if lengths[i] == 0.0:
             continue
-        angles = turns_about(axes[i] / length, uppers[i], directions[:, i])
         straight = frozen(np.ascontiguousarray(sines[:, i] < _STRAIGHT))
         ways = frozen(uppers[i].copy()), frozen(lowers[i].copy())
-        found.append(Bend(joint, frozen(axes[i] / length), straight, *ways, frozen(angles[first:])))
+        found.append(Bend(joint, frozen(axes[i].copy()), straight, *ways, frozen(turns[first:, i].copy())))
     return tuple(found)
 
 
 def turns_about(axis: FloatArray, start: FloatArray, stop: FloatArray) -> FloatArray:
     """Return the angle about a unit axis (3,) from one direction to another, shapes (..., 3), in rad, (-pi, pi].
 
-    atan2(a . (u x v), u . v - (a . u) (a . v)): what they have along the axis does not count.
+    Or about n axes (n, 3) from n directions, (n, 3), to others, (F, n, 3). It is atan2(a . (u x v), u . v - (a . u)
+    (a . v)): what they have along the axis does not count.
     """
     sine = rot.dot(axis, rot.cross(start, stop))
-    angles: FloatArray = np.arctan2(sine, rot.dot(start, stop) - (start @ axis) * (stop @ axis))
+    if axis.ndim == 1:
+        along = (start @ axis) * (stop @ axis)
+    else:
+        own, other = np.matmul(start[:, None], axis[..., None]), np.matmul(stop.swapaxes(0, 1), axis[..., None])
+        along = own[:, 0, 0] * other[..., 0].T
+    angles: FloatArray = np.arctan2(sine, rot.dot(start, stop) - along)
     return angles
 
 
@@ -125,8 +132,11 @@ def mean_directions(
     poses: WorldPoses, starts: IntArray, stops: IntArray, *, seen_from: IntArray, first: int
 ) -> FloatArray:
     """Return `mean_direction` of n pairs of joints, shape (n, 3)."""
-    ways = poses.positions[first:, stops] - poses.positions[first:, starts]
-    own = rot.rotate(rot.conjugate(poses.rotations[first:, seen_from]), ways).sum(axis=0)
+    triples = np.stack((starts, stops, seen_from), axis=1)
+    own = read_off("ways", poses.positions, poses.rotations, triples, shape=(len(triples), 3), first=first)
+    if own is None:
+        ways = poses.positions[first:, stops] - poses.positions[first:, starts]
+        own = rot.unrotate(poses.rotations[first:, seen_from], ways).sum(axis=0)
     directions: FloatArray = own / np.maximum(np.linalg.norm(own, axis=1, keepdims=True), np.finfo(float).tiny)
     return directions
 

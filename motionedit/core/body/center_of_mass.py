@@ -9,6 +9,7 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
+from motionedit.core.body.in_one_loop import read_off
 from motionedit.core.body.segments import lay_by_length, lay_given, lay_human
 from motionedit.core.kinematics import WorldPoses
 from motionedit.dataclass import dataclass
@@ -133,4 +134,8 @@ def subtree_centers(poses: WorldPoses, masses: Masses) -> tuple[FloatArray, Floa
 
 def _carried(poses: WorldPoses, masses: Masses, joints: IntArray) -> FloatArray:
     """Return the centres in the world of what moves with each of K joints, shape (F, K, 3)."""
-    return poses.positions[:, joints] + rot.rotate(poses.rotations[:, joints], masses.points[joints])
+    shape, points = (len(poses.positions), len(joints), 3), masses.points[joints]
+    carried = read_off("carried", poses.positions, poses.rotations, joints, points, shape=shape)
+    if carried is None:
+        carried = poses.positions[:, joints] + rot.rotate(poses.rotations[:, joints], points)
+    return carried

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.arrays import median
+from motionedit.core.arrays import frozen, median
+from motionedit.core.compiled import compiled
 from motionedit.core.kinematics import effector_positions
 from motionedit.core.units import STANDARD_LEG
 from motionedit.dataclass import dataclass
@@ -112,11 +114,33 @@ def frames_of(plants: Sequence[Plant]) -> PlantFrames | None:
     """Return the frames of plants; None of none."""
     if not plants:
         return None
+    return _frames_again(_These(plants)) if isinstance(plants, tuple) else _frames_of(plants)
+
+
+class _These:
+    """Plants that are asked for again and again: the same ones, which are not compared one by one."""
+
+    def __init__(self, plants: tuple[Plant, ...]) -> None:
+        self.plants = plants
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _These) and other.plants is self.plants
+
+    def __hash__(self) -> int:
+        return id(self.plants)
+
+
+@lru_cache(maxsize=2)
+def _frames_again(these: _These) -> PlantFrames:
+    return _frames_of(these.plants)
+
+
+def _frames_of(plants: Sequence[Plant]) -> PlantFrames:
     starts, stops, points = np.array([(plant.start, plant.stop, plant.point) for plant in plants], dtype=np.intp).T
     counts = stops - starts + 1
     places = np.cumsum(counts) - counts
     frames = np.arange(int(counts.sum())) + np.repeat(starts - places, counts)
-    return PlantFrames(frames, np.repeat(points, counts), places, counts)
+    return PlantFrames(frozen(frames), frozen(np.repeat(points, counts)), frozen(places), frozen(counts))
 
 
 @dataclass(frozen=True)
@@ -156,19 +180,52 @@ def sole_tracks(poses: WorldPoses, anatomy: Anatomy) -> FloatArray:
 def plants_of(tracks: FloatArray, anatomy: Anatomy, *, up: FloatArray, first: int, frame_time: float) -> list[Plant]:
     """Return the plants as `find_plants`; `tracks` (F, P, 3) are those of `sole_tracks`."""
     points = anatomy.sole_points
-    metre = anatomy.leg_length / STANDARD_LEG
-    if not points or len(tracks) - first < 2 or metre <= 0.0:
+    if not points or len(tracks) - first < 2 or anatomy.leg_length <= 0.0:
         return []
-    plants = []
-    heights_of_all = tracks[first:] @ up / metre
+    found = _stands_of_all(np.ascontiguousarray(tracks[first:]), anatomy, up, frame_time)
+    plants = [
+        Plant(points[p].foot, points[p].part, points[p].joint, p, first + start, first + stop, height)
+        for p, start, stop, height in found
+    ]
+    return sorted(plants, key=lambda plant: (plant.start, plant.foot, plant.point))
+
+
+def _stands_of_all(
+    tracks: FloatArray, anatomy: Anatomy, up: FloatArray, frame_time: float
+) -> list[tuple[int, int, int, float]]:
+    """Return (point, first, last, height) of the stretches in which points stand, frames of `tracks` (F, P, 3)."""
+    points, metre, kernel = anatomy.sole_points, anatomy.leg_length / STANDARD_LEG, compiled()
+    if kernel is not None:
+        feet = np.array([point.foot == points[0].foot for point in points], dtype=np.int64)
+        rules = (
+            *(_half(frame_time), round(_LOW_WHILE / frame_time), round(_LONGEST_GAP / frame_time)),
+            *(_shortest(frame_time), _top_while(frame_time)),
+            *(frame_time, _ENTERS, _LEAVES, _LOW, _SAME_PLACE, _TOP, _HELD / frame_time),
+        )
+        stands = kernel.stands(tracks, feet, up, len(tracks), len(points), metre, rules)
+        return [(p, start, stop, metre * height) for p, start, stop, height in stands]
+    heights_of_all, found = tracks @ up / metre, []
     for p, point in enumerate(points):
-        places, heights = tracks[first:, p] / metre, heights_of_all[:, p]
+        places, heights = tracks[:, p] / metre, heights_of_all[:, p]
         others = [q for q, other in enumerate(points) if other.foot != point.foot]
         lowest = heights_of_all[:, others].min(axis=1, initial=np.inf)
-        for start, stop in _stands(places, heights, lowest, frame_time):
-            height = metre * float(median(heights[start : stop + 1]))
-            plants.append(Plant(point.foot, point.part, point.joint, p, first + start, first + stop, height))
-    return sorted(plants, key=lambda plant: (plant.start, plant.foot, plant.point))
+        found += [
+            (p, start, stop, metre * float(median(heights[start : stop + 1])))
+            for start, stop in _stands(places, heights, lowest, frame_time)
+        ]
+    return found
+
+
+def _half(frame_time: float) -> int:
+    return max(1, round(0.5 * _WHILE / frame_time))
+
+
+def _shortest(frame_time: float) -> int:
+    return max(2, round(_SHORTEST / frame_time + 1e-9))
+
+
+def _top_while(frame_time: float) -> int:
+    return max(1, round(_TOP_WHILE / frame_time))
 
 
 def foot_plants(plants: Sequence[Plant]) -> list[FootPlant]:
@@ -201,8 +258,7 @@ def _stands(
     width = round(_LOW_WHILE / frame_time)
     low = _rolling_minimum(np.where(slow, heights, np.inf), width)
     planted = _hysteresis(slow & (heights < low + _LOW), speed < _ENTERS)
-    shortest = round(_SHORTEST / frame_time + 1e-9)
-    around = max(1, round(_TOP_WHILE / frame_time))
+    shortest, around = _shortest(frame_time), _top_while(frame_time)
     slow_runs = _runs(slow)
     begins, ends = [first for first, _ in slow_runs], [last for _, last in slow_runs]
     for start, stop in _closed(_runs(planted), places, round(_LONGEST_GAP / frame_time)):
@@ -213,13 +269,13 @@ def _stands(
         # Who stands on a box for a while has both feet there, and who holds a foot up stands on the other.
         is_held = median(lowest[start : stop + 1]) < level - _TOP or stop - start + 1 < _HELD / frame_time
         is_top = bool(lower) and all(lower) and is_held
-        if stop - start + 1 >= max(shortest, 2) and not is_top:
+        if stop - start + 1 >= shortest and not is_top:
             yield start, stop
 
 
 def _speeds(places: FloatArray, frame_time: float) -> FloatArray:
     """Return the speed over 40 ms (two frames at the least) around each frame, shape (F,); the ends have one side."""
-    half = max(1, round(0.5 * _WHILE / frame_time))
+    half = _half(frame_time)
     at = np.arange(len(places))
     before, after = np.maximum(at - half, 0), np.minimum(at + half, len(places) - 1)
     way = rot.length(places[after] - places[before])

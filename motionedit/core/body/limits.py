@@ -15,6 +15,7 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
 from motionedit.core.body.bends import mean_direction, mean_directions
+from motionedit.core.body.in_one_loop import read_off
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -116,10 +117,8 @@ def limit_of(motion: Motion, joint: int, along: FloatArray, half: Range, *, firs
 
 def _limits(motion: Motion, joints: IntArray, along: FloatArray, halves: Sequence[Range], first: int) -> list[Limit]:
     """Return the limits of n joints whose bones are `along`, shape (n, 3)."""
-    q = motion.rotations[first:, joints]
-    centers = _means(q)
-    swing, twist = swing_and_twist(rot.multiply(rot.conjugate(centers), q), along)
-    widest, farthest = swing.max(axis=0), np.abs(twist).max(axis=0)
+    centers = _means(motion, joints, first)
+    widest, farthest = _widest(motion, joints, centers, along, first).T
     return [
         Limit(
             joint,
@@ -145,11 +144,26 @@ def swing_and_twist(q: FloatArray, along: FloatArray) -> tuple[FloatArray, Float
     return swing, twist
 
 
-def _means(q: FloatArray) -> FloatArray:
-    """Return the means of rotations (F, n, 4), shape (n, 4): first eigenvectors of sum q q^T, signed as the first."""
-    _, vectors = np.linalg.eigh(np.einsum("fni,fnj->nij", q, q))
+def _widest(motion: Motion, joints: IntArray, centers: FloatArray, along: FloatArray, first: int) -> FloatArray:
+    """Return how far n joints swing bones (n, 3) from centers (n, 4), and twist about them, at most, shape (n, 2)."""
+    shape = (len(joints), 2)
+    widest = read_off("widest", None, motion.rotations, joints, centers, along, shape=shape, first=first)
+    if widest is None:
+        swing, twist = swing_and_twist(rot.between(centers, motion.rotations[first:, joints]), along)
+        widest = np.stack((swing.max(axis=0), np.abs(twist).max(axis=0)), axis=1)
+    return widest
+
+
+def _means(motion: Motion, joints: IntArray, first: int) -> FloatArray:
+    """Return the means of n joints' rotations, (n, 4): first eigenvectors of sum q q^T, signed as the first frame's."""
+    products = read_off("products", None, motion.rotations, joints, shape=(len(joints), 4, 4), first=first)
+    if products is None:
+        q = motion.rotations[first:, joints]
+        products = np.einsum("fni,fnj->nij", q, q)
+    _, vectors = np.linalg.eigh(products)
     means: FloatArray = vectors[..., -1]
-    return np.where(np.sum(means * q[0], axis=-1, keepdims=True) < 0.0, -means, means)
+    signs = np.sum(means * motion.rotations[first, joints], axis=-1, keepdims=True)
+    return np.where(signs < 0.0, -means, means)
 
 
 _Joint = tuple[int, int, int]  # a joint, and from where to where its bone is

@@ -8,6 +8,7 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.body.contacts import frames_of
+from motionedit.core.compiled import compiled
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -79,16 +80,12 @@ class JerkMeter:
         positions = positions[skipped:]
         if self._last is not None:
             positions = np.concatenate((self._last, positions))
-        third = np.diff(positions, n=3, axis=0)
-        if third.size:
-            third *= third
-            squares = third[..., 0] + third[..., 1] + third[..., 2]
-            self._sum += float(np.sum(squares))
-            self._count += squares.size
-            frame, joint = np.unravel_index(int(np.argmax(squares)), squares.shape)
-            if squares[frame, joint] > self._largest:
-                # Of the four frames that it is taken from, the third.
-                self._largest, self._at = float(squares[frame, joint]), (int(joint), self._next + int(frame) + 2)
+        squares, largest, frame, joint = squared_jerks(positions)
+        self._sum += float(np.sum(squares))
+        self._count += len(squares) * positions.shape[1]
+        if largest > self._largest:
+            # Of the four frames that it is taken from, the third.
+            self._largest, self._at = largest, (joint, self._next + frame + 2)
         self._last = positions[-3:].copy()
         self._next += max(len(positions) - 3, 0)
 
@@ -102,12 +99,32 @@ class JerkMeter:
         return self._at
 
 
+def squared_jerks(positions: FloatArray) -> tuple[FloatArray, float, int, int]:
+    """Return each frame's squared third difference, summed over joints, shape (F - 3,) of positions (F, J, 3).
+
+    And the largest of any joint, with its frame and joint; 0 where there are less than four frames.
+    """
+    frames, joints = positions.shape[:2]
+    if frames < 4 or not joints:
+        return np.zeros(0), 0.0, 0, 0
+    kernel = compiled()
+    if kernel is not None:
+        summed = np.empty(frames - 3)
+        return summed, *kernel.jerks(np.ascontiguousarray(positions), frames, joints, summed)
+    third = np.diff(positions, n=3, axis=0)
+    third *= third
+    squares = third[..., 0] + third[..., 1] + third[..., 2]
+    frame, joint = np.unravel_index(int(np.argmax(squares)), squares.shape)
+    return squares.sum(axis=1), float(squares[frame, joint]), int(frame), int(joint)
+
+
 def foot_slide_max(tracks: FloatArray, plants: Sequence[Plant], *, up: FloatArray, frame_time: float) -> float:
     """Return the fastest horizontal speed of a planted point from frame to frame, clip units / s; 0 without plants.
 
     `tracks` (F, P, 3) are those of `sole_tracks`. For an edit the plants are those of its input.
     """
-    down = frames_of([plant for plant in plants if plant.stop > plant.start])
+    longer = [plant for plant in plants if plant.stop > plant.start]
+    down = frames_of(plants if len(longer) == len(plants) else longer)
     if down is None:
         return 0.0
     inner = np.ones(len(down.frames), dtype=np.bool_)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from itertools import chain
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
 MOST, TRUNK, BALL, BACK = 45.0, 60.0, 150.0, 5.0
 
 _BLOCK_POSES = 1 << 13
+# Of a cosine: more by far than its rounding.
+_ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
@@ -71,14 +74,20 @@ def regions_of(skeleton: Skeleton, anatomy: Anatomy, *, travel: int) -> tuple[Re
 
 
 def beyond_range(
-    before: Motion, after: Motion, regions: Sequence[Region], *, first: int, touched: BoolArray
+    before: Motion, after: Motion, regions: tuple[Region, ...], *, first: int, touched: BoolArray
 ) -> list[Beyond]:
     """Return the regions that an edit takes further beyond their range in the input than is not seen.
 
     The range is the largest angle from the mean rotation of the input, the frames before `first` left out. A region
     with no joint among the `touched`, shape (J,), is left out.
     """
-    asked = [each for each in _with_ways(before.skeleton, tuple(regions)) if touched[[*each[1], *each[2]]].any()]
+    largest = _largest_changes(before, after, first, touched)
+    asked = [
+        each
+        for each in _with_ways(before.skeleton, regions)
+        # Turned by less altogether than is seen at any frame, a region cannot be farther off its mean by more.
+        if sum(largest[j] for j in chain(each[1], each[2])) > each[0].most
+    ]
     found = []
     # A few regions at a time: those of a long motion all at once would take several times its memory.
     together = max(_BLOCK_POSES // len(before), 1)
@@ -97,6 +106,16 @@ def beyond_range(
     return found
 
 
+def _largest_changes(before: Motion, after: Motion, first: int, touched: BoolArray) -> list[float]:
+    """Return by how many degrees each joint is turned at most, J numbers, rounded up; 0 where it is not touched."""
+    cosines = np.ones(len(touched))
+    together = max(_BLOCK_POSES // len(touched), 1)
+    for start in range(first, len(before), together):
+        block = slice(start, start + together)
+        np.minimum(cosines, rot.half_cosines(before.rotations[block], after.rotations[block]).min(axis=0), out=cosines)
+    return (np.degrees(2.0 * np.arccos(cosines * (1.0 - _ROUNDING))) * touched).tolist()  # type: ignore[no-any-return]
+
+
 def bent_back(
     before: Motion, after: Motion, anatomy: Anatomy, bends: Sequence[Bend], *, first: int, touched: BoolArray
 ) -> list[Beyond]:
@@ -107,8 +126,11 @@ def bent_back(
         way = before.skeleton.chain(end).tolist()
         if joint not in axes or not touched[way[way.index(limb[0]) :]].any():
             continue
-        own, taken = (_bend(motion, limb, axes[joint])[first:] for motion in (before, after))
+        taken = _bend(after, limb, axes[joint])[first:]
         worst = int(np.argmin(taken))
+        if taken[worst] >= -BACK:
+            continue
+        own = _bend(before, limb, axes[joint])[first:]
         degrees = min(0.0, float(own.min())) - float(taken[worst])
         if degrees > BACK:
             found.append(Beyond(joint, None, first + worst, degrees, BACK))
@@ -172,7 +194,7 @@ def _all_relative(
 def _relative(rotations: FloatArray, up: Sequence[int], down: Sequence[int]) -> FloatArray:
     """Return the rotation of the lower joint in the frame of the upper one, shape (F, 4)."""
     turned = _product(rotations, down)
-    return turned if not up else rot.multiply(rot.conjugate(_product(rotations, up)), turned)
+    return turned if not up else rot.between(_product(rotations, up), turned)
 
 
 def _product(rotations: FloatArray, way: Sequence[int]) -> FloatArray:
@@ -193,7 +215,7 @@ def _bend(motion: Motion, limb: tuple[int, int, int], axis: FloatArray) -> Float
         # The upper bone comes from further up: seen from the frame that the axis is fixed in.
         way = skeleton.chain(frame).tolist()
         turned = _product(motion.rotations, way[way.index(top) + 1 :])
-        upper = upper + rot.rotate(rot.conjugate(turned), _path(motion, top, frame))
+        upper = upper + rot.unrotate(turned, _path(motion, top, frame))
     lower = rot.rotate(motion.rotations[:, joint], lower)
     side = rot.cross(upper, lower)
     angle = np.arctan2(rot.length(side), rot.dot(upper, lower))
@@ -202,14 +224,14 @@ def _bend(motion: Motion, limb: tuple[int, int, int], axis: FloatArray) -> Float
 
 
 def _path(motion: Motion, top: int, end: int) -> FloatArray:
-    """Return where a joint is in the frame of one above it, shape (F, 3)."""
+    """Return where a joint is in the frame of one above it, shape (F, 3), or (3,) where that is one place for all."""
     skeleton, way = motion.skeleton, motion.skeleton.chain(end).tolist()
-    path, turned = np.zeros((len(motion), 3)), rot.IDENTITY
     joints = way[way.index(top) + 1 :]
+    path, turned = np.zeros(3), rot.IDENTITY
     for j in joints:
         place = skeleton.translation_places[j]
         local = motion.translations[:, place] if place >= 0 else skeleton.offsets[j]
-        path = path + rot.rotate(turned, local)
+        path = local if j == joints[0] else path + rot.rotate(turned, local)
         if j != joints[-1]:
-            turned = rot.multiply(turned, motion.rotations[:, j])
+            turned = motion.rotations[:, j] if j == joints[0] else rot.multiply(turned, motion.rotations[:, j])
     return path

@@ -11,15 +11,16 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.body.contacts import frames_of
+from motionedit.core.compiled import compiled
 from motionedit.core.units import STANDARD_LEG
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from motionedit.core.arrays import FloatArray
+    from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.body.anatomy import Anatomy
-    from motionedit.core.body.contacts import Plant
+    from motionedit.core.body.contacts import Plant, PlantFrames
 
 _NEAR_FLOOR = 0.05  # m: a toe below it should not move (Kimodo)
 _SKATES = 0.2  # m/s: a toe near the floor that is faster skates (Kimodo)
@@ -73,19 +74,35 @@ def foot_measures(
     points = anatomy.sole_points
     if not points or anatomy.leg_length <= 0.0 or len(tracks) - first < 2:
         return FootMeasures(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    places = tracks * (STANDARD_LEG / anatomy.leg_length)
+    toes = [point.part == "toe" for point in points]
+    toes = toes if any(toes) else [True] * len(points)
+    down, scale, kernel = frames_of(plants), STANDARD_LEG / anatomy.leg_length, compiled()
+    if kernel is not None:
+        none = np.zeros(0, dtype=np.int64)
+        at, of, counts = (none, none, none) if down is None else (down.frames, down.points[down.starts], down.counts)
+        given = tracks, up, np.array(toes), at, of, counts
+        rules = scale, frame_time, _NEAR_FLOOR, _SKATES, _SLIDES, _UNDER
+        sizes = len(tracks), len(points), first, len(counts), len(at)
+        return FootMeasures(*kernel.foot_figures(*map(np.ascontiguousarray, given), *sizes, rules))
+    return _measured(tracks * scale, down, np.flatnonzero(toes), up=up, first=first, frame_time=frame_time)
+
+
+def _measured(
+    places: FloatArray, down: PlantFrames | None, toes: IntArray, *, up: FloatArray, first: int, frame_time: float
+) -> FootMeasures:
+    """Return the measures of feet along `places` (F, P, 3), metres; which of the points are `toes`."""
     heights = places @ up
     level = places - heights[..., None] * up
     speeds = rot.length(np.diff(level, axis=0)) / frame_time
-    toes = [p for p, point in enumerate(points) if point.part == "toe"] or list(range(len(points)))
     near = (heights[first:-1, toes] < _NEAR_FLOOR) & (heights[first + 1 :, toes] < _NEAR_FLOOR)
     skating = speeds[first:, toes][near]
     sliding, drift, highest = np.zeros(0), 0.0, 0.0
-    down = frames_of(plants)
     if down is not None:
         at = down.of(places)
-        drift = float(rot.length(at - down.spread(down.means(at))).max())
-        of_toes = np.array([plant.point in toes for plant in plants])
+        # From where each plant begins: what stands still is not off by the rounding of its place.
+        ways = at - down.spread(at[down.starts])
+        drift = float(rot.length(ways - down.spread(down.means(ways))).max())
+        of_toes = np.isin(down.points[down.starts], toes)
         highest = float(down.means(down.of(heights))[of_toes].max(initial=0.0))
         # From each frame of a plant to the next: not from its last.
         steps = down.spread(of_toes)

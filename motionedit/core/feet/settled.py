@@ -9,14 +9,15 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.body.contacts import frames_of
+from motionedit.core.compiled import compiled
 from motionedit.core.units import STANDARD_LEG
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from motionedit.core.arrays import FloatArray
+    from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.body.anatomy import Anatomy
-    from motionedit.core.body.contacts import Plant
+    from motionedit.core.body.contacts import Plant, PlantFrames
 
 # m/s, at a leg of `STANDARD_LEG`: a point that has settled is no faster than the plant's own median, which is how fast
 # the whole foot slides, by more than this;
@@ -41,23 +42,38 @@ def settled(
     down = frames_of(plants)
     if down is None:
         return []
-    places, half = tracks / (anatomy.leg_length / STANDARD_LEG), max(1, round(_HALF / frame_time))
+    spans = _calm_spans(down, down.of(tracks) / (anatomy.leg_length / STANDARD_LEG), up, frame_time)
+    cut = []
+    for plant, (start, stop) in zip(plants, spans.tolist(), strict=True):
+        if plant.frames < _FEWEST or start < 0 or (stop - start + 1) * frame_time < _SHORTEST:
+            cut.append(plant)
+        else:
+            cut.append(replace(plant, start=plant.start + start, stop=plant.start + stop))
+    return cut
+
+
+def _calm_spans(down: PlantFrames, places: FloatArray, up: FloatArray, frame_time: float) -> IntArray:
+    """Return each plant's first and last frame that has settled, from its own first on, shape (n, 2); -1 without any.
+
+    `places` (N, 3) are those of the plants' frames, metres.
+    """
+    kernel, half = compiled(), max(1, round(_HALF / frame_time))
+    spans = np.full((len(down.counts), 2), -1, dtype=np.int64)
+    if kernel is not None:
+        counts = down.counts.astype(np.int64, copy=False)
+        kernel.settled(places, up, counts, spans, len(places), len(spans), half, frame_time, _FASTER, _ABOVE)
+        return spans
     first = down.spread(down.starts)
     at = np.arange(len(first))
     before, after = np.maximum(at - half, first), np.minimum(at + half, first + down.spread(down.counts) - 1)
-    stands = down.of(places)
     # A plant of one frame, which is too short to be cut, has no speed.
     seconds = np.maximum(after - before, 1) * frame_time
-    speed, height = rot.length(stands[after] - stands[before]) / seconds, stands @ up
+    speed, height = rot.length(places[after] - places[before]) / seconds, places @ up
     above = np.abs(height - down.spread(down.medians(height)))
     calm = np.flatnonzero((speed <= down.spread(down.medians(speed)) + _FASTER) & (above <= _ABOVE))
     begins = np.searchsorted(calm, down.starts)
     ends = np.searchsorted(calm, down.starts + down.counts)
-    cut = []
-    for plant, start, begin, end in zip(plants, down.starts.tolist(), begins.tolist(), ends.tolist(), strict=True):
-        found = calm[begin:end].tolist()
-        if plant.frames < _FEWEST or not found or (found[-1] - found[0] + 1) * frame_time < _SHORTEST:
-            cut.append(plant)
-        else:
-            cut.append(replace(plant, start=plant.start + found[0] - start, stop=plant.start + found[-1] - start))
-    return cut
+    some = ends > begins
+    spans[some, 0], spans[some, 1] = calm[begins[some]], calm[ends[some] - 1]
+    spans[some] -= down.starts[some, None]
+    return spans

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
+from motionedit.core.compiled import compiled
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.body.anatomy import Anatomy, Leg, SolePoint
@@ -104,7 +105,9 @@ def stance_of(path: FootPath, plants: Sequence[Plant]) -> Stance:
     Plants that share frames hang together, by the foot between them: they are moved as a whole, and as little as can
     be, so that the mean of their ways from the motion's own places is nothing.
     """
-    frames = len(path.ankle)
+    frames, kernel = len(path.ankle), compiled()
+    if kernel is not None:
+        return _stance_at_once(kernel.stance, path, plants)
     tracks = {"heel": path.ankle, "toe": path.toe_place}
     number = np.full((2, frames), -1, dtype=np.intp)
     for k, plant in enumerate(plants):
@@ -135,6 +138,17 @@ def stance_of(path: FootPath, plants: Sequence[Plant]) -> Stance:
     numbers = np.where(number[0] >= 0, number[0], number[1])
     named = np.array([*whole, -1], dtype=np.intp)
     return Stance(number[0] >= 0, number[1] >= 0, places[number[0]], places[number[1]], turn, named[numbers])
+
+
+def _stance_at_once(work: Callable[..., None], path: FootPath, plants: Sequence[Plant]) -> Stance:
+    """Return the stance as the compiled part finds it: `stance_of` in one call."""
+    frames = len(path.ankle)
+    spans = np.array([(plant.part == "toe", plant.start, plant.stop) for plant in plants], dtype=np.int64)
+    down = np.empty((2, frames), dtype=np.bool_)
+    places, turn, whole = np.empty((2, frames, 3)), np.empty((frames, 4)), np.empty(frames, dtype=np.int64)
+    given = (np.ascontiguousarray(each) for each in (path.ankle, path.toe_place, path.turn, path.toe, spans))
+    work(*given, *down, *places, turn, whole, frames, len(plants))
+    return Stance(down[0], down[1], places[0], places[1], turn, whole.astype(np.intp, copy=False))
 
 
 def _overlaps(number: IntArray) -> list[tuple[int, int, IntArray]]:

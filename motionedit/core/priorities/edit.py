@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from motionedit.core.priorities.groups import Asked
     from motionedit.core.priorities.kinds.constraint import Constraint, ConstraintErrors
     from motionedit.core.priorities.settings import Body, LayeredSettings, RecruitingRule
+    from motionedit.core.skeleton import Skeleton
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,9 +95,9 @@ def recruit(
         With ``error``, at the first breach.
     """
     skeleton, frames = motion.skeleton, len(motion)
-    carried = below(skeleton, body.travel)
-    turnable = {j for j, axes in enumerate(skeleton.rotation_axes) if axes and carried[j]}
-    movable = Movable(skeleton, body.travel, frozenset(_carriers(body, motion) & turnable))
+    turnable = _turnable(skeleton, body.travel)
+    carriers = _carriers(skeleton, tuple(np.flatnonzero(body.masses.shares > 0.0).tolist()))
+    movable = Movable(skeleton, body.travel, carriers & turnable)
     asked = [each.recruits(movable) for each in constraints]
     travels = bool(skeleton.position_axes[body.travel])
     asked = [Recruits(frozenset(each.joints & turnable), each.root and travels) for each in asked]
@@ -113,13 +115,17 @@ def recruit(
     return asked, found
 
 
-def _carriers(body: Body, motion: Motion) -> set[int]:
-    """Return the joints that carry mass and those above them."""
-    skeleton = motion.skeleton
-    joints: set[int] = set()
-    for j in np.flatnonzero(body.masses.shares > 0.0):
-        joints.update(int(k) for k in skeleton.chain(int(j)))
-    return joints
+@lru_cache(maxsize=8)
+def _turnable(skeleton: Skeleton, travel: int) -> frozenset[int]:
+    """Return the joints that can be turned: those that the travel carries and that have rotation channels."""
+    carried = below(skeleton, travel)
+    return frozenset(j for j, axes in enumerate(skeleton.rotation_axes) if axes and carried[j])
+
+
+@lru_cache(maxsize=8)
+def _carriers(skeleton: Skeleton, heavy: tuple[int, ...]) -> frozenset[int]:
+    """Return the joints that carry mass, those that are `heavy`, and those above them."""
+    return frozenset(int(k) for j in heavy for k in skeleton.chain(j))
 
 
 def prepare(

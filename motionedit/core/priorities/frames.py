@@ -89,7 +89,7 @@ def solve_frames(run: Run, start: Motion, *, reference: Motion, pull_root: bool,
     """
     solved = _unsolved(run, start)
     for group in run.groups:
-        done = None if known is None else known.done[group.frames]
+        done = None if known is None else known.done[group.where]
         if done is not None and done.all():
             continue
         _solve(run, solved, group, reference, done=done, pull_root=pull_root)
@@ -172,14 +172,17 @@ def _solve(
         in_order=in_order,
         threads=run.asked.settings.threads,
     )
-    solved.iterations[group.frames], solved.converged[group.frames] = solution.iterations, solution.converged
-    count = len(group.frames), solved.ranks.shape[1]
-    ranks, left = np.zeros(count, dtype=np.intp), np.zeros(count)
-    # Of one priority there may be two layers.
-    for layer, level in enumerate(group.levels.tolist()):
-        ranks[:, level] += solution.ranks[:, layer]
-        np.maximum(left[:, level], solution.left[:, layer], out=left[:, level])
-    solved.ranks[group.frames], solved.left[group.frames] = ranks, left
+    where, levels = group.where, group.levels.tolist()
+    solved.iterations[where], solved.converged[where] = solution.iterations, solution.converged
+    ranks, left = solution.ranks, solution.left
+    if levels != list(range(solved.ranks.shape[1])):
+        count = len(group.frames), solved.ranks.shape[1]
+        ranks, left = np.zeros(count, dtype=np.intp), np.zeros(count)
+        # Of one priority there may be two layers.
+        for layer, level in enumerate(levels):
+            ranks[:, level] += solution.ranks[:, layer]
+            np.maximum(left[:, level], solution.left[:, layer], out=left[:, level])
+    solved.ranks[where], solved.left[where] = ranks, left
 
 
 def _same(one: Motion, other: Motion) -> BoolArray:

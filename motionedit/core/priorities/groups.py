@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cached_property, lru_cache
 from itertools import chain
 from typing import TYPE_CHECKING
 
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
-    from motionedit.core.body.hinges import Hinge
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.kinds.constraint import Constraint, Targets
     from motionedit.core.priorities.problem import Task
@@ -124,6 +124,12 @@ class Group:
     members: tuple[tuple[int, ...], ...]
     prepared: Prepared
 
+    @cached_property
+    def where(self) -> slice | IntArray:
+        """Its frames as an index: a slice, which is quicker, where they follow each other."""
+        first, count = int(self.frames[0]), len(self.frames)
+        return slice(first, first + count) if int(self.frames[-1]) == first + count - 1 else self.frames
+
     @property
     def problem(self) -> Problem:
         """What is solved in its frames."""
@@ -203,7 +209,7 @@ def _group(asked: Asked, members: Sequence[int], frames: IntArray) -> Group:
         columns=columns,
         moves_root=any(asked.recruits[i].root for i in members),
         layers=_tasks(asked, layers, frames, columns),
-        hinges=_hinge_columns(asked.body.hinges, joints),
+        hinges=_hinge_columns(asked.body, joints),
         limits=_limit_columns(asked.body, joints),
         attraction=asked.settings.attraction,
         max_iterations=asked.settings.max_iterations,
@@ -255,28 +261,49 @@ def _mobility(body: Body, joints: IntArray) -> FloatArray:
     return np.append(turns, body.root_mobility)
 
 
-def _hinge_columns(hinges: Sequence[Hinge], joints: IntArray) -> HingeColumns:
+def _hinge_columns(body: Body, joints: IntArray) -> HingeColumns:
     """Return the hinges among the columns, which are `joints`."""
-    columns = set(joints.tolist())
-    here = [hinge for hinge in hinges if hinge.joint in columns]
+    every, _ = _of_all_joints(body)
+    here = np.isin(every.places, joints)
     return HingeColumns(
-        places=np.searchsorted(joints, np.array([hinge.joint for hinge in here], dtype=np.intp)),
-        axes=np.array([hinge.axis for hinge in here]).reshape(-1, 3),
-        upper=np.array([hinge.upper for hinge in here]).reshape(-1, 3),
-        lower=np.array([hinge.lower for hinge in here]).reshape(-1, 3),
-        limits=np.array([hinge.limits for hinge in here]).reshape(-1, 2),
-        second=np.array([hinge.is_second for hinge in here], dtype=np.bool_),
+        places=np.searchsorted(joints, every.places[here]),
+        axes=every.axes[here],
+        upper=every.upper[here],
+        lower=every.lower[here],
+        limits=every.limits[here],
+        second=every.second[here],
     )
 
 
 def _limit_columns(body: Body, joints: IntArray) -> LimitColumns:
     """Return the limits among the columns, which are `joints`; a hinge has its own."""
-    columns = set(joints.tolist()) - {hinge.joint for hinge in body.hinges}
-    here = [limit for limit in body.limits if limit.joint in columns]
+    _, every = _of_all_joints(body)
+    here = np.isin(every.places, joints)
     return LimitColumns(
-        places=np.searchsorted(joints, np.array([limit.joint for limit in here], dtype=np.intp)),
-        centers=np.array([limit.center for limit in here]).reshape(-1, 4),
-        along=np.array([limit.along for limit in here]).reshape(-1, 3),
-        swing=np.array([limit.swing for limit in here]),
-        twist=np.array([limit.twist for limit in here]),
+        places=np.searchsorted(joints, every.places[here]),
+        centers=every.centers[here],
+        along=every.along[here],
+        swing=every.swing[here],
+        twist=every.twist[here],
+    )
+
+
+@lru_cache(maxsize=2)
+def _of_all_joints(body: Body) -> tuple[HingeColumns, LimitColumns]:
+    """Return the hinges of a body, and the limits of what is none, by joints: their `places` are these."""
+    hinges, hinged = body.hinges, {hinge.joint for hinge in body.hinges}
+    limits = [limit for limit in body.limits if limit.joint not in hinged]
+    return HingeColumns(
+        places=np.array([hinge.joint for hinge in hinges], dtype=np.intp),
+        axes=np.array([hinge.axis for hinge in hinges]).reshape(-1, 3),
+        upper=np.array([hinge.upper for hinge in hinges]).reshape(-1, 3),
+        lower=np.array([hinge.lower for hinge in hinges]).reshape(-1, 3),
+        limits=np.array([hinge.limits for hinge in hinges]).reshape(-1, 2),
+        second=np.array([hinge.is_second for hinge in hinges], dtype=np.bool_),
+    ), LimitColumns(
+        places=np.array([limit.joint for limit in limits], dtype=np.intp),
+        centers=np.array([limit.center for limit in limits]).reshape(-1, 4),
+        along=np.array([limit.along for limit in limits]).reshape(-1, 3),
+        swing=np.array([limit.swing for limit in limits]),
+        twist=np.array([limit.twist for limit in limits]),
     )

@@ -66,7 +66,10 @@ def with_targets(
         found[i] if i in found else each.targets(Scene(seen[i], settings.curve, goals, others))
         for i, each in enumerate(constraints)
     )
-    arcs = tuple(arcs_of(there, each.reached(there, before)) for each, there in zip(constraints, targets, strict=True))
+    arcs = tuple(
+        None if there.rotations is None else arcs_of(there, each.reached(there, before))
+        for each, there in zip(constraints, targets, strict=True)
+    )
     return replace(Asked.of(motion, constraints, recruits, targets, body, settings), arcs=arcs)
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.body.quality import STILL
+from motionedit.core.body.quality import STILL, squared_jerks
 from motionedit.core.kinematics import forward
 from motionedit.core.trace import BLOCK_FRAMES, frame_blocks
 from motionedit.dataclass import dataclass
@@ -108,8 +108,8 @@ def _jerk(motion: Motion, first: int) -> FloatArray:
     parts = []
     for block in frame_blocks(len(motion) - first - 3):
         frames = slice(first + block.start, min(first + block.stop + 3, len(motion)))
-        third = np.diff(forward(motion.at(frames)).positions, n=3, axis=0)
-        parts.append(np.sqrt(np.einsum("fja,fja->f", third, third) / third.shape[1]))
+        squares = squared_jerks(forward(motion.at(frames)).positions)[0]
+        parts.append(np.sqrt(squares / len(motion.skeleton)))
     return np.concatenate(parts)
 
 

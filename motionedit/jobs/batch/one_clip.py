@@ -40,6 +40,8 @@ class Outcome:
         What the content should read back as, for `verify`; None is the clip's own.
     details : tuple of str
         Lines that --dry-run prints: layers, recruited joints, intervals, goals.
+    digest : str or None
+        The SHA-256 of the content, where that is known already.
     page : callable or None
         Makes the preview page that is written next to the clip, once the clip is.
     """
@@ -50,6 +52,7 @@ class Outcome:
     warnings: tuple[str, ...] = ()
     motion: Motion | None = None
     details: tuple[str, ...] = ()
+    digest: str | None = None
     page: Callable[[], bytes] | None = None
 
 
@@ -112,8 +115,8 @@ class RunOne:
         digest = None
         if task.output is not None:
             sha256 = hashlib.sha256()
-            write_file(task.output, _counted(content, sha256))
-            content, digest = None, sha256.hexdigest()
+            write_file(task.output, content if outcome.digest else _counted(content, sha256))
+            content, digest = None, outcome.digest or sha256.hexdigest()
         if task.page is not None and outcome.page is not None:
             write_file(task.page, outcome.page())
         return Done(Outcome(content, record, outcome.status, warnings), written=True, digest=digest)

@@ -8,7 +8,7 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
-from motionedit.core.measure import Measure
+from motionedit.core.measure import WORLD, Measure
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -37,6 +37,8 @@ class GivenAxes:
 
     def measure(self, *, counted: tuple[int, ...], base: int | None) -> Measure:
         """Return what positions are measured in: these axes of which some count, or a joint's frame."""
+        if self.heading is None and counted == WORLD.counted and base is None:
+            return WORLD
         return Measure(self.rows, counted, base)
 
     def position(self, given: Sequence[float]) -> FloatArray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -93,7 +93,7 @@ def clip_constraints(
         met = spec.met_within
         found += [
             ClipConstraint(
-                constraint=replace(constraint, yields=not spec.counts_for_strict),
+                constraint=constraint,
                 tolerance=DEFAULT_TOLERANCE / scale if met.position is None else met.position,
                 angle_tolerance=DEFAULT_ANGLE_TOLERANCE if met.angle is None else met.angle,
                 may_give_way=met.off,
@@ -137,6 +137,7 @@ class _Resolver:
             ease_in=spec.ease_in.in_frames(frame_time),
             ease_out=spec.ease_out.in_frames(frame_time),
             since=self.facts.first,
+            yields=not spec.counts_for_strict,
             follow=spec.follow,
             **given,
         )
@@ -149,10 +150,15 @@ class _Resolver:
         kind, value = own.kind, own.value
         if kind is kinds.FEET and value is None:
             return tuple(joint for _, joint in self.facts.anatomy.foot_points)
-        if value is None:
-            return None
+        if value is None or kind not in self._ways:
+            return value
+        return self._ways[kind](value, constraint.below(own.keys))
+
+    @cached_property
+    def _ways(self) -> dict[Kind, Callable[[Any, Place], object]]:
+        """How values are found in the clip, by what kinds of values they are."""
         feet = FeetInClip(self.facts, self.events, self.faults, self.relative)
-        ways: dict[Kind, Callable[[Any, Place], object]] = {
+        return {
             kinds.EFFECTORS: lambda given, at: self._effector(given[0], at),
             kinds.EFFECTOR: self._effector,
             kinds.BODY_POINTS: self._body_points,
@@ -166,9 +172,6 @@ class _Resolver:
             kinds.FEET: self._joints,
             kinds.DIRECTION: lambda given, _place: np.array(given) / np.linalg.norm(given),
         }
-        if kind not in ways:
-            return value
-        return ways[kind](value, constraint.below(own.keys))
 
     def _effector(self, effector: EffectorSpec, place: Place) -> Effector:
         """Return an effector, lengths in normalised metres."""

@@ -43,12 +43,14 @@ class ResampleClip:
         places = ", ".join(f"{name} {frame:.2f}" for name, frame in measure.events.items())
         line = f"frames {measure.first} to {measure.last} -> {self.timeline.frames}; {places}"
         content = resampled_bytes(clip, motion)
+        digest = hashlib.sha256(content).hexdigest()
         return Outcome(
             content,
-            {**self._record(), "clip_sha256": hashlib.sha256(content).hexdigest()},
+            {**self._record(), "clip_sha256": digest},
             warnings=(*measure.warnings, *_defects(clip.motion, first=measure.first)),
             motion=motion,
             details=(line.rstrip("; "),),
+            digest=digest,
         )
 
     def _resampled(self, clip: Clip) -> Motion:

@@ -7,6 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from motionedit.core import rotations as rot
+from motionedit.core.compiled import compiled, solver_name
 
 ORDERS = ["".join(order) for order in permutations("XYZ")]
 ANGLES = [0.0, 1e-300, 1e-12, 9.9e-5, 1.01e-4, 0.3, np.pi / 2, np.pi - 1e-9, np.pi]
@@ -120,21 +121,49 @@ def test_the_mean_is_scipys_whatever_the_signs(rng):
     same_rotation(several, np.stack([rot.mean_of_products(part.T @ part) for part in parts]))
 
 
-LEADING = [((), (7,)), ((7,), ()), ((7,), (7,)), ((5, 3), (5, 3)), ((0,), (0,)), ((1,), (7,)), ((3,), (5, 3)), ((), ())]
+LEADING = [
+    *[((), (7,)), ((7,), ()), ((7,), (7,)), ((5, 3), (5, 3)), ((0,), (0,)), ((1,), (7,)), ((3,), (5, 3)), ((), ())],
+    *[((5, 1), (5, 3)), ((5, 1), (1, 3)), ((2, 5, 3), (5, 1))],
+]
+WORK = {
+    rot.multiply: (4, 4),
+    rot.between: (4, 4),
+    rot.angle_between: (4, 4),
+    rot.rotate: (4, 3),
+    rot.unrotate: (4, 3),
+    rot.cross: (3, 3),
+    rot.dot: (3, 3),
+}
+# How rows lie in memory: one after the other, backwards, every other number, of another kind.
+LYING = [lambda x: x, lambda x: x[::-1], lambda x: x.repeat(2, axis=-1)[..., ::2], lambda x: x.astype(np.float32)]
 
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("leading", LEADING)
-@pytest.mark.parametrize(
-    ("work", "widths"), [(rot.multiply, (4, 4)), (rot.rotate, (4, 3)), (rot.cross, (3, 3)), (rot.dot, (3, 3))]
-)
-def test_what_is_compiled_is_that_of_numpy_to_the_bit(work, widths, leading, monkeypatch):
+@pytest.mark.parametrize("work", WORK, ids=lambda work: work.__name__)
+def test_what_is_compiled_is_that_of_numpy_to_the_bit(work, leading, monkeypatch):
     rng = np.random.default_rng(3)
-    # Every other one, so that nothing lies in memory as the compiled part has it.
-    a, b = (rng.normal(size=(*shape, 2 * n))[..., ::2] for shape, n in zip(leading, widths, strict=True))
-    compiled = work(a, b)
+    a, b = (rng.normal(size=(*shape, n)) for shape, n in zip(leading, WORK[work], strict=True))
+    pairs = [(lies(a) if a.ndim > 1 else a, lies(b) if b.ndim > 1 else b) for lies in LYING]
+    compiled = [(work(*pair), rot.length(pair[0][..., :3])) for pair in pairs]
     monkeypatch.setenv("MOTIONEDIT_SOLVER", "numpy")
-    np.testing.assert_array_equal(compiled, work(a, b), strict=True)
+    # Numbers of less precision are as many of full precision.
+    pairs = [tuple(each.astype(np.float64) for each in pair) for pair in pairs]
+    for (found, lengths), pair in zip(compiled, pairs, strict=True):
+        np.testing.assert_array_equal(found, work(*pair), strict=True)
+        np.testing.assert_array_equal(lengths, rot.length(pair[0][..., :3]), strict=True)
+
+
+@pytest.mark.skipif(solver_name() == "numpy", reason="nothing compiled here")
+def test_rows_of_another_width_are_an_error_and_no_crash():
+    with pytest.raises(ValueError, match="not rows of 4 numbers"):
+        rot.multiply(np.zeros((7, 3)), np.zeros((7, 4)))
+    for shape in ((7, 3), (5, 4), (7, 7, 4), (4,)):
+        with pytest.raises(ValueError, match=r"results|rows"):
+            compiled().multiply(np.zeros((7, 4)), np.zeros((7, 4)), np.empty(shape, np.float32))
+    for shape in ((3, 7), (7,), (2, 7, 1)):
+        with pytest.raises(ValueError, match=r"results|rows"):
+            compiled().turn(np.zeros((7, 4)), np.zeros((7, 4)), np.empty(shape))
 
 
 @pytest.mark.compiled

@@ -9,34 +9,85 @@
 #define PI 3.14159265358979323846
 #define TURN (2.0 * PI)
 
-void multiply_all(const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out)
+void multiply_all(
+    const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out, int64_t apart)
 {
+    (void)apart;
     for (int64_t i = 0; i < count; i++)
         q_multiply(a + i * a_step, b + i * b_step, out + 4 * i);
 }
 
-void rotate_all(const double *q, int64_t q_step, const double *v, int64_t v_step, int64_t count, double *out)
+void between_all(
+    const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out, int64_t apart)
 {
-    for (int64_t i = 0; i < count; i++, q += q_step, v += v_step, out += 3) {
-        double t[3], s[3];
-        cross(q + 1, v, t);
-        t[0] *= 2.0, t[1] *= 2.0, t[2] *= 2.0;
-        cross(q + 1, t, s);
-        for (int axis = 0; axis < 3; axis++)
-            out[axis] = v[axis] + q[0] * t[axis] + s[axis];
+    (void)apart;
+    for (int64_t i = 0; i < count; i++) {
+        double inverse[4];
+        q_conjugate(a + i * a_step, inverse);
+        q_multiply(inverse, b + i * b_step, out + 4 * i);
     }
 }
 
-void cross_all(const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out)
+void rotate_all(
+    const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out, int64_t apart)
 {
+    (void)apart;
+    for (int64_t i = 0; i < count; i++, a += a_step, b += b_step, out += 3)
+        q_turn(a, b, out);
+}
+
+void unrotate_all(
+    const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out, int64_t apart)
+{
+    (void)apart;
+    for (int64_t i = 0; i < count; i++, a += a_step, b += b_step, out += 3) {
+        double inverse[4];
+        q_conjugate(a, inverse);
+        q_turn(inverse, b, out);
+    }
+}
+
+void cross_all(
+    const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out, int64_t apart)
+{
+    (void)apart;
     for (int64_t i = 0; i < count; i++)
         cross(a + i * a_step, b + i * b_step, out + 3 * i);
 }
 
-void dot_all(const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out)
+void dot_all(
+    const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out, int64_t apart)
 {
+    (void)apart;
     for (int64_t i = 0; i < count; i++)
         out[i] = dot(a + i * a_step, b + i * b_step);
+}
+
+void length_all(
+    const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out, int64_t apart)
+{
+    (void)a, (void)a_step, (void)apart;
+    for (int64_t i = 0; i < count; i++)
+        out[i] = sqrt(dot(b + i * b_step, b + i * b_step));
+}
+
+void half_cosine_all(
+    const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out, int64_t apart)
+{
+    (void)apart;
+    for (int64_t i = 0; i < count; i++, a += a_step, b += b_step)
+        out[i] = fabs(a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]);
+}
+
+void turn_all(
+    const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out, int64_t apart)
+{
+    for (int64_t i = 0; i < count; i++) {
+        double inverse[4], turn[4];
+        q_conjugate(a + i * a_step, inverse);
+        q_multiply(inverse, b + i * b_step, turn);
+        out[i] = sqrt(dot(turn + 1, turn + 1)), out[apart + i] = fabs(turn[0]);
+    }
 }
 
 void from_tangents(const double *tangents, const int *axes, int64_t count, double *out)

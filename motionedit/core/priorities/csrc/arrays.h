@@ -6,17 +6,20 @@
 
 #include <stdint.h>
 
-/* out = a b of `count` quaternions; a step of 0 takes the first of a or b for all, of 4 each its own. */
-void multiply_all(const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out);
+/* What is done to `count` rows a and b of numbers, each so many numbers after the one before: 0 takes the first for all.
+   Rows of results follow each other, or lie in planes, so many numbers `apart`. */
+typedef void RowWork(
+    const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out, int64_t apart);
 
-/* out = v turned by q; a step of 0 takes the first of q or v for all, else of 4 and of 3 each its own. */
-void rotate_all(const double *q, int64_t q_step, const double *v, int64_t v_step, int64_t count, double *out);
-
-/* out = a x b, of 3 numbers each. */
-void cross_all(const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out);
-
-/* out = a . b, one number each. */
-void dot_all(const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out);
+RowWork multiply_all;    /* out = a b, of quaternions */
+RowWork between_all;     /* out = a^-1 b, of unit quaternions */
+RowWork rotate_all;      /* out = b turned by a */
+RowWork unrotate_all;    /* out = b turned by a^-1 */
+RowWork cross_all;       /* out = a x b */
+RowWork dot_all;         /* out = a . b, one number each */
+RowWork length_all;      /* out = |b|, one number each */
+RowWork half_cosine_all; /* out = |a . b|, of quaternions, one number each */
+RowWork turn_all;        /* of a^-1 b sine and cosine of half the angle, apart from each other */
 
 /* Quaternions of `count` products of three turns about the axes, 0 to 2 and different, each by the tangent of half its
    angle: first all of the first turns, then of the second, of the third. */

@@ -7,12 +7,14 @@
 #define Py_LIMITED_API 0x030B0000
 #include <Python.h>
 
+#include "../../body/csrc/module.h"
 #include "../../bvh/csrc/text.h"
 #include "arrays.h"
 #include "layered.h"
 
 #include <math.h>
 #include <stddef.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* How a structure lies in memory: what Python makes a record of, so that the order of its fields stands here alone. */
@@ -291,76 +293,166 @@ static PyObject *low_pass_rows(PyObject *self, PyObject *arguments)
     Py_RETURN_NONE;
 }
 
-/* Whether a buffer has so many items of `width` numbers that they stand for `count`, again and again; `items` says how
-   many. */
-static int has_items(const Py_buffer *buffer, int64_t count, int64_t width, int64_t *items, const char *name)
-{
-    *items = (int64_t)(buffer->len / (Py_ssize_t)sizeof(double)) / width;
-    const int64_t all = count == 0 || *items == 0 || count % *items ? count : *items;
-    return has_size(buffer, all * width, sizeof(double), name);
-}
-
-/* What is done to rows of numbers, two and two, and how many numbers a row of each has, and of the results. */
+/* What is done to rows of numbers, two and two: how many numbers a row of each has, and how many axes a row of results
+   adds; `planes` are of results, one after the other. */
 typedef struct {
-    void (*work)(const double *, int64_t, const double *, int64_t, int64_t, double *);
-    int64_t one, other, result;
+    RowWork *work;
+    int64_t one, other, result, planes;
 } OnRows;
 
-/* Do it to `count` rows; of fewer rows the same come again and again. */
-static void do_rows(
-    const OnRows *of, const double *one, int64_t ones, const double *other, int64_t others, int64_t count, double *out)
+enum { MOST_AXES = 8, MANY_ROWS = 1 << 12 };
+
+/* Rows that are gone through together with others: so many numbers from row to row along each axis. */
+typedef struct {
+    const double *first;
+    int64_t steps[MOST_AXES];
+} Rows;
+
+/* Whether the buffer is rows of `width` numbers that stand for `axes` axes of so many rows, the last axes of them or
+   one row again and again; else it is to be copied, or an error is set. */
+static int are_rows(const Py_buffer *buffer, int64_t width, int axes, const int64_t *counts, Rows *rows)
 {
-    /* The steps from row to row, none where one row stands for all. */
-    const int64_t step = ones == 1 ? 0 : of->one, other_step = others == 1 ? 0 : of->other;
-    const int64_t together = ones == 1 ? others : others == 1 ? ones : ones < others ? ones : others;
-    for (int64_t i = 0; i < count; i += together)
-        of->work(
-            one + i % ones * step, step, other + i % others * other_step, other_step, together, out + i * of->result);
+    const int own = buffer->ndim - 1, number = (int)sizeof(double);
+    if (own < 0 || own > axes || buffer->shape[own] != width) {
+        PyErr_Format(PyExc_ValueError, "not rows of %lld numbers", (long long)width);
+        return 0;
+    }
+    if (buffer->format == NULL || strcmp(buffer->format, "d") != 0 || buffer->strides[own] != number)
+        return 0;
+    rows->first = buffer->buf;
+    for (int axis = 0; axis < axes; axis++) {
+        const int place = axis - (axes - own);
+        rows->steps[axis] = 0;
+        if (place < 0 || buffer->shape[place] == 1)
+            continue;
+        if (buffer->shape[place] != counts[axis]) {
+            PyErr_SetString(PyExc_ValueError, "rows and results differ in number");
+            return 0;
+        }
+        if (buffer->strides[place] % number != 0)
+            return 0;
+        rows->steps[axis] = buffer->strides[place] / number;
+    }
+    return 1;
 }
 
+/* Do it to all rows, along the last axis at once; axes that lie as one are taken as one. */
+static void do_rows(const OnRows *of, Rows *one, Rows *other, int axes, int64_t *counts, double *out, int64_t apart)
+{
+    int64_t at[MOST_AXES] = {0};
+    int last = axes - 1;
+    while (last > 0 && one->steps[last - 1] == one->steps[last] * counts[last] &&
+           other->steps[last - 1] == other->steps[last] * counts[last]) {
+        counts[last - 1] *= counts[last];
+        one->steps[last - 1] = one->steps[last], other->steps[last - 1] = other->steps[last];
+        last--;
+    }
+    for (;;) {
+        const double *a = one->first, *b = other->first;
+        for (int axis = 0; axis < last; axis++)
+            a += at[axis] * one->steps[axis], b += at[axis] * other->steps[axis];
+        of->work(a, one->steps[last], b, other->steps[last], counts[last], out, apart);
+        out += counts[last] * of->result;
+        int axis = last - 1;
+        while (axis >= 0 && ++at[axis] == counts[axis])
+            at[axis--] = 0;
+        if (axis < 0)
+            return;
+    }
+}
+
+/* True where it was done, False where the rows do not lie in memory as they have to. */
 static PyObject *on_rows(const OnRows *of, PyObject *arguments)
 {
-    Py_buffer b[3] = {{0}};
-    int64_t ones, others;
-    if (!PyArg_ParseTuple(arguments, "y*y*w*", b, b + 1, b + 2))
+    PyObject *given[3];
+    Py_buffer b[3];
+    int held = 0, done = -1;
+    if (!PyArg_ParseTuple(arguments, "OOO", given, given + 1, given + 2))
         return NULL;
-    const int64_t count = b[2].len / (Py_ssize_t)sizeof(double) / of->result;
-    const int fits = has_size(b + 2, count * of->result, sizeof(double), "results") &&
-                     has_items(b, count, of->one, &ones, "the first") &&
-                     has_items(b + 1, count, of->other, &others, "the second");
-    if (fits && count > 0) {
-        Py_BEGIN_ALLOW_THREADS do_rows(of, b[0].buf, ones, b[1].buf, others, count, b[2].buf);
-        Py_END_ALLOW_THREADS
+    while (held < 3 && PyObject_GetBuffer(given[held], b + held,
+                           held == 2 ? PyBUF_WRITABLE | PyBUF_ND | PyBUF_FORMAT : PyBUF_RECORDS_RO) == 0)
+        held++;
+    if (held == 3) {
+        /* An axis of one row stands for results that have no axes but their own. */
+        int64_t counts[MOST_AXES] = {1}, rows = 1;
+        const int before = of->planes > 1, axes = b[2].ndim - before - (of->result > 1);
+        Rows one, other;
+        int fits = axes >= 0 && axes <= MOST_AXES && (!before || b[2].shape[0] == of->planes) &&
+                   (of->result == 1 || b[2].shape[b[2].ndim - 1] == of->result);
+        for (int axis = 0; fits && axis < axes; axis++)
+            rows *= counts[axis] = b[2].shape[axis + before];
+        one.steps[0] = other.steps[0] = 0;
+        if (!fits || !has_size(b + 2, rows * of->result * of->planes, sizeof(double), "results")) {
+            if (!PyErr_Occurred())
+                PyErr_SetString(PyExc_ValueError, "results have another shape");
+        } else if (!are_rows(b, of->one, axes, counts, &one) || !are_rows(b + 1, of->other, axes, counts, &other))
+            done = PyErr_Occurred() ? -1 : 0;
+        else {
+            PyThreadState *state = rows > MANY_ROWS ? PyEval_SaveThread() : NULL;
+            if (rows > 0)
+                do_rows(of, &one, &other, axes > 0 ? axes : 1, counts, b[2].buf, rows);
+            if (state != NULL)
+                PyEval_RestoreThread(state);
+            done = 1;
+        }
     }
-    for (int i = 0; i < 3; i++)
-        PyBuffer_Release(b + i);
-    if (!fits)
-        return NULL;
-    Py_RETURN_NONE;
+    while (held > 0)
+        PyBuffer_Release(b + --held);
+    return done < 0 ? NULL : PyBool_FromLong(done);
 }
 
 static PyObject *multiply(PyObject *self, PyObject *arguments)
 {
     (void)self;
-    return on_rows(&(const OnRows){multiply_all, 4, 4, 4}, arguments);
+    return on_rows(&(const OnRows){multiply_all, 4, 4, 4, 1}, arguments);
+}
+
+static PyObject *between(PyObject *self, PyObject *arguments)
+{
+    (void)self;
+    return on_rows(&(const OnRows){between_all, 4, 4, 4, 1}, arguments);
 }
 
 static PyObject *rotate(PyObject *self, PyObject *arguments)
 {
     (void)self;
-    return on_rows(&(const OnRows){rotate_all, 4, 3, 3}, arguments);
+    return on_rows(&(const OnRows){rotate_all, 4, 3, 3, 1}, arguments);
+}
+
+static PyObject *unrotate(PyObject *self, PyObject *arguments)
+{
+    (void)self;
+    return on_rows(&(const OnRows){unrotate_all, 4, 3, 3, 1}, arguments);
 }
 
 static PyObject *cross_rows(PyObject *self, PyObject *arguments)
 {
     (void)self;
-    return on_rows(&(const OnRows){cross_all, 3, 3, 3}, arguments);
+    return on_rows(&(const OnRows){cross_all, 3, 3, 3, 1}, arguments);
 }
 
 static PyObject *dot_rows(PyObject *self, PyObject *arguments)
 {
     (void)self;
-    return on_rows(&(const OnRows){dot_all, 3, 3, 1}, arguments);
+    return on_rows(&(const OnRows){dot_all, 3, 3, 1, 1}, arguments);
+}
+
+static PyObject *length(PyObject *self, PyObject *arguments)
+{
+    (void)self;
+    return on_rows(&(const OnRows){length_all, 3, 3, 1, 1}, arguments);
+}
+
+static PyObject *half_cosine(PyObject *self, PyObject *arguments)
+{
+    (void)self;
+    return on_rows(&(const OnRows){half_cosine_all, 4, 4, 1, 1}, arguments);
+}
+
+static PyObject *turn(PyObject *self, PyObject *arguments)
+{
+    (void)self;
+    return on_rows(&(const OnRows){turn_all, 4, 4, 1, 2}, arguments);
 }
 
 static int are_three_axes(const int *axes)
@@ -566,6 +658,17 @@ static PyObject *splice(PyObject *self, PyObject *arguments)
     return length < -1 ? NULL : PyLong_FromLongLong(length);
 }
 
+/* To ask `os.environ` takes fifteen times as long, and whoever changes that changes this. */
+static PyObject *is_set(PyObject *self, PyObject *arguments)
+{
+    const char *name, *value, *found;
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "ss", &name, &value))
+        return NULL;
+    found = getenv(name);
+    return PyBool_FromLong(found != NULL && strcmp(found, value) == 0);
+}
+
 static PyMethodDef methods[] = {
     {"solve", solve, METH_VARARGS,
         "Solve frames begin to end - 1 in place, perhaps in order, given buffers by their names."},
@@ -573,10 +676,17 @@ static PyMethodDef methods[] = {
     {"forward", forward_frames, METH_VARARGS, "Write the world transforms of all joints at all frames."},
     {"smooth", smooth, METH_VARARGS, "Write rotations plus their low-passed displacement."},
     {"low_pass", low_pass_rows, METH_VARARGS, "Write rows smoothed over frames."},
-    {"multiply", multiply, METH_VARARGS, "Write the products of quaternions; fewer of either come again and again."},
-    {"rotate", rotate, METH_VARARGS, "Write vectors turned by quaternions; fewer of either come again and again."},
-    {"cross", cross_rows, METH_VARARGS, "Write the cross products of vectors; fewer of either come again and again."},
-    {"dot", dot_rows, METH_VARARGS, "Write the dot products of vectors; fewer of either come again and again."},
+    {"is_set", is_set, METH_VARARGS, "Return whether a variable of the environment has a value."},
+    {"multiply", multiply, METH_VARARGS,
+        "Write the products of quaternions; False where they lie otherwise in memory."},
+    {"between", between, METH_VARARGS, "Write a^-1 b of unit quaternions; False as `multiply`."},
+    {"rotate", rotate, METH_VARARGS, "Write vectors turned by quaternions; False as `multiply`."},
+    {"unrotate", unrotate, METH_VARARGS, "Write vectors turned back by quaternions; False as `multiply`."},
+    {"cross", cross_rows, METH_VARARGS, "Write the cross products of vectors; False as `multiply`."},
+    {"dot", dot_rows, METH_VARARGS, "Write the dot products of vectors; False as `multiply`."},
+    {"length", length, METH_VARARGS, "Write the lengths of vectors, the second given; False as `multiply`."},
+    {"half_cosine", half_cosine, METH_VARARGS, "Write |a . b| of quaternions; False as `multiply`."},
+    {"turn", turn, METH_VARARGS, "Write sines and cosines of half the turns between rotations; False as `multiply`."},
     {"from_tangents", turns_from_tangents, METH_VARARGS,
         "Write the quaternions of three turns, given the tangents of half their angles."},
     {"euler_sums", sums_of_euler, METH_VARARGS,
@@ -615,7 +725,7 @@ static PyObject *record_of(const Field *fields, size_t bytes)
     return record;
 }
 
-/* Add to the module `records`, how its structures lie, by their buffers' names, and `row_kinds`, the rows that it knows. */
+/* Add to the module what measures bodies, `records`, how its structures lie, by their buffers' names, and `row_kinds`, the rows that it knows. */
 static int add_tables(PyObject *module)
 {
     PyObject *records = PyDict_New(), *kinds = PyList_New(0);
@@ -630,7 +740,8 @@ static int add_tables(PyObject *module)
         fits = name != NULL && PyList_Append(kinds, name) == 0;
         Py_XDECREF(name);
     }
-    fits = fits && PyModule_AddObjectRef(module, "records", records) == 0 &&
+    fits = fits && PyModule_AddFunctions(module, body_methods) == 0 &&
+           PyModule_AddFunctions(module, feet_methods) == 0 && PyModule_AddObjectRef(module, "records", records) == 0 &&
            PyModule_AddObjectRef(module, "row_kinds", kinds) == 0;
     Py_XDECREF(records);
     Py_XDECREF(kinds);

@@ -51,6 +51,17 @@ static inline void q_conjugate(const V *q, V *out)
     out[0] = q[0], out[1] = -q[1], out[2] = -q[2], out[3] = -q[3];
 }
 
+/* v turned by the unit quaternion (w, u): v + w t + u x t with t = 2 (u x v). */
+static inline void q_turn(const V *q, const V *v, V *out)
+{
+    V t[3], s[3];
+    cross(q + 1, v, t);
+    t[0] = 2.0 * t[0], t[1] = 2.0 * t[1], t[2] = 2.0 * t[2];
+    cross(q + 1, t, s);
+    for (int a = 0; a < 3; a++)
+        out[a] = v[a] + q[0] * t[a] + s[a];
+}
+
 /* The matrix of a unit quaternion. */
 static inline void matrix_of(const V *q, V *R)
 {

@@ -10,6 +10,7 @@ from takes import clock, foot_path, footfalls, smooth, within
 from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.contacts import Plant, find_plants, foot_plants, plants_of, sole_tracks
 from motionedit.core.body.ground import axis_vector
+from motionedit.core.compiled import compiled, solver_name
 from motionedit.core.kinematics import WorldPoses, forward
 from motionedit.core.motion import Motion
 
@@ -271,3 +272,32 @@ def test_a_body_without_legs_or_a_take_of_one_frame_has_no_plants():
     assert found_in(carried(np.zeros(3)), first=2) == []
     arms = [("Hips", None, (0, 0, 0)), ("Tip", "Hips", (0, 1, 0))]
     assert found_in(standing(skeleton_of(arms))) == []
+
+
+def strolls(rng, frames):
+    """Return paths of the four points, (F, 4, 3), that rest and go on, for a while up in the air."""
+    going = np.repeat(rng.random((frames // 5 + 1, 4)) < 0.5, 5, axis=0)[:frames]
+    steps = going[..., None] * rng.normal(scale=0.01, size=(frames, 4, 3)) * rng.choice([0.3, 1.0, 3.0])
+    return np.cumsum(steps + rng.normal(scale=0.0004, size=(frames, 4, 3)), axis=0)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("seed", range(30))
+def test_compiled_plants_are_those_of_numpy(seed, monkeypatch):
+    rng = np.random.default_rng(seed)
+    tracks = strolls(rng, int(rng.choice([2, 3, 40, 400])))
+    how = {"up": axis_vector(str(rng.choice(["x", "-y", "z"]))), "first": seed % 2, "frame_time": 1.0 / 60.0}
+    found = plants_of(tracks, BODY, **how)
+    monkeypatch.setenv("MOTIONEDIT_SOLVER", "numpy")
+    assert found == plants_of(tracks, BODY, **how)
+
+
+@pytest.mark.skipif(solver_name() == "numpy", reason="nothing compiled here")
+def test_tracks_of_another_size_are_an_error_and_no_crash():
+    rules = (1, 1, 1, 2, 1, *[1.0] * 7)
+    with pytest.raises(ValueError, match="tracks: 72 bytes do not fit"):
+        compiled().stands(np.zeros((3, 1, 3)), np.zeros(1, np.int64), UP, 4, 1, 1.0, rules)
+    with pytest.raises(ValueError, match="up: 16 bytes do not fit"):
+        compiled().stands(np.zeros((3, 1, 3)), np.zeros(1, np.int64), np.zeros(2), 3, 1, 1.0, rules)
+    with pytest.raises(ValueError, match="too few frames"):
+        compiled().stands(np.zeros((1, 1, 3)), np.zeros(1, np.int64), UP, 1, 1, 1.0, rules)

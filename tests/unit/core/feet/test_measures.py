@@ -7,6 +7,7 @@ from human import skeleton_of
 from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.contacts import Plant
 from motionedit.core.body.ground import axis_vector
+from motionedit.core.compiled import compiled, solver_name
 from motionedit.core.feet.measures import foot_measures
 
 ANATOMY = find_anatomy(skeleton_of())
@@ -72,3 +73,38 @@ def test_penetration_is_the_depth_below_the_floor_and_its_share_of_the_frames():
     assert found.penetration_share == pytest.approx(0.25)
     later = measured(tracks_of((0.0 * T, np.where(np.arange(FRAMES) < 4, -0.5, 0.01), 0.0)), first=4)
     assert (later.penetration_max, later.penetration_share) == (0.0, 0.0)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("seed", range(12))
+def test_compiled_measures_are_those_of_numpy(seed, monkeypatch):
+    rng = np.random.default_rng(seed)
+    tracks = np.cumsum(rng.normal(scale=0.004, size=(FRAMES, len(POINTS), 3)), axis=0)
+    plants = [("toe", TOE, 2, 5), ("heel", HEEL, 0, 9), ("toe", TOE, 8, FRAMES - 1), ("heel", HEEL, 12, 12)]
+    how = {"first": seed % 3, "up": "yz"[seed % 2]}
+    found = measured(tracks, *plants[: seed % 5], **how)
+    monkeypatch.setenv("MOTIONEDIT_SOLVER", "numpy")
+    assert vars(found) == pytest.approx(vars(measured(tracks, *plants[: seed % 5], **how)), rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.skipif(solver_name() == "numpy", reason="nothing compiled here")
+@pytest.mark.parametrize(
+    ("at", "point", "counts"),
+    [
+        ([0, 1], [2], [2]),
+        ([0, 1], [-1], [2]),
+        ([0, 3], [1], [2]),
+        ([-1, 0], [0], [2]),
+        ([0, 1], [0], [3]),
+        ([0], [0], [0]),
+    ],
+)
+def test_plants_at_no_frames_or_of_no_points_are_an_error_and_no_crash(at, point, counts):
+    given = np.zeros((3, 2, 3)), np.zeros(3), np.ones(2, bool), *map(np.array, (at, point, counts))
+    with pytest.raises(ValueError, match="plants are at no frames"):
+        compiled().foot_figures(*given, 3, 2, 0, len(counts), len(at), (1.0,) * 6)
+
+
+def test_a_foot_that_stands_far_from_the_origin_does_not_drift_at_all():
+    tracks = np.full((FRAMES, len(POINTS), 3), 1234.5678)
+    assert measured(tracks, ("toe", TOE, 1, 18), scale=0.7).drift_max == 0.0

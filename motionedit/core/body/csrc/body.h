@@ -1,0 +1,71 @@
+/* What motionedit/core/body does in many calls of numpy, in one: the same to the bit. */
+
+#ifndef MOTIONEDIT_BODY_H
+#define MOTIONEDIT_BODY_H
+
+#include <stdint.h>
+
+/* By what a point is taken to stand: contacts.py says what each is. Times are in frames, lengths in metres. */
+typedef struct {
+    int64_t half, low_while, longest_gap, shortest, top_while;
+    double frame_time, enters, leaves, low, same_place, top, held;
+} StandRules;
+
+/* A stretch in which a point stands, both ends in, and how high, in metres. */
+typedef struct {
+    int64_t point, start, stop;
+    double height;
+} Stand;
+
+/* The stands of P points along tracks (F, P, 3), so many units to a metre; `feet` (P,) says whose they are.
+
+   Returns how many there are in `found`, which is to be freed; -1 where memory ran out. */
+int64_t find_stands(const double *tracks, int64_t frames, int64_t points, const int64_t *feet, const double *up,
+    double metre, const StandRules *rules, Stand **found);
+
+/* The median of values, of which there are some; `room` is for as many. */
+double median(const double *values, int64_t count, double *room);
+
+/* How P points of feet go along tracks (F, P, 3), at `scale` metres a unit, from frame `first` on: `toes` (P,) says
+   which count as toes. They stand at `stood` frames of n plants, one after the other, `counts` (n,) of each. */
+typedef struct {
+    int64_t frames, points, first, plants, stood;
+    const double *tracks, *up;
+    const uint8_t *toes;
+    const int64_t *at, *point, *counts;
+    double scale, frame_time, near_floor, skates, slides, under;
+} FootTracks;
+
+/* As measures.FootMeasures. */
+typedef struct {
+    double skate_mean, skate_ratio, sliding_share, penetration_share, penetration_max, drift_max, floating_max;
+} FootFigures;
+
+void measure_feet(const FootTracks *feet, FootFigures *figures);
+
+/* World transforms of a motion: positions (F, J, 3) and rotations (F, J, 4). */
+typedef struct {
+    int64_t frames, joints;
+    const double *positions, *rotations;
+} Poses;
+
+/* The sums over frames from `first` on of the ways from joints to others, seen from third ones: n triples, (n, 3). */
+void sum_ways(const Poses *poses, int64_t first, const int64_t *triples, int64_t count, double *out);
+
+/* Sum q q^T over frames from `first` on, of n joints' rotations: shape (n, 4, 4). */
+void sum_products(const Poses *poses, int64_t first, const int64_t *joints, int64_t count, double *out);
+
+/* How far n joints swing bones `along` (n, 3) from where centers (n, 4) have them, and twist about them, at most, from
+   frame `first` on: (n, 2), rad. */
+void widest_turns(const Poses *poses, int64_t first, const int64_t *joints, const double *centers, const double *along,
+    int64_t count, double *out);
+
+/* Where points (n, 3) in the frames of n joints are in the world at each frame: shape (F, n, 3). */
+void carry(const Poses *poses, const int64_t *joints, const double *points, int64_t count, double *out);
+
+/* Of positions (F, J, 3) the square of each frame's third difference, summed over joints, (F - 3,). Returns the largest
+   of any joint, and at which frame and joint. */
+double squared_jerks(
+    const double *positions, int64_t frames, int64_t joints, double *out, int64_t *frame, int64_t *joint);
+
+#endif

@@ -1,0 +1,176 @@
+/* Buffers from Python for what is in this folder: sizes are checked here, so that a slip there is an error and not a
+   crash. */
+
+#include "module.h"
+
+#include "body.h"
+#include "held.h"
+
+/* World transforms, of `frames` frames from the place where the arrays begin; either may be None. */
+static int poses_of(
+    Held *held, PyObject *positions, PyObject *rotations, long long frames, long long joints, Poses *poses)
+{
+    if (frames < 0 || joints < 0) {
+        PyErr_SetString(PyExc_ValueError, "no such frames or joints");
+        return 0;
+    }
+    *poses = (Poses){.frames = frames, .joints = joints};
+    if (positions != Py_None) {
+        poses->positions = items_of(held, positions, 3 * frames * joints, sizeof(double), 0, "positions");
+        if (poses->positions == NULL)
+            return 0;
+    }
+    if (rotations != Py_None) {
+        poses->rotations = items_of(held, rotations, 4 * frames * joints, sizeof(double), 0, "rotations");
+        if (poses->rotations == NULL)
+            return 0;
+    }
+    return 1;
+}
+
+/* Where `count` joints of so many are; NULL, and an error, where one is none. */
+static const int64_t *joints_of(Held *held, PyObject *given, int64_t count, const Poses *poses)
+{
+    const int64_t *joints = items_of(held, given, count, sizeof *joints, 0, "joints");
+    for (int64_t i = 0; joints != NULL && i < count; i++)
+        if (joints[i] < 0 || joints[i] >= poses->joints) {
+            PyErr_Format(PyExc_ValueError, "no joint %lld", (long long)joints[i]);
+            return NULL;
+        }
+    return joints;
+}
+
+/* What is done with joints of a motion: with so many indices of each item, numbers of its arrays, and of its results;
+   these are of every item, or of every item at every frame. */
+typedef struct {
+    void (*work)(const Poses *, int64_t, const int64_t *, const double **, int64_t, double *);
+    int64_t indices, numbers[3], results;
+    int by_frame, needs_positions, needs_rotations;
+} OnJoints;
+
+/* Take the poses, first frame, joints, up to three arrays and the results that a call is given; whether all fit. */
+static int take_joints(const OnJoints *of, PyObject *arguments, Held *held, Poses *poses, int64_t *first,
+    int64_t *count, const int64_t **joints, const double **arrays, double **out)
+{
+    PyObject *positions, *rotations, *indices, *given, *results;
+    long long frames, joint_count, begin, items;
+    if (!PyArg_ParseTuple(arguments, "OOLLLOLO!O", &positions, &rotations, &frames, &joint_count, &begin, &indices,
+            &items, &PyTuple_Type, &given, &results) ||
+        !poses_of(held, positions, rotations, frames, joint_count, poses))
+        return 0;
+    *first = begin, *count = items;
+    if (begin < 0 || items < 0 || (of->needs_positions && poses->positions == NULL) ||
+        (of->needs_rotations && poses->rotations == NULL)) {
+        PyErr_SetString(PyExc_ValueError, "no such frames, or no positions or rotations");
+        return 0;
+    }
+    *joints = joints_of(held, indices, of->indices * items, poses);
+    if (*joints == NULL)
+        return 0;
+    for (int i = 0; i < 3 && of->numbers[i] > 0; i++) {
+        PyObject *array = PyTuple_GetItem(given, i);
+        arrays[i] = array == NULL ? NULL : items_of(held, array, of->numbers[i] * items, sizeof(double), 0, "numbers");
+        if (arrays[i] == NULL)
+            return 0;
+    }
+    *out = items_of(held, results, of->results * items * (of->by_frame ? frames : 1), sizeof(double), 1, "results");
+    return *out != NULL;
+}
+
+static PyObject *on_joints(const OnJoints *of, PyObject *arguments)
+{
+    Held held = {.count = 0};
+    Poses poses;
+    int64_t first, count;
+    const int64_t *joints;
+    const double *arrays[3] = {NULL, NULL, NULL};
+    double *out;
+    const int fits = take_joints(of, arguments, &held, &poses, &first, &count, &joints, arrays, &out);
+    if (fits)
+        of->work(&poses, first, joints, arrays, count, out);
+    let_go(&held);
+    if (!fits)
+        return NULL;
+    Py_RETURN_NONE;
+}
+
+static void ways_work(
+    const Poses *poses, int64_t first, const int64_t *joints, const double **arrays, int64_t count, double *out)
+{
+    (void)arrays;
+    sum_ways(poses, first, joints, count, out);
+}
+
+static void products_work(
+    const Poses *poses, int64_t first, const int64_t *joints, const double **arrays, int64_t count, double *out)
+{
+    (void)arrays;
+    sum_products(poses, first, joints, count, out);
+}
+
+static void widest_work(
+    const Poses *poses, int64_t first, const int64_t *joints, const double **arrays, int64_t count, double *out)
+{
+    widest_turns(poses, first, joints, arrays[0], arrays[1], count, out);
+}
+
+static void carry_work(
+    const Poses *poses, int64_t first, const int64_t *joints, const double **arrays, int64_t count, double *out)
+{
+    (void)first;
+    carry(poses, joints, arrays[0], count, out);
+}
+
+static PyObject *ways(PyObject *self, PyObject *arguments)
+{
+    (void)self;
+    return on_joints(&(const OnJoints){ways_work, 3, {0}, 3, 0, 1, 1}, arguments);
+}
+
+static PyObject *products(PyObject *self, PyObject *arguments)
+{
+    (void)self;
+    return on_joints(&(const OnJoints){products_work, 1, {0}, 16, 0, 0, 1}, arguments);
+}
+
+static PyObject *widest(PyObject *self, PyObject *arguments)
+{
+    (void)self;
+    return on_joints(&(const OnJoints){widest_work, 1, {4, 3}, 2, 0, 0, 1}, arguments);
+}
+
+static PyObject *carried(PyObject *self, PyObject *arguments)
+{
+    (void)self;
+    return on_joints(&(const OnJoints){carry_work, 1, {3}, 3, 1, 1, 1}, arguments);
+}
+
+static PyObject *jerks(PyObject *self, PyObject *arguments)
+{
+    Held held = {.count = 0};
+    PyObject *positions, *results, *found = NULL;
+    long long frames, joints;
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "OLLO", &positions, &frames, &joints, &results))
+        return NULL;
+    if (frames < 3 || joints < 0)
+        return PyErr_Format(PyExc_ValueError, "no such frames or joints");
+    const double *places = items_of(&held, positions, 3 * frames * joints, sizeof *places, 0, "positions");
+    double *out = places == NULL ? NULL : items_of(&held, results, frames - 3, sizeof *out, 1, "results");
+    if (out != NULL) {
+        int64_t frame, joint;
+        const double largest = squared_jerks(places, frames, joints, out, &frame, &joint);
+        found = Py_BuildValue("dLL", largest, (long long)frame, (long long)joint);
+    }
+    let_go(&held);
+    return found;
+}
+
+PyMethodDef body_methods[] = {
+    {"ways", ways, METH_VARARGS, "Write sums of ways between joints, seen from others."},
+    {"products", products, METH_VARARGS, "Write sums of products of joints' rotations."},
+    {"widest", widest, METH_VARARGS, "Write how far joints swing and twist about their centers."},
+    {"carried", carried, METH_VARARGS, "Write where points in joints' frames are at each frame."},
+    {"jerks", jerks, METH_VARARGS, "Write squared third differences; return the largest, its frame and joint."},
+    {NULL, NULL, 0, NULL},
+};

@@ -1,0 +1,188 @@
+/* Buffers from Python for what is about feet: sizes are checked here, so that a slip there is an error and not a crash. */
+
+#include "module.h"
+
+#include "../../feet/csrc/stance.h"
+#include "body.h"
+#include "held.h"
+
+#include <stdlib.h>
+
+/* [(point, first frame, last frame, height), ...] */
+static PyObject *list_of(const Stand *stands, int64_t count)
+{
+    PyObject *list = PyList_New((Py_ssize_t)count);
+    for (int64_t i = 0; list != NULL && i < count; i++) {
+        PyObject *item = Py_BuildValue("LLLd", (long long)stands[i].point, (long long)stands[i].start,
+            (long long)stands[i].stop, stands[i].height);
+        if (item == NULL || PyList_SetItem(list, (Py_ssize_t)i, item) < 0)
+            Py_CLEAR(list);
+    }
+    return list;
+}
+
+static PyObject *stands(PyObject *self, PyObject *arguments)
+{
+    Held held = {.count = 0};
+    StandRules rules;
+    PyObject *given[3], *list = NULL;
+    long long frames, points, half, low_while, longest_gap, shortest, top_while;
+    double metre;
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "OOOLLd(LLLLLddddddd)", given, given + 1, given + 2, &frames, &points, &metre,
+            &half, &low_while, &longest_gap, &shortest, &top_while, &rules.frame_time, &rules.enters, &rules.leaves,
+            &rules.low, &rules.same_place, &rules.top, &rules.held))
+        return NULL;
+    rules.half = half, rules.low_while = low_while, rules.longest_gap = longest_gap;
+    rules.shortest = shortest, rules.top_while = top_while;
+    if (frames < 2 || points < 0 || half < 1 || low_while < 0 || top_while < 0) {
+        PyErr_SetString(PyExc_ValueError, "too few frames, or none around one");
+        return NULL;
+    }
+    const double *tracks = items_of(&held, given[0], 3 * frames * points, sizeof *tracks, 0, "tracks");
+    const int64_t *feet = tracks == NULL ? NULL : items_of(&held, given[1], points, sizeof *feet, 0, "feet");
+    const double *up = feet == NULL ? NULL : items_of(&held, given[2], 3, sizeof *up, 0, "up");
+    if (up != NULL) {
+        Stand *found = NULL;
+        int64_t count;
+        Py_BEGIN_ALLOW_THREADS count = find_stands(tracks, frames, points, feet, up, metre, &rules, &found);
+        Py_END_ALLOW_THREADS if (count < 0) PyErr_NoMemory();
+        else list = list_of(found, count);
+        free(found);
+    }
+    let_go(&held);
+    return list;
+}
+
+/* Whether plants are at frames, and of points, that there are. */
+static int are_plants(const FootTracks *feet)
+{
+    int64_t sum = 0;
+    for (int64_t k = 0; k < feet->plants && sum >= 0; k++)
+        sum = feet->counts[k] < 1 || feet->counts[k] > feet->stood - sum || feet->point[k] < 0 ||
+                      feet->point[k] >= feet->points
+                  ? -1
+                  : sum + feet->counts[k];
+    for (int64_t i = 0; i < feet->stood && sum >= 0; i++)
+        if (feet->at[i] < 0 || feet->at[i] >= feet->frames)
+            sum = -1;
+    if (sum != feet->stood)
+        PyErr_SetString(PyExc_ValueError, "plants are at no frames, or of no points");
+    return sum == feet->stood;
+}
+
+static PyObject *foot_figures(PyObject *self, PyObject *arguments)
+{
+    Held held = {.count = 0};
+    PyObject *given[6], *found = NULL;
+    FootTracks feet = {0};
+    FootFigures figures;
+    long long frames, points, first, plants, stood;
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "OOOOOOLLLLL(dddddd)", given, given + 1, given + 2, given + 3, given + 4,
+            given + 5, &frames, &points, &first, &plants, &stood, &feet.scale, &feet.frame_time, &feet.near_floor,
+            &feet.skates, &feet.slides, &feet.under))
+        return NULL;
+    feet.frames = frames, feet.points = points, feet.first = first, feet.plants = plants, feet.stood = stood;
+    if (frames < 0 || points < 0 || first < 0) {
+        PyErr_SetString(PyExc_ValueError, "no such frames or points");
+        return NULL;
+    }
+    if ((feet.tracks = items_of(&held, given[0], 3 * frames * points, sizeof(double), 0, "tracks")) != NULL &&
+        (feet.up = items_of(&held, given[1], 3, sizeof(double), 0, "up")) != NULL &&
+        (feet.toes = items_of(&held, given[2], points, 1, 0, "toes")) != NULL &&
+        (feet.at = items_of(&held, given[3], stood, sizeof(int64_t), 0, "frames")) != NULL &&
+        (feet.point = items_of(&held, given[4], plants, sizeof(int64_t), 0, "points")) != NULL &&
+        (feet.counts = items_of(&held, given[5], plants, sizeof(int64_t), 0, "counts")) != NULL && are_plants(&feet)) {
+        measure_feet(&feet, &figures);
+        found = Py_BuildValue("ddddddd", figures.skate_mean, figures.skate_ratio, figures.sliding_share,
+            figures.penetration_share, figures.penetration_max, figures.drift_max, figures.floating_max);
+    }
+    let_go(&held);
+    return found;
+}
+
+static PyObject *settled(PyObject *self, PyObject *arguments)
+{
+    Held held = {.count = 0};
+    PyObject *given[4];
+    long long frames, plants, half;
+    double frame_time, faster, above;
+    int status = -2;
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "OOOOLLLddd", given, given + 1, given + 2, given + 3, &frames, &plants, &half,
+            &frame_time, &faster, &above))
+        return NULL;
+    const double *places = items_of(&held, given[0], 3 * frames, sizeof *places, 0, "places");
+    const double *up = places == NULL ? NULL : items_of(&held, given[1], 3, sizeof *up, 0, "up");
+    const int64_t *counts = up == NULL ? NULL : items_of(&held, given[2], plants, sizeof *counts, 0, "counts");
+    int64_t *spans = counts == NULL ? NULL : items_of(&held, given[3], 2 * plants, sizeof *spans, 1, "spans");
+    if (spans != NULL) {
+        int64_t sum = 0;
+        for (long long k = 0; k < plants && sum >= 0; k++)
+            sum = counts[k] < 1 || counts[k] > frames - sum ? -1 : sum + counts[k];
+        if (sum != frames || half < 1)
+            PyErr_SetString(PyExc_ValueError, "counts are not those of the places");
+        else {
+            status = find_settled(places, up, counts, plants, half, frame_time, faster, above, spans);
+            if (status < 0)
+                PyErr_NoMemory();
+        }
+    }
+    let_go(&held);
+    if (status < 0)
+        return NULL;
+    Py_RETURN_NONE;
+}
+
+static PyObject *stance(PyObject *self, PyObject *arguments)
+{
+    enum { ANKLE, TOE_PLACE, TURN, TOE, PLANTS, HEEL_DOWN, TOE_DOWN, HEEL_OUT, TOE_OUT, TURN_OUT, WHOLE, COUNT };
+    static const struct {
+        const char *name;
+        size_t bytes;
+        int64_t width;
+    } items[COUNT] = {{"ankle", 8, 3}, {"toe place", 8, 3}, {"turn", 8, 4}, {"toe", 8, 3}, {"plants", 8, 3},
+        {"heel down", 1, 1}, {"toe down", 1, 1}, {"heel places", 8, 3}, {"toe places", 8, 3}, {"turns", 8, 4},
+        {"stands", 8, 1}};
+    Held held = {.count = 0};
+    PyObject *given[COUNT];
+    void *at[COUNT];
+    long long frames, plants;
+    int status = -2;
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "OOOOOOOOOOOLL", given, given + 1, given + 2, given + 3, given + 4, given + 5,
+            given + 6, given + 7, given + 8, given + 9, given + 10, &frames, &plants))
+        return NULL;
+    int fits = 1;
+    for (int i = 0; fits && i < COUNT; i++) {
+        const int64_t count = items[i].width * (i == PLANTS ? plants : frames);
+        at[i] = items_of(&held, given[i], count, items[i].bytes, i > PLANTS, items[i].name);
+        fits = at[i] != NULL;
+    }
+    for (long long k = 0; fits && k < plants; k++) {
+        const PlantSpan *plant = (const PlantSpan *)at[PLANTS] + k;
+        fits = 0 <= plant->start && plant->start <= plant->stop && plant->stop < frames;
+        if (!fits)
+            PyErr_Format(PyExc_ValueError, "plant %lld is at no frames", k);
+    }
+    if (fits) {
+        const FootTrack track = {frames, at[ANKLE], at[TOE_PLACE], at[TURN], at[TOE]};
+        const StanceFound found = {at[HEEL_DOWN], at[TOE_DOWN], at[HEEL_OUT], at[TOE_OUT], at[TURN_OUT], at[WHOLE]};
+        status = find_stance(&track, at[PLANTS], plants, &found);
+        if (status < 0)
+            PyErr_NoMemory();
+    }
+    let_go(&held);
+    if (status < 0)
+        return NULL;
+    Py_RETURN_NONE;
+}
+
+PyMethodDef feet_methods[] = {
+    {"stands", stands, METH_VARARGS, "Return the stretches in which points of feet stand."},
+    {"foot_figures", foot_figures, METH_VARARGS, "Return how well feet stand, in seven figures."},
+    {"settled", settled, METH_VARARGS, "Write which frames of plants are the first and the last that have settled."},
+    {"stance", stance, METH_VARARGS, "Write where a foot stands, from the plants of its heel and its toe."},
+    {NULL, NULL, 0, NULL},
+};

@@ -1,0 +1,36 @@
+/* Buffers from Python: their sizes are checked as they are taken. */
+
+#ifndef MOTIONEDIT_HELD_H
+#define MOTIONEDIT_HELD_H
+
+#include "module.h"
+
+#include <stdint.h>
+
+/* The buffers of a call, held as long as it runs. */
+enum { MOST_HELD = 16 };
+typedef struct {
+    Py_buffer held[MOST_HELD];
+    int count;
+} Held;
+
+/* Where `count` items of so many bytes are, one after the other; NULL, and an error, where they are not. */
+static inline void *items_of(Held *held, PyObject *given, int64_t count, size_t bytes, int writable, const char *name)
+{
+    Py_buffer *buffer = held->held + held->count;
+    if (PyObject_GetBuffer(given, buffer, writable ? PyBUF_WRITABLE : PyBUF_SIMPLE) < 0)
+        return NULL;
+    held->count++;
+    if (count >= 0 && buffer->len / (Py_ssize_t)bytes == count && buffer->len % (Py_ssize_t)bytes == 0)
+        return buffer->buf;
+    PyErr_Format(PyExc_ValueError, "%s: %zd bytes do not fit", name, buffer->len);
+    return NULL;
+}
+
+static inline void let_go(Held *held)
+{
+    for (int i = 0; i < held->count; i++)
+        PyBuffer_Release(held->held + i);
+}
+
+#endif

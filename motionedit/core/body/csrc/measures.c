@@ -1,0 +1,122 @@
+/* What is read off whole motions: directions, ranges, the center of mass, jerk. */
+
+#include "body.h"
+
+#include <string.h>
+
+#define ONE_LANE
+#include "../../priorities/csrc/rotations.h"
+
+#define PI 3.14159265358979323846
+
+static const double *place_of(const Poses *poses, int64_t frame, int64_t joint)
+{
+    return poses->positions + 3 * (frame * poses->joints + joint);
+}
+
+static const double *turn_of(const Poses *poses, int64_t frame, int64_t joint)
+{
+    return poses->rotations + 4 * (frame * poses->joints + joint);
+}
+
+void sum_ways(const Poses *poses, int64_t first, const int64_t *triples, int64_t count, double *out)
+{
+    memset(out, 0, 3 * sizeof *out * (size_t)count);
+    for (int64_t f = first; f < poses->frames; f++)
+        for (int64_t i = 0; i < count; i++) {
+            const double *start = place_of(poses, f, triples[3 * i]), *stop = place_of(poses, f, triples[3 * i + 1]);
+            const double way[3] = {stop[0] - start[0], stop[1] - start[1], stop[2] - start[2]};
+            double inverse[4], own[3];
+            q_conjugate(turn_of(poses, f, triples[3 * i + 2]), inverse);
+            q_turn(inverse, way, own);
+            add(out + 3 * i, own);
+        }
+}
+
+void sum_products(const Poses *poses, int64_t first, const int64_t *joints, int64_t count, double *out)
+{
+    memset(out, 0, 16 * sizeof *out * (size_t)count);
+    for (int64_t f = first; f < poses->frames; f++)
+        for (int64_t i = 0; i < count; i++) {
+            const double *q = turn_of(poses, f, joints[i]);
+            for (int a = 0; a < 16; a++)
+                out[16 * i + a] += q[a / 4] * q[a % 4];
+        }
+}
+
+/* Tangents are compared as quotients of what is not negative: no arc is needed but of the largest. */
+typedef struct {
+    double sine, cosine;
+} Arc;
+
+/* Take an arc of 0 to half a turn where it is the longer one. */
+static void lengthen(Arc *longest, double sine, double cosine)
+{
+    const int behind = cosine < 0.0, was_behind = longest->cosine < 0.0;
+    if (behind == was_behind ? sine * longest->cosine > longest->sine * cosine : behind)
+        longest->sine = sine, longest->cosine = cosine;
+}
+
+/* The twist of an arc as limits.py has it, within half a turn. */
+static double twist_of(const Arc *arc, double sign)
+{
+    const double whole = 2.0 * PI, twist = fmod(2.0 * atan2(sign * arc->sine, arc->cosine) + PI, whole);
+    return fabs((twist < 0.0 ? twist + whole : twist) - PI);
+}
+
+void widest_turns(const Poses *poses, int64_t first, const int64_t *joints, const double *centers, const double *along,
+    int64_t count, double *out)
+{
+    for (int64_t i = 0; i < count; i++) {
+        const double *bone = along + 3 * i;
+        /* To both sides by themselves, as they are rounded. */
+        Arc swing = {0.0, 1.0}, twists[2] = {{0.0, 1.0}, {0.0, 1.0}};
+        double inverse[4];
+        q_conjugate(centers + 4 * i, inverse);
+        for (int64_t f = first; f < poses->frames; f++) {
+            double turn[4], turned_bone[3], across[3];
+            q_multiply(inverse, turn_of(poses, f, joints[i]), turn);
+            q_turn(turn, bone, turned_bone);
+            cross(bone, turned_bone, across);
+            lengthen(&swing, sqrt(dot(across, across)), dot(turned_bone, bone));
+            const double sine = dot(turn + 1, bone);
+            lengthen(twists + ((sine < 0.0) != (turn[0] < 0.0)), fabs(sine), fabs(turn[0]));
+        }
+        const double one = twist_of(twists, 1.0), other = twist_of(twists + 1, -1.0);
+        out[2 * i] = atan2(swing.sine, swing.cosine), out[2 * i + 1] = one > other ? one : other;
+    }
+}
+
+void carry(const Poses *poses, const int64_t *joints, const double *points, int64_t count, double *out)
+{
+    for (int64_t f = 0; f < poses->frames; f++)
+        for (int64_t i = 0; i < count; i++, out += 3) {
+            q_turn(turn_of(poses, f, joints[i]), points + 3 * i, out);
+            add(out, place_of(poses, f, joints[i]));
+        }
+}
+
+double squared_jerks(
+    const double *positions, int64_t frames, int64_t joints, double *out, int64_t *frame, int64_t *joint)
+{
+    const int64_t width = 3 * joints;
+    double largest = 0.0;
+    *frame = *joint = 0;
+    for (int64_t f = 0; f + 3 < frames; f++) {
+        const double *rows = positions + f * width;
+        out[f] = 0.0;
+        for (int64_t j = 0; j < joints; j++) {
+            double square = 0.0;
+            for (int64_t a = 3 * j; a < 3 * j + 3; a++) {
+                /* The differences of the differences' differences, as numpy.diff takes them. */
+                const double b = rows[width + a], c = rows[2 * width + a];
+                const double third = ((rows[3 * width + a] - c) - (c - b)) - ((c - b) - (b - rows[a]));
+                square += third * third;
+            }
+            out[f] += square;
+            if (square > largest)
+                largest = square, *frame = f, *joint = j;
+        }
+    }
+    return largest;
+}

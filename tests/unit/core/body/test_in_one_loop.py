@@ -1,0 +1,84 @@
+"""What the compiled part reads off whole motions is what numpy reads off them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from human import skeleton_of, standing
+
+from motionedit.core import rotations as rot
+from motionedit.core.body.anatomy import find_anatomy
+from motionedit.core.body.bends import find_bends
+from motionedit.core.body.center_of_mass import center_of_mass, find_masses
+from motionedit.core.body.in_one_loop import read_off
+from motionedit.core.body.limits import human_limits
+from motionedit.core.body.quality import squared_jerks
+from motionedit.core.body.ranges import bent_back, beyond_range, regions_of
+from motionedit.core.compiled import compiled, solver_name
+from motionedit.core.kinematics import forward
+
+SKELETON = skeleton_of()
+BODY = find_anatomy(SKELETON)
+
+
+def moving(seed, reach):
+    """Return a body whose joints turn anyhow, as far as `reach`, rad."""
+    rng = np.random.default_rng(seed)
+    motion = standing(SKELETON, frames=30)
+    turns = rot.exp(reach * rng.normal(size=(30, len(SKELETON), 3)))
+    return replace(motion, rotations=turns * rng.choice([-1.0, 1.0], size=(30, len(SKELETON), 1)))
+
+
+def read(motion, first):
+    """Return all that is read off a motion, as arrays."""
+    poses, other = forward(motion), moving(99, 0.8)
+    bends = find_bends(SKELETON, poses, BODY, first=first)
+    limits = human_limits(motion, poses, BODY, travel=0, first=first)
+    squares, *worst = squared_jerks(poses.positions)
+    touched = {"first": first, "touched": np.ones(len(SKELETON), bool)}
+    beyond = beyond_range(motion, other, regions_of(SKELETON, BODY, travel=0), **touched)
+    back = bent_back(motion, other, BODY, bends, **touched)
+    return [
+        *(each for bend in bends for each in (bend.axis, bend.upper, bend.lower, bend.angles)),
+        *(np.array([*limit.center, *limit.along, limit.swing, limit.twist]) for limit in limits),
+        *(center_of_mass(poses, find_masses(SKELETON, BODY)), squares, np.array(worst)),
+        np.array([(each.joint, each.frame, each.degrees) for each in (*beyond, *back)]),
+    ]
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("reach", [0.05, 0.5, 3.0])
+@pytest.mark.parametrize("first", [0, 2])
+def test_what_is_compiled_is_that_of_numpy(reach, first, monkeypatch):
+    motion = moving(1, reach)
+    found = read(motion, first)
+    monkeypatch.setenv("MOTIONEDIT_SOLVER", "numpy")
+    for one, other in zip(found, read(motion, first), strict=True):
+        np.testing.assert_allclose(one, other, rtol=1e-12, atol=1e-12)
+
+
+@pytest.mark.parametrize("frames", range(4))
+def test_so_few_frames_have_no_jerk(frames):
+    squares, largest, _, _ = squared_jerks(np.ones((frames, 3, 3)))
+    assert len(squares) == max(frames - 3, 0)
+    assert largest == 0.0
+
+
+@pytest.mark.skipif(solver_name() == "numpy", reason="nothing compiled here")
+def test_joints_and_arrays_that_are_none_are_an_error_and_no_crash():
+    turns, places = np.zeros((5, 2, 4)), np.zeros((5, 2, 3))
+    for joints in ([2], [-1]):
+        with pytest.raises(ValueError, match=f"no joint {joints[0]}"):
+            read_off("products", None, turns, np.array(joints), shape=(1, 4, 4))
+    with pytest.raises(ValueError, match="results: 8 bytes do not fit"):
+        read_off("products", None, turns, np.array([0]), shape=(1,))
+    with pytest.raises(ValueError, match="numbers: 16 bytes do not fit"):
+        read_off("carried", places, turns, np.array([0]), np.zeros(2), shape=(5, 1, 3))
+    with pytest.raises(ValueError, match="no positions"):
+        read_off("carried", None, turns, np.array([0]), np.zeros(3), shape=(5, 1, 3))
+    with pytest.raises(ValueError, match="positions: 24 bytes do not fit"):
+        read_off("carried", np.zeros(3), turns, np.array([0]), np.zeros(3), shape=(5, 1, 3))
+    with pytest.raises(ValueError, match="no such frames"):
+        compiled().jerks(places, 2, 2, np.zeros(0))
+    with pytest.raises(ValueError, match="results: 8 bytes do not fit"):
+        compiled().jerks(places, 5, 2, np.zeros(1))
