@@ -92,7 +92,7 @@ class Change:
     solution : CoefficientSolution
         Its `change` is beta.
     reasons : mapping of int to str
-        Why it stopped, for each request by its place.
+        Why it stopped, for each request by its place; ``stood`` of one that was met but for feet that stand.
     frames : tuple of int
         The goals' frames, increasing.
     norm : float or None

@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 
 # Seconds between the frames of a plant that are looked at: a foot that stands moves alike in the frames between.
 _LOOKS = 0.05
+# Metres at leg length 0.85 m: a point that is so far off counts as one standard deviation. The legs put it back at
+# little cost, but for hips that go further than they reach; a foot that is firm has hips that do not.
+LOOSE, FIRM = 0.15, 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,12 +40,15 @@ class PlantedFoot:
         d(position) / d Theta, metres at leg length 0.85 m, along the world's axes.
     seconds : float
         For how long each of the N frames stands.
+    deviation : float
+        How far off counts as one standard deviation, metres at leg length 0.85 m.
     """
 
     frames: IntArray
     columns: IntArray
     rows: FloatArray
     seconds: float
+    deviation: float = LOOSE
 
 
 def planted_feet(
@@ -52,6 +58,7 @@ def planted_feet(
     poses: WorldPoses,
     plants: Sequence[Plant],
     points: Sequence[Effector],
+    deviation: float = LOOSE,
 ) -> tuple[PlantedFoot, ...]:
     """Return the points of feet that stand, one for each plant.
 
@@ -61,6 +68,8 @@ def planted_feet(
         Of the projected motion.
     points : sequence of Effector
         Heels and toes, as the plants number them.
+    deviation : float
+        As of `PlantedFoot`.
     """
     frame_time, feet = projection.motion.frame_time, []
     for plant in plants:
@@ -68,7 +77,7 @@ def planted_feet(
         looks = min(plant.frames, 1 + int(seconds / _LOOKS))
         frames = np.unique(np.linspace(plant.start, plant.stop, looks).astype(np.intp))
         columns, rows = _point_rows(projection, space, poses, points[plant.point], frames)
-        feet.append(PlantedFoot(frames, columns, rows, seconds / len(frames)))
+        feet.append(PlantedFoot(frames, columns, rows, seconds / len(frames), deviation))
     return tuple(feet)
 
 

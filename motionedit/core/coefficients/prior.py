@@ -31,9 +31,11 @@ FADE = 0.15
 # The share of a pose's variance that each column has by itself, beside how the database's poses vary together; and what
 # a column that does not vary at all has, so that the root of the whole exists.
 _ALONE, _LEAST_VARIANCE = 0.5, 1e-12
-# Metres at leg length 0.85 m: a point of a planted foot that is so far off for twice `FADE` counts as one standard
-# deviation. The legs put it back at little cost, but for hips that go further than they reach.
-FOOT_DEVIATION = 0.15
+# Rad: poses of real strokes, walks and jumps vary by 7 to 28 degrees. Near copies of one motion say how a body moves
+# together, not how far it may go: poses that vary by less than this count as varying by as much more.
+_LEAST_DEVIATION = float(np.radians(5.0))
+_LEAST_TRAVEL = 0.05  # metres at leg length 0.85 m: and so far the body may then go as a whole
+_TRAVEL = 3  # columns of Theta that are no rotation's
 # Beside 1 on the diagonal of K: frames next to each other are nearly one.
 _JITTER = 1e-9
 
@@ -117,7 +119,7 @@ def change_prior(
     share : float
         g, 0 to 1: the share of a change's variance that may leave the components.
     feet : sequence of PlantedFoot
-        Points that stand, and are rather not moved: `FOOT_DEVIATION`.
+        Points that stand, and are rather not moved.
     """
     at = np.unique(np.asarray(frames, dtype=np.intp))
     kernel_root = np.asarray(np.linalg.cholesky(_kernel(at, at, projection.motion.frame_time)), dtype=np.float64)
@@ -147,7 +149,7 @@ def _root(prior: ChangePrior, projection: Projection, model: MotionModel, feet: 
         A = np.concatenate(
             ((foot.rows @ components) * prior.deviations, faded.reshape(*own.shape[:2], -1)), axis=2
         ).reshape(-1, prior.size)
-        precision += (foot.seconds / (2.0 * FADE * FOOT_DEVIATION**2)) * (A.T @ A)
+        precision += (foot.seconds / (2.0 * FADE * foot.deviation**2)) * (A.T @ A)
     # z^T P z = |L^T z|^2 with P = L L^T, so y = L^T z.
     return np.linalg.inv(np.linalg.cholesky(precision)).T
 
@@ -156,7 +158,7 @@ def _pose_factor(model: MotionModel, places: FloatArray, columns: IntArray) -> F
     """Return F, shape (d, d): F F^T is how poses vary in the database within `FADE` of places on the timeline.
 
     `_ALONE` of it goes to each column by itself: a few motions know a few ways of moving together, and a goal may ask
-    for another one.
+    for another one. Poses that hardly vary are taken to do so by `_LEAST_DEVIATION`.
     """
     frames = np.arange(model.timeline.frames, dtype=np.float64)
     apart = np.abs(frames[:, None] - places).min(axis=1) / model.timeline.frame_rate
@@ -164,9 +166,25 @@ def _pose_factor(model: MotionModel, places: FloatArray, columns: IntArray) -> F
     rows = model.component_rows[:, near][:, :, columns]
     rows = (rows * np.sqrt(model.components.explained_variance / len(near))[:, None, None]).reshape(-1, len(columns))
     together = rows.T @ rows
-    alone = np.diag(together)
+    turning = columns >= _TRAVEL
+    times = _widening(np.diag(together)[turning])
+    together *= times
+    travel = (1.0 - 1.0 / times) * (_LEAST_TRAVEL * model.space.root_weight) ** 2
+    alone = np.diag(together) + np.where(turning, 0.0, travel)
     mixed = (1.0 - _ALONE) * together + np.diag(_ALONE * alone + _LEAST_VARIANCE)
     return np.asarray(np.linalg.cholesky(mixed), dtype=np.float64)
+
+
+def _widening(variances: FloatArray) -> float:
+    """Return by what to multiply the variances of a pose's rotations, rad^2, by `_LEAST_DEVIATION`; 1 or more.
+
+    Their mean is weighted by themselves, for many joints hardly turn at all.
+    """
+    total = float(variances.sum())
+    if total <= 0.0:
+        return 1.0
+    spread = float(np.sqrt(variances @ variances / total))
+    return max(1.0, 2.0 * _LEAST_DEVIATION / spread - 1.0) ** 2
 
 
 def interpolated(rho: FloatArray, at: IntArray, frames: int, frame_time: float) -> FloatArray:

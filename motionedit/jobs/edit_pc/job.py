@@ -13,7 +13,7 @@ from motionedit.core.body.steps import change_steps
 from motionedit.core.bvh import edited_bytes, resampled_bytes, unedited_bytes
 from motionedit.core.coefficients.edit import edit_by_coefficients
 from motionedit.core.coefficients.methods import Likeliest
-from motionedit.core.coefficients.planted_feet import planted_feet
+from motionedit.core.coefficients.planted_feet import FIRM, LOOSE, planted_feet
 from motionedit.core.coefficients.projection import of_another, project, project_resampled
 from motionedit.core.pca.fit import components_for
 from motionedit.core.pca.model_file import read_model
@@ -147,7 +147,7 @@ class _Edit:
         poses = kinematics.forward(projection.motion) if spec.timing == "normalized" else facts.poses
         goals = clip_goals(self.loaded, model, facts, events=events, poses=poses)
         bound = plausibility_bound(spec, model, projection.coefficients, asked=_asked_together(spec, goals))
-        solver = chosen_solver(spec, model, bound=bound, feet=self._feet(facts, projection, goals))
+        solver = chosen_solver(spec, model, bound=bound, feet=self._feet(facts, projection, goals, poses=facts.poses))
 
         def solve(requests: Sequence[GoalRequest]) -> CoefficientEdit:
             return edit_by_coefficients(
@@ -161,11 +161,13 @@ class _Edit:
             )
 
         def again(motion: Motion, requests: Sequence[GoalRequest], still: Sequence[int]) -> Motion:
+            now = of_another(projection, model, motion)
+            firm = () if still else self._feet(facts, now, goals, poses=kinematics.forward(motion), deviation=FIRM)
             return edit_by_coefficients(
-                of_another(projection, model, motion),
+                now,
                 model,
                 requests,
-                solver=Likeliest(share=1.0, bound=None, still=tuple(still)),
+                solver=Likeliest(share=1.0, bound=None, feet=firm, still=tuple(still)),
                 residual="keep",
                 first=facts.first,
             ).motion
@@ -174,13 +176,23 @@ class _Edit:
         edit = solve(requests) if feet == "off" else edit_standing(solve, again, requests, facts, places=feet)
         return self._outcome(facts, projection, edit, goals, before=poses, bound=bound)
 
-    def _feet(self, facts: ClipFacts, projection: Projection, goals: Sequence[ClipGoal]) -> tuple[PlantedFoot, ...]:
+    def _feet(
+        self,
+        facts: ClipFacts,
+        projection: Projection,
+        goals: Sequence[ClipGoal],
+        *,
+        poses: WorldPoses,
+        deviation: float = LOOSE,
+    ) -> tuple[PlantedFoot, ...]:
         """Return the points of feet that stand; none where they are left alone, or where a goal is about the foot."""
         if self.loaded.model.feet_in_force == "off":
             return ()
         points = [point.effector for point in facts.anatomy.sole_points]
         plants = plants_without(facts, {(goal.request.effector.joint, goal.request.frame) for goal in goals})
-        return planted_feet(projection, self.model.space, poses=facts.poses, plants=plants, points=points)
+        return planted_feet(
+            projection, self.model.space, poses=poses, plants=plants, points=points, deviation=deviation
+        )
 
     def _projection(self, facts: ClipFacts, task: ClipTask) -> tuple[Projection, dict[str, float]]:
         """Return a clip in the model's coordinates, and the frames of its events."""

@@ -110,7 +110,7 @@ def _mark(records: Sequence[dict[str, Any]], reasons: Mapping[int, str]) -> str:
     for i, record in enumerate(records):
         if is_met(record):
             continue
-        record["status"] = "unreachable" if reasons[i] in {"bound", "stalled"} else "out_of_tolerance"
+        record["status"] = "unreachable" if reasons[i] in {"bound", "stalled", "stood"} else "out_of_tolerance"
         if reasons[i] == "gave way":
             record["gave_way_to"] = [r["name"] for r in records if r["priority"] > record["priority"]]
     return worst_status(*(record["status"] for record in records))
@@ -140,6 +140,7 @@ _WHY = {
     "stalled": "out of reach of the database's motions",
     "gave way": "it gave way to goals of higher priority",
     "iterations": "the iterations ran out",
+    "stood": "out of reach with feet that stand; feet: off lets them go",
     "converged": "the solver's own tolerance is wider",
 }
 

@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     from motionedit.spec.edit_pc import EditPcSpec
 
 
-# Half of what the database does not explain of its own clips may leave the components, within these limits: a database
-# that explains nearly all still needs room for its noise, and one that explains nothing still knows a style.
-_OF_LEFT_OUT, _LEAST_SHARE, _MOST_SHARE = 0.5, 0.05, 0.6
+# g over r^2, r being the share of an unseen clip that the database does not explain; and g's limits: a database that
+# explains nearly all still needs room for its noise, and one that explains nothing still knows a style.
+_OF_LEFT_OUT, _LEAST_SHARE, _MOST_SHARE = 0.85, 0.05, 0.3
 # A model that was made before its left-out error was kept: a share between that of clean sets and that of real strokes.
 _UNKNOWN_SHARE = 0.25
 
@@ -48,21 +48,24 @@ def chosen_solver(
 
 
 def _believed(share: float) -> float:
-    """Return how much of what components say far from a goal is believed: 1 - r^2, r the left-out share.
+    """Return how much of what components say far from a goal is believed: 1 - r^3, r as `residual_share` has it.
 
-    r of a motion is not what the database says; at both ends of a correlation, the goal's and the far one, r^2 is.
+    A database that explains its clips well is believed nearly all along, also of the style far from the goal.
     """
-    return 1.0 - min(share / _OF_LEFT_OUT, 1.0) ** 2
+    return 1.0 - math.sqrt(min(share / _OF_LEFT_OUT, 1.0)) ** 3
 
 
 def residual_share(spec: EditPcSpec, model: MotionModel) -> float:
-    """Return g, the share of a change's variance that may leave the components."""
+    """Return g, the share of a change's variance that may leave the components; `auto` is `_OF_LEFT_OUT` r^2.
+
+    r of a motion is not what the database says; of a change from one to another r^2 is, of both its ends.
+    """
     if not isinstance(spec.residual_share, str):
         return spec.residual_share
     left_out = model.components.left_out
     if left_out is None:
         return _UNKNOWN_SHARE
-    return min(max(_OF_LEFT_OUT * left_out.share, _LEAST_SHARE), _MOST_SHARE)
+    return min(max(_OF_LEFT_OUT * left_out.share**2, _LEAST_SHARE), _MOST_SHARE)
 
 
 def plausibility_bound(spec: EditPcSpec, model: MotionModel, coefficients: FloatArray, *, asked: int) -> float | None:

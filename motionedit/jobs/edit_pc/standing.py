@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Sequence
 
     from motionedit.core.body.contacts import Plant
-    from motionedit.core.coefficients.edit import CoefficientEdit
+    from motionedit.core.coefficients.edit import Change, CoefficientEdit
     from motionedit.core.coefficients.goal_chains import GoalRequest
     from motionedit.core.feet.put_back import Places, StandingFoot
     from motionedit.core.kinematics import WorldPoses
@@ -27,7 +27,11 @@ if TYPE_CHECKING:
 
 # Metres at leg length 0.85 m, and radians: what putting the feet back may move a goal by.
 _SETTLED = 5e-6
-_ROUNDS = 8
+# Times that: what is left of it after all rounds, 0.1 mm, is met.
+_NEARLY = 20.0
+_ROUNDS = 10
+# Rounds after which the pelvis helps, too: a straight leg that is to go higher needs the pelvis tilted.
+_WITHOUT_PELVIS = 4
 # Seconds: a foot with a goal so shortly before it stands, or after, does not stand where it did. Put back there, it
 # would swing far out on its way.
 _NEARBY = 0.15
@@ -44,7 +48,8 @@ def edit_standing(
     """Return what `solve` makes of goals, with planted feet put back.
 
     A lower pelvis takes goals along, and so may the leg of a foot with a goal. They are met again by what is not
-    part of a standing leg: `again` changes a motion so that goals are met while some joints are still.
+    part of a standing leg: `again` changes a motion so that goals are met while some joints are still. Where that does
+    not reach so far, the whole body is asked: with no joint still, feet are firm.
     """
     edit = solve(requests)
     anatomy = facts.anatomy
@@ -60,17 +65,35 @@ def edit_standing(
         request if edit.reasons[i] == "converged" else _reached(request, reached) for i, request in enumerate(requests)
     ]
     tolerance = _SETTLED * anatomy.leg_length / STANDARD_LEG
-    current, touched, moved = edit.motion, edit.touched, edit.moved
-    for _ in range(_ROUNDS):
+    found = legs_alone = edit
+    for done in range(_ROUNDS):
+        if done:
+            found = replace(found, motion=again(found.motion, asked, still if done <= _WITHOUT_PELVIS else ()))
         kept = put_back(
-            current, motion, feet, anatomy, up=facts.up, travel=facts.travel, places=places, first=facts.first
+            found.motion, motion, feet, anatomy, up=facts.up, travel=facts.travel, places=places, first=facts.first
         )
-        current, touched, moved = kept.motion, touched | kept.touched, moved | kept.moved
-        poses = kinematics.forward(current)
-        if all(_off(request, poses, tolerance) < 1.0 for request in asked):
-            break
-        current = again(current, asked, still)
-    return replace(edit, motion=current, touched=touched, moved=moved)
+        found = replace(found, motion=kept.motion, touched=found.touched | kept.touched, moved=found.moved | kept.moved)
+        poses = kinematics.forward(found.motion)
+        off = [_off(request, poses, tolerance) for request in asked]
+        if max(off, default=0.0) < 1.0:
+            return found
+        if done == _WITHOUT_PELVIS:
+            legs_alone = replace(found, changes=_stood(edit, [i for i, each in enumerate(off) if each >= 1.0]))
+    # What the whole body does not reach, either, it is not wrung for.
+    return found if max(off) < _NEARLY else legs_alone
+
+
+def _stood(edit: CoefficientEdit, missed: Collection[int]) -> tuple[Change, ...]:
+    """Return an edit's changes, with feet that stand as the reason of what was met but for them."""
+    return tuple(
+        replace(
+            change,
+            reasons={
+                i: "stood" if i in missed and reason == "converged" else reason for i, reason in change.reasons.items()
+            },
+        )
+        for change in edit.changes
+    )
 
 
 def plants_without(facts: ClipFacts, fixed: Collection[tuple[int, int]]) -> list[Plant]:

@@ -3,9 +3,11 @@
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import motionedit
+from motionedit.core.pca.left_out import LeftOut
 from motionedit.jobs.edit_pc.solver import chosen_solver
 from motionedit.spec.load import load_spec
 
@@ -42,9 +44,20 @@ def test_what_was_not_taken_out_by_normalize_is_not_taken_out_at_the_goals(model
     assert found.position
 
 
+def explaining_all_but(model, left):
+    """Return a model that leaves this share of its own clips unexplained."""
+    one = np.ones(len(model.clips))
+    return replace(model, components=replace(model.components, left_out=LeftOut(one, left * one)))
+
+
+@pytest.mark.parametrize(("left", "share"), [(0.4, 0.85 * 0.4**2), (0.5, 0.85 * 0.5**2), (0.1, 0.05), (0.9, 0.3)])
+def test_of_what_both_ends_leave_unexplained_most_may_leave_the_components(model, left, share):
+    assert solver(explaining_all_but(model, left), {"by": "hips"}).share == pytest.approx(share)
+
+
 def test_components_are_believed_as_much_as_they_explain(model):
-    share = model.components.left_out.share
-    assert 0.1 < share < 0.9
-    assert solver(model, {"by": "hips"}).believed == pytest.approx(1.0 - share**2)
+    for left in (0.4, 0.5):
+        found = solver(explaining_all_but(model, left), {"by": "hips"})
+        assert found.believed == pytest.approx(1.0 - left**3)
     assert solver(model, {"by": "hips"}, residual_share=0).believed == 1.0
     assert solver(model, {"by": "hips"}, residual_share=0.9).believed == 0.0
