@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 _LOOKS = 0.05
 # Metres at leg length 0.85 m: a point that is so far off counts as one standard deviation. The legs put it back at
 # little cost, but for hips that go further than they reach; a foot that is firm has hips that do not.
-LOOSE, FIRM = 0.15, 0.01
+LOOSE, FIRM = 0.12, 0.01
 
 
 @dataclass(frozen=True, eq=False)
