@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -150,39 +149,25 @@ class _Resolver:
         kind, value = own.kind, own.value
         if kind is kinds.FEET and value is None:
             return tuple(joint for _, joint in self.facts.anatomy.foot_points)
-        if value is None or kind not in self._ways:
+        if value is None or kind not in _WAYS:
             return value
-        return self._ways[kind](value, constraint.below(own.keys))
+        return _WAYS[kind](self, value, constraint.below(own.keys))
 
-    @cached_property
-    def _ways(self) -> dict[Kind, Callable[[Any, Place], object]]:
-        """How values are found in the clip, by what kinds of values they are."""
-        feet = FeetInClip(self.facts, self.events, self.faults, self.relative)
-        return {
-            kinds.EFFECTORS: lambda given, at: self._effector(given[0], at),
-            kinds.EFFECTOR: self._effector,
-            kinds.BODY_POINTS: self._body_points,
-            kinds.ANKLES: feet.ankles,
-            PLANTS: feet.plants,
-            kinds.OWN_HEIGHT: lambda given, _place: None if given == "input" else given,
-            kinds.HEIGHT: lambda given, _place: Level(self.facts.up, given * self.scale),
-            kinds.RECRUIT: self._rule,
-            kinds.JOINT: self._joint,
-            kinds.JOINTS: self._joints,
-            kinds.FEET: self._joints,
-            kinds.DIRECTION: lambda given, _place: np.array(given) / np.linalg.norm(given),
-        }
+    @property
+    def feet(self) -> FeetInClip:
+        """What the clip says of its feet."""
+        return FeetInClip(self.facts, self.events, self.faults, self.relative)
 
-    def _effector(self, effector: EffectorSpec, place: Place) -> Effector:
+    def effector(self, effector: EffectorSpec, place: Place) -> Effector:
         """Return an effector, lengths in normalised metres."""
         skeleton, scale = self.facts.clip.motion.skeleton, self.scale
         return self.faults.get(lambda: resolve.effector(effector, skeleton, place, scale=scale), otherwise=_NOWHERE)
 
-    def _body_points(self, named: str | Sequence[EffectorSpec], place: Place) -> tuple[Effector, ...]:
+    def body_points(self, named: str | Sequence[EffectorSpec], place: Place) -> tuple[Effector, ...]:
         """Return the points of the body that a word or a list of effectors names, lengths in normalised metres."""
         if not isinstance(named, str):
             listed_at = [place.at(i) for i in range(len(named))]
-            return tuple(self._effector(each, at) for each, at in zip(named, listed_at, strict=True))
+            return tuple(self.effector(each, at) for each, at in zip(named, listed_at, strict=True))
         skeleton = self.facts.clip.motion.skeleton
         if named == "feet":
             feet = tuple(Effector(joint, np.zeros(3)) for _, joint in self.facts.anatomy.foot_points)
@@ -193,16 +178,19 @@ class _Resolver:
         sites = [Effector(site.joint, self.scale * site.offset) for site in skeleton.end_sites if moving[site.joint]]
         return (*(Effector(int(joint), np.zeros(3)) for joint in np.flatnonzero(moving)), *sites)
 
-    def _joint(self, name: str, place: Place) -> int | None:
+    def joint(self, name: str, place: Place) -> int | None:
+        """Return the joint of a name; None where there is none."""
         return resolve.joint_if_there(name, self.facts.clip.motion.skeleton, place, self.faults)
 
-    def _joints(self, names: Sequence[str], place: Place) -> tuple[int, ...]:
+    def joints(self, names: Sequence[str], place: Place) -> tuple[int, ...]:
+        """Return the joints of names, those that there are."""
         return resolve.joints_if_there(names, self.facts.clip.motion.skeleton, place, self.faults)
 
-    def _rule(self, recruit: Recruit, constraint: Place) -> RecruitRule:
+    def rule(self, recruit: Recruit, constraint: Place) -> RecruitRule:
+        """Return what a constraint may move."""
         place = resolve.recruit_place(constraint)
         if recruit.joint is not None:
-            return RecruitRule("up_to", joint=self._joint(recruit.joint, place.at("up_to")))
+            return RecruitRule("up_to", joint=self.joint(recruit.joint, place.at("up_to")))
         if recruit.kind != "joints":
             return RecruitRule(recruit.kind, levels=recruit.levels)
         skeleton, travel = self.facts.clip.motion.skeleton, self.facts.travel
@@ -268,3 +256,21 @@ class _Resolver:
             length=None if length is None else length * self.scale,
             bound=bound,
         )
+
+
+# How values are found in the clip, by what kinds of values they are. No method of a resolver's own: it would be part of
+# a circle, and the clip with it would stay in memory.
+_WAYS: dict[Kind, Callable[[_Resolver, Any, Place], object]] = {
+    kinds.EFFECTORS: lambda own, given, at: own.effector(given[0], at),
+    kinds.EFFECTOR: _Resolver.effector,
+    kinds.BODY_POINTS: _Resolver.body_points,
+    kinds.ANKLES: lambda own, given, at: own.feet.ankles(given, at),
+    PLANTS: lambda own, given, at: own.feet.plants(given, at),
+    kinds.OWN_HEIGHT: lambda _own, given, _at: None if given == "input" else given,
+    kinds.HEIGHT: lambda own, given, _at: Level(own.facts.up, given * own.scale),
+    kinds.RECRUIT: _Resolver.rule,
+    kinds.JOINT: _Resolver.joint,
+    kinds.JOINTS: _Resolver.joints,
+    kinds.FEET: _Resolver.joints,
+    kinds.DIRECTION: lambda _own, given, _at: np.array(given) / np.linalg.norm(given),
+}
