@@ -168,7 +168,7 @@ def angle_between(a: FloatArray, b: FloatArray) -> FloatArray:
     """Return the geodesic angles (rad, 0 to pi) between rotations a and b, shape (...)."""
     halves = _in_one_loop("turn", a, b, planes=(2,))
     if halves is None:
-        d = multiply(conjugate(a), b)
+        d = between(a, b)
         angle: FloatArray = 2.0 * np.arctan2(length(d[..., 1:]), np.abs(d[..., 0]))
         return angle
     angle = np.arctan2(halves[0], halves[1])

@@ -151,7 +151,7 @@ def find_defects(motion: Motion, *, first: int = 0) -> list[Defect]:
     """
     q = motion.rotations[first:]
     # A cosine of half the step costs less than the step, and nearly all joints are let off by it.
-    cosines = np.abs(np.einsum("fji,fji->fj", q[:-1], q[1:]))
+    cosines = rot.half_cosines(q[:-1], q[1:])
     defects = []
     for joint in np.flatnonzero((cosines < _DEFECT_COSINE).any(axis=0)):
         steps = rot.angle_between(q[:-1, joint], q[1:, joint])

@@ -66,7 +66,7 @@ def change_steps(before: Motion, after: Motion, *, first: int) -> Steps:
     changed = np.flatnonzero(differ.any(axis=1))
 
     def changes(some: IntArray) -> FloatArray:
-        return rot.multiply(rot.conjugate(one[:, some]), other[:, some])
+        return rot.between(one[:, some], other[:, some])
 
     return _steps(changed, changes, before, first)
 

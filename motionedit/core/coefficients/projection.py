@@ -138,5 +138,5 @@ def with_rows(projection: Projection, space: PoseSpace, rows: FloatArray) -> Mot
     rotations = motion.rotations.copy()
     rotations[:, projection.joints[1:]] = q[:, 1:]
     turned = Motion(motion.skeleton, frozen(rotations), motion.translations, motion.frame_time)
-    path = TravelPath(alignment.undo(travel), rot.multiply(rot.conjugate(alignment.rotation), q[:, 0]))
+    path = TravelPath(alignment.undo(travel), rot.between(alignment.rotation, q[:, 0]))
     return with_travel_path(turned, projection.travel, path)

@@ -167,7 +167,7 @@ def onto_stances(
 def shifted(motion: Motion, shift: FloatArray, poses: WorldPoses, travel: int) -> Motion:
     """Return a motion whose travel is shifted in the world, shape (F, 3)."""
     parent = int(motion.skeleton.parents[travel])
-    local = shift if parent < 0 else rot.rotate(rot.conjugate(poses.rotations[:, parent]), shift)
+    local = shift if parent < 0 else rot.unrotate(poses.rotations[:, parent], shift)
     translations = motion.translations.copy()
     translations[:, int(np.searchsorted(motion.skeleton.translated, travel))] += local
     return Motion(motion.skeleton, motion.rotations, frozen(translations), motion.frame_time)

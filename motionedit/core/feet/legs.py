@@ -74,11 +74,11 @@ def legs_onto(
         swing = _smallest_turn(upper + rot.rotate(flexion, lower), wanted)
         above = {j: poses.rotations[:, parents[j]] for j in (leg.thigh, leg.knee, leg.ankle)}
         world = rot.multiply(swing, poses.rotations[:, leg.thigh])
-        rotations[:, leg.thigh] = rot.multiply(rot.conjugate(above[leg.thigh]), world)
+        rotations[:, leg.thigh] = rot.between(above[leg.thigh], world)
         bent = rot.multiply(flexion, poses.rotations[:, leg.knee])
-        rotations[:, leg.knee] = rot.multiply(rot.conjugate(above[leg.knee]), bent)
+        rotations[:, leg.knee] = rot.between(above[leg.knee], bent)
         below = rot.multiply(rot.multiply(swing, flexion), above[leg.ankle])
-        rotations[:, leg.ankle] = rot.multiply(rot.conjugate(below), turns)
+        rotations[:, leg.ankle] = rot.between(below, turns)
     return Motion(motion.skeleton, rotations, motion.translations, motion.frame_time)
 
 

@@ -99,5 +99,5 @@ def turned(motion: Motion, path: NewPath, poses: WorldPoses, travel: int) -> Mot
     parent = int(motion.skeleton.parents[travel])
     world = rot.multiply(path.turns, poses.rotations[:, travel])
     rotations = motion.rotations.copy()
-    rotations[:, travel] = world if parent < 0 else rot.multiply(rot.conjugate(poses.rotations[:, parent]), world)
+    rotations[:, travel] = world if parent < 0 else rot.between(poses.rotations[:, parent], world)
     return Motion(motion.skeleton, frozen(rotations), motion.translations, motion.frame_time)

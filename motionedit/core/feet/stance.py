@@ -59,7 +59,7 @@ def foot_path(poses: WorldPoses, foot: Foot) -> FootPath:
     toe = poses.positions[:, effector.joint]
     if effector.offset.any():
         toe = toe + rot.rotate(poses.rotations[:, effector.joint], effector.offset)
-    return FootPath(ankle, turn, rot.rotate(rot.conjugate(turn), toe - ankle))
+    return FootPath(ankle, turn, rot.unrotate(turn, toe - ankle))
 
 
 @dataclass(frozen=True, eq=False)

@@ -75,7 +75,7 @@ def rotations_in_space(motion: Motion, joints: IntArray, *, path: TravelPath, al
 
 def rotation_tracks(q: FloatArray, references: FloatArray) -> FloatArray:
     """Return v = log(q_ref^-1 q), unwrapped over frames, shape (F, K, 3)."""
-    return unwrapped(rot.log(rot.multiply(rot.conjugate(references), q)))
+    return unwrapped(rot.log(rot.between(references, q)))
 
 
 def rotations_of_tracks(v: FloatArray, references: FloatArray) -> FloatArray:

@@ -95,6 +95,6 @@ def are_beyond(limits: LimitColumns, local: FloatArray) -> BoolArray:
 
 def _values(limits: LimitColumns, local: FloatArray) -> FloatArray:
     """Return the swings and the twists of joints, shape (N, 2 C), rad."""
-    q = rot.multiply(rot.conjugate(limits.centers), local)
+    q = rot.between(limits.centers, local)
     swing, twist = swing_and_twist(q, limits.along)
     return np.concatenate((swing, twist), axis=1)

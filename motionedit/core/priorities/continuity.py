@@ -50,7 +50,7 @@ def smoothed_displacement(
         inputs = [np.ascontiguousarray(a) for a in (before.rotations, after.rotations, axes, taps)]
         kernel.smooth(*inputs, rotations, len(before), first, NO_DISPLACEMENT)
         return on_channels(Motion(before.skeleton, rotations, translations, before.frame_time), hinges)
-    turns = rot.log(rot.multiply(rot.conjugate(before.rotations), after.rotations))
+    turns = rot.log(rot.between(before.rotations, after.rotations))
     bent = np.flatnonzero(axes.any(axis=1))
     about = rot.log(rot.multiply(after.rotations[:, bent], rot.conjugate(before.rotations[:, bent])))
     turns[:, bent] = np.sum(about * axes[bent], axis=2, keepdims=True) * axes[bent]

@@ -193,7 +193,7 @@ def changes(before: Motion, after: Motion, travel: int) -> tuple[BoolArray, Bool
     touched = np.empty(before.rotations.shape[:2], dtype=np.bool_)
     for block in frame_blocks(len(before)):
         # A turn so small is twice the vector part of its quaternion.
-        turns = rot.multiply(rot.conjugate(before.rotations[block]), after.rotations[block])
+        turns = rot.between(before.rotations[block], after.rotations[block])
         x, y, z = (2.0 * np.abs(turns[..., part]) > NO_DISPLACEMENT for part in (1, 2, 3))
         touched[block] = x | y | z
     place = np.searchsorted(before.skeleton.translated, travel)

@@ -43,7 +43,7 @@ def lifted(asked: Asked) -> Motion:
 def _moved(motion: Motion, shift: FloatArray, travel: int) -> Motion:
     """Return a motion whose travel is moved in the world, shape (F, 3)."""
     parent = int(motion.skeleton.parents[travel])
-    local = shift if parent < 0 else rot.rotate(rot.conjugate(forward(motion).rotations[:, parent]), shift)
+    local = shift if parent < 0 else rot.unrotate(forward(motion).rotations[:, parent], shift)
     translations = motion.translations.copy()
     translations[:, int(np.searchsorted(motion.skeleton.translated, travel))] += local
     return Motion(motion.skeleton, motion.rotations, frozen(translations), motion.frame_time)

@@ -32,7 +32,7 @@ def arcs_of(targets: Targets, own: Targets) -> FloatArray | None:
     """
     if targets.rotations is None or own.rotations is None or not len(targets.rotations):
         return None
-    shortest = rot.log(rot.multiply(rot.conjugate(own.rotations), targets.rotations))
+    shortest = rot.log(rot.between(own.rotations, targets.rotations))
     if np.linalg.norm(shortest, axis=1).max() <= _FAR:
         return None
     return least_turned(shortest, np.ones(len(shortest)))

@@ -122,7 +122,7 @@ def _angles(hinges: HingeColumns, rotations: FloatArray) -> FloatArray:
     upper, lower = (np.broadcast_to(each, (*rotations.shape[:2], 3)).copy() for each in (hinges.upper, hinges.lower))
     first, second = ~hinges.second, hinges.second
     lower[:, first] = rot.rotate(rotations[:, first], lower[:, first])
-    upper[:, second] = rot.rotate(rot.conjugate(rotations[:, second]), upper[:, second])
+    upper[:, second] = rot.unrotate(rotations[:, second], upper[:, second])
     along = np.sum(hinges.axes * upper, axis=2) * np.sum(hinges.axes * lower, axis=2)
     sine = np.sum(hinges.axes * rot.cross(upper, lower), axis=2)
     angles: FloatArray = np.arctan2(sine, np.sum(upper * lower, axis=2) - along)

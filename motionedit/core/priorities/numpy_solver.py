@@ -203,13 +203,13 @@ def _apply(state: Motion, columns: Columns, pose: _Pose, step: FloatArray, root:
     turns = step[:, :-3].reshape(len(frames), -1, 3).copy()
     parents = skeleton.parents[joints]
     inner = parents >= 0
-    turns[:, inner] = rot.rotate(rot.conjugate(pose.world.rotations[:, parents[inner]]), turns[:, inner])
+    turns[:, inner] = rot.unrotate(pose.world.rotations[:, parents[inner]], turns[:, inner])
     q = rot.multiply(rot.exp(turns), state.rotations[frames[:, None], joints])
     state.rotations[frames[:, None], joints] = rot.normalize(q)
     if len(skeleton.translated):
         shift, above = step[:, -3:], int(skeleton.parents[columns.root])
         if above >= 0:
-            shift = rot.rotate(rot.conjugate(pose.world.rotations[:, above]), shift)
+            shift = rot.unrotate(pose.world.rotations[:, above], shift)
         state.translations[frames, root] += shift
 
 

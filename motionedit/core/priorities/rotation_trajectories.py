@@ -102,4 +102,4 @@ def _arcs(before: FloatArray, after: FloatArray, weights: FloatArray) -> FloatAr
     turn from its goal. Of the ways round that one is taken whose longest arc, by its weight (n,), is the least: a joint
     that is never farther than half a turn from the input is never asked to come back from the other side.
     """
-    return least_turned(rot.log(rot.multiply(rot.conjugate(before), after)), weights)
+    return least_turned(rot.log(rot.between(before, after)), weights)

@@ -70,9 +70,9 @@ def steps_at(run: Run, after: Motion, *, within: FloatArray | None = None) -> Fl
     for block in frame_blocks(stop - start):
         frames = slice(start + block.start, min(start + block.stop + 1, stop))
         # All joints: to pick some would cost more than what is known of the others.
-        change = rot.multiply(rot.conjugate(before.rotations[frames]), after.rotations[frames])
+        change = rot.between(before.rotations[frames], after.rotations[frames])
         # A cosine of half the step costs less than the step, and nearly all are let off by it.
-        far = np.abs(np.einsum("fji,fji->fj", change[:-1], change[1:])) < np.cos(0.5 * limit)
+        far = rot.half_cosines(change[:-1], change[1:]) < np.cos(0.5 * limit)
         for joint in np.flatnonzero(far.any(axis=0)):
             steps = rot.angle_between(change[:-1, joint], change[1:, joint])
             q = before.rotations[first:, joint]

@@ -39,7 +39,7 @@ class Alignment:
 
     def undo(self, points: FloatArray) -> FloatArray:
         """Return aligned points in the world, shape (..., 3)."""
-        return rot.rotate(rot.conjugate(self.rotation), points) + self.origin
+        return rot.unrotate(self.rotation, points) + self.origin
 
 
 NO_ALIGNMENT = Alignment(rot.IDENTITY, frozen(np.zeros(3)))

@@ -115,7 +115,7 @@ def _pose(facts: ClipFacts, frame: int, spec: EffectorSpec, effector: Effector) 
     position = effector_positions(facts.poses, effector)[frame]
     rotation = facts.poses.rotations[frame, effector.joint]
     order = _order(motion.skeleton, effector.joint)
-    in_heading = rot.multiply(rot.conjugate(heading.rotation), rotation)
+    in_heading = rot.between(heading.rotation, rotation)
     decimals = _decimals(facts.anatomy.leg_length)
     return {
         "at": frame,

@@ -401,59 +401,23 @@ static PyObject *on_rows(const OnRows *of, PyObject *arguments)
     return done < 0 ? NULL : PyBool_FromLong(done);
 }
 
-static PyObject *multiply(PyObject *self, PyObject *arguments)
-{
-    (void)self;
-    return on_rows(&(const OnRows){multiply_all, 4, 4, 4, 1}, arguments);
-}
-
-static PyObject *between(PyObject *self, PyObject *arguments)
-{
-    (void)self;
-    return on_rows(&(const OnRows){between_all, 4, 4, 4, 1}, arguments);
-}
-
-static PyObject *rotate(PyObject *self, PyObject *arguments)
-{
-    (void)self;
-    return on_rows(&(const OnRows){rotate_all, 4, 3, 3, 1}, arguments);
-}
-
-static PyObject *unrotate(PyObject *self, PyObject *arguments)
-{
-    (void)self;
-    return on_rows(&(const OnRows){unrotate_all, 4, 3, 3, 1}, arguments);
-}
-
-static PyObject *cross_rows(PyObject *self, PyObject *arguments)
-{
-    (void)self;
-    return on_rows(&(const OnRows){cross_all, 3, 3, 3, 1}, arguments);
-}
-
-static PyObject *dot_rows(PyObject *self, PyObject *arguments)
-{
-    (void)self;
-    return on_rows(&(const OnRows){dot_all, 3, 3, 1, 1}, arguments);
-}
-
-static PyObject *length(PyObject *self, PyObject *arguments)
-{
-    (void)self;
-    return on_rows(&(const OnRows){length_all, 3, 3, 1, 1}, arguments);
-}
-
-static PyObject *half_cosine(PyObject *self, PyObject *arguments)
-{
-    (void)self;
-    return on_rows(&(const OnRows){half_cosine_all, 4, 4, 1, 1}, arguments);
-}
-
-static PyObject *turn(PyObject *self, PyObject *arguments)
-{
-    (void)self;
-    return on_rows(&(const OnRows){turn_all, 4, 4, 1, 2}, arguments);
-}
+/* A method that does some work to rows of so many numbers each: of one, of the other, of the results, and planes of
+   these. */
+#define ON_ROWS(method, ...)                                                                                           \
+    static PyObject *method(PyObject *self, PyObject *arguments)                                                       \
+    {                                                                                                                  \
+        (void)self;                                                                                                    \
+        return on_rows(&(const OnRows){__VA_ARGS__}, arguments);                                                       \
+    }
+ON_ROWS(multiply, multiply_all, 4, 4, 4, 1)
+ON_ROWS(between, between_all, 4, 4, 4, 1)
+ON_ROWS(rotate, rotate_all, 4, 3, 3, 1)
+ON_ROWS(unrotate, unrotate_all, 4, 3, 3, 1)
+ON_ROWS(cross_rows, cross_all, 3, 3, 3, 1)
+ON_ROWS(dot_rows, dot_all, 3, 3, 1, 1)
+ON_ROWS(length, length_all, 3, 3, 1, 1)
+ON_ROWS(half_cosine, half_cosine_all, 4, 4, 1, 1)
+ON_ROWS(turn, turn_all, 4, 4, 1, 2)
 
 static int are_three_axes(const int *axes)
 {

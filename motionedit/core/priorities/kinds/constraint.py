@@ -125,7 +125,7 @@ def between(one: Targets, other: Targets, share: FloatArray) -> Targets:
     if positions is not None:
         positions = positions + share[:, None] * (other.all_positions - positions)
     if rotations is not None and other.rotations is not None:
-        arc = rot.log(rot.multiply(rot.conjugate(rotations), other.rotations))
+        arc = rot.log(rot.between(rotations, other.rotations))
         rotations = rot.multiply(rotations, rot.exp(share[:, None] * arc))
     if lengths is not None:
         lengths = lengths + share * (other.all_lengths - lengths)
@@ -138,7 +138,7 @@ def moved(targets: Targets, before: Targets, after: Targets, share: FloatArray) 
     if positions is not None:
         positions = positions + share[:, None] * (after.all_positions - before.all_positions)
     if rotations is not None and before.rotations is not None and after.rotations is not None:
-        turn = rot.log(rot.multiply(rot.conjugate(before.rotations), after.rotations))
+        turn = rot.log(rot.between(before.rotations, after.rotations))
         rotations = rot.multiply(rotations, rot.exp(share[:, None] * turn))
     if lengths is not None:
         lengths = lengths + share * (after.all_lengths - before.all_lengths)

@@ -80,7 +80,7 @@ class OrientationTask:
             q_base = self.base.rotation(poses)
             inverse = np.swapaxes(rot.to_matrix(q_base), 1, 2)
             J = inverse @ (J - self.base.rotation_rows(poses))
-            q = rot.multiply(rot.conjugate(q_base), q)
+            q = rot.between(q_base, q)
         e = rot.log(rot.multiply(self.targets[frames], rot.conjugate(q)))
         return METRES_PER_RADIAN * e, METRES_PER_RADIAN * J
 
