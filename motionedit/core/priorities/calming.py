@@ -79,13 +79,18 @@ def _calmest(layers: _Layers, members: list[int], before: FloatArray, smoothing:
         yielding = {k: _yielding(layers.asked, k, new) for k in members}
         if further is None or not any(frames.any() for frames in yielding.values()):
             break
-        layers = _solved(given_way(layers.asked, yielding, smoothing, further=further), smoothing)
+        layers = _smooth(*given_way(layers.asked, yielding, smoothing, further=further), smoothing)
     return calmest
 
 
 def _solved(asked: Asked, smoothing: Passes) -> _Layers:
     run = run_of(asked)
-    state = in_passes(run, bent_where_missed(run, solve_from_input(run)), smoothing)
+    return _smooth(asked, bent_where_missed(run, solve_from_input(run)), smoothing)
+
+
+def _smooth(asked: Asked, state: Solved, smoothing: Passes) -> _Layers:
+    run = run_of(asked)
+    state = in_passes(run, state, smoothing)
     return _Layers(asked, state, seen_of(run, state.motion, steps=state.steps))
 
 

@@ -71,10 +71,10 @@ def within_reach(run: Run, state: Solved, smoothing: Passes) -> Reached:
             missed = _missed(above, members, bent_where_missed(part, alone).motion) & unsure
         if not missed.any():
             continue
-        above = given_way(above, dict(zip(members, missed, strict=True)), smoothing)
+        above, near = given_way(above, dict(zip(members, missed, strict=True)), smoothing)
         asked = with_paths(asked, above, here)
         run = run_of(asked)
-        state = bent_where_missed(run, solve_from_input(run))
+        state = near if level == asked.levels[-1] else bent_where_missed(run, solve_from_input(run))
     return Reached(run, in_passes(run, state, smoothing))
 
 
@@ -94,10 +94,10 @@ def _missed(asked: Asked, which: list[int], motion: Motion) -> BoolArray:
     return missed
 
 
-def given_way(above: Asked, missed: Mapping[int, BoolArray], smoothing: Passes, *, further: float = 1.0) -> Asked:
+def given_way(above: Asked, missed: Mapping[int, BoolArray], smoothing: Passes, *, further: float = 1.0) -> tuple[Asked, Solved]:
     """Return what is asked of a motion with paths that can be reached for constraints that are missed at frames (F,).
 
-    These are the last of its layers.
+    These are the last of its layers. The smooth solution that the paths are those of is returned, too.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ def given_way(above: Asked, missed: Mapping[int, BoolArray], smoothing: Passes, 
     targets = toward(soft, led.targets, everywhere, state.motion)
     without = {k: share for k, share in shares.items() if targets[k] is led.targets[k]}
     kept = _softened(replace(led, targets=targets), shares, _KEPT * _SOFTNESS)
-    return _softened(kept, without, _SOFTNESS)
+    return _softened(kept, without, _SOFTNESS), state
 
 
 def _softened(asked: Asked, shares: Mapping[int, FloatArray], softness: float) -> Asked:
