@@ -59,7 +59,8 @@ typedef struct Layer {
     int full;            /* whether B has numbers beside its lower triangle: where a lane's rank was in doubt */
     V *B;                /* shape (rows, rows) */
     V rank;
-    V soft; /* lambda^2 of the pull among its rows, 0 where it shall be met */
+    V soft;  /* lambda^2 of the pull among its rows, 0 where it shall be met */
+    V error; /* its length when it last changed */
 } Layer;
 
 /* All arrays are a thread's own. */
@@ -69,6 +70,8 @@ typedef struct {
     V moved_before;                      /* rad or m, in the iteration before */
     V gain, anneal;                      /* of the attraction; of it and of the lower layers, at the end */
     Mask steady;                         /* where what is left may be out of reach */
+    V stale;                             /* iterations in which what is missed stayed so */
+    int64_t annealed_from[LANES];        /* the iteration from which on the gain and the lower layers are annealed */
     Mask nearly, remembers;
     V *local, *reference, *offsets; /* quaternions of nodes and columns; where nodes are in their parents */
     V reference_root[3], *targets;  /* shape (T, 4) */

@@ -62,14 +62,25 @@ static void drop_rounding(Batch *batch)
         batch->errors[r] = only(errs | ~batch->active[r], batch->errors[r]);
 }
 
+/* Nothing is known of a lane's iterations yet. */
+static void begin_iterating(Batch *batch, int lane)
+{
+    const Problem *problem = batch->problem;
+    batch->iteration[lane] = 0;
+    batch->annealed_from[lane] = problem->of.max_iterations - problem->constants.annealed_iterations;
+    LANE(batch->moved_before, lane) = LANE(batch->stale, lane) = 0.0;
+    MASK_LANE(batch->nearly, lane) = MASK_LANE(batch->remembers, lane) = 0;
+    for (int64_t r = 0; r < batch->rows; r++)
+        MASK_LANE(batch->active_before[r], lane) = 0;
+    for (int64_t l = 0; l < problem->of.layers; l++)
+        LANE(batch->layers[l].error, lane) = 0.0;
+}
+
 /* Give a lane frame `at`, or none: -1. */
 static void begin_frame(Batch *batch, int lane, int64_t at)
 {
-    batch->at[lane] = at, batch->iteration[lane] = 0;
-    MASK_LANE(batch->nearly, lane) = MASK_LANE(batch->remembers, lane) = 0;
-    LANE(batch->moved_before, lane) = 0.0;
-    for (int64_t r = 0; r < batch->rows; r++)
-        MASK_LANE(batch->active_before[r], lane) = 0;
+    batch->at[lane] = at;
+    begin_iterating(batch, lane);
     MASK_LANE(batch->limited, lane) = 0, batch->before_limits[lane] = 0;
     if (at >= 0)
         load(batch, lane, at);
@@ -109,12 +120,9 @@ static int goes_on_with_limits(Batch *batch, int lane)
     if (batch->problem->of.limits == 0 || batch->holds || MASK_LANE(batch->limited, lane) || !is_beyond(batch, lane) ||
         !is_met_without_limits(batch, lane))
         return 0;
-    batch->before_limits[lane] = batch->iteration[lane], batch->iteration[lane] = 0;
+    batch->before_limits[lane] = batch->iteration[lane];
+    begin_iterating(batch, lane);
     MASK_LANE(batch->limited, lane) = -1;
-    MASK_LANE(batch->nearly, lane) = MASK_LANE(batch->remembers, lane) = 0;
-    LANE(batch->moved_before, lane) = 0.0;
-    for (int64_t r = 0; r < batch->rows; r++)
-        MASK_LANE(batch->active_before[r], lane) = 0;
     return 1;
 }
 
@@ -130,6 +138,26 @@ static void end_frame(Batch *batch, int lane, int converged)
     store(batch, lane);
 }
 
+/* Count the iterations in which what is missed stays so: the most important layer that shall be met and is not. */
+static void watch_errors(Batch *batch)
+{
+    const Constants *constants = &batch->problem->constants;
+    const double same = constants->same_error;
+    const V *left = left_errors(batch);
+    Mask missed = ~everywhere(), found = missed, changes = missed;
+    for (int l = 0; l < batch->problem->of.layers; l++) {
+        Layer *layer = batch->layers + l;
+        const V size = layer->held > 0 ? length(batch->held_errors + layer->joints[0].error, 3 * layer->held)
+                                       : length(left + layer->first, layer->rows);
+        const Mask far = less(all(constants->met_without_limits), size), hard = ~less(all(0.0), layer->soft);
+        const Mask here = far & hard & ~found;
+        const Mask changed = here & (less(size, same * layer->error) | less(layer->error, same * size));
+        layer->error = choose(changed, size, layer->error);
+        missed |= far, found |= here, changes |= changed;
+    }
+    batch->stale = only(batch->steady & ~batch->limited & missed & ~changes, batch->stale + 1.0);
+}
+
 /* How each lane goes about its iteration. */
 static void set_pace(Batch *batch)
 {
@@ -137,12 +165,18 @@ static void set_pace(Batch *batch)
     const Problem *problem = batch->problem;
     for (int lane = 0; lane < LANES; lane++) {
         const int64_t iteration = batch->iteration[lane];
-        const int64_t left_over = problem->of.max_iterations - constants->annealed_iterations - iteration - 1;
+        MASK_LANE(batch->steady, lane) = iteration >= constants->hasty_iterations ? -1 : 0;
+    }
+    watch_errors(batch);
+    for (int lane = 0; lane < LANES; lane++) {
+        const int64_t iteration = batch->iteration[lane];
+        if (LANE(batch->stale, lane) >= (double)constants->stale_iterations && iteration < batch->annealed_from[lane])
+            batch->annealed_from[lane] = iteration;
+        const int64_t left_over = batch->annealed_from[lane] - iteration - 1;
         LANE(batch->anneal, lane) = left_over < 0 ? ldexp(1.0, (int)left_over) : 1.0;
         LANE(batch->gain, lane) = problem->of.attraction * LANE(batch->anneal, lane);
         for (int64_t i = constants->full_gain_iterations; i < iteration + 1; i++)
             LANE(batch->gain, lane) *= constants->gain_decay;
-        MASK_LANE(batch->steady, lane) = iteration >= constants->hasty_iterations ? -1 : 0;
     }
 }
 
@@ -225,13 +259,20 @@ static int active(const Batch *batch)
     return count;
 }
 
+/* Whether a lane's frame has had all its iterations. */
+static int is_annealed(const Batch *batch, int lane)
+{
+    const Problem *problem = batch->problem;
+    return batch->iteration[lane] == problem->of.max_iterations ||
+           batch->iteration[lane] == batch->annealed_from[lane] + problem->constants.annealed_iterations;
+}
+
 /* End the frames that turn out to be met, or have had all their iterations. */
 static void end_before_iterating(Batch *batch)
 {
     const Mask met = any(batch->nearly) ? batch->nearly & are_met(batch) : batch->nearly;
     for (int lane = 0; lane < LANES; lane++)
-        if (batch->at[lane] >= 0 &&
-            (MASK_LANE(met, lane) || batch->iteration[lane] == batch->problem->of.max_iterations) &&
+        if (batch->at[lane] >= 0 && (MASK_LANE(met, lane) || is_annealed(batch, lane)) &&
             !goes_on_with_limits(batch, lane)) {
             end_frame(batch, lane, MASK_LANE(met, lane) != 0);
             batch->at[lane] = -1;
