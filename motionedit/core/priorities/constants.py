@@ -19,8 +19,9 @@ GAIN_DECAY = 0.85
 HASTY_ITERATIONS = 8
 # Over so many last iterations the lower layers' largest error and the gain are halved each time.
 ANNEALED_ITERATIONS = 10
-# That begins earlier where in so many steady iterations the length of an error was this share of what it had been.
-STALE_ITERATIONS, SAME_ERROR = 3, 0.98
+# That begins earlier where in so many steady iterations the length of an error, metres or radians at least, was this
+# share of what it had been.
+STALE_ITERATIONS, FAR_ERROR, SAME_ERROR = 3, 0.05, 0.98
 # A hinge that leaves its limits is set on them and leaves the system; this many times at most.
 LIMIT_ROUNDS = 4
 # Radians: so far beyond its limit a hinge is on it.

@@ -71,10 +71,11 @@ def within_reach(run: Run, state: Solved, smoothing: Passes) -> Reached:
             missed = _missed(above, members, bent_where_missed(part, alone).motion) & unsure
         if not missed.any():
             continue
-        above, near = given_way(above, dict(zip(members, missed, strict=True)), smoothing)
+        above, along = given_way(above, dict(zip(members, missed, strict=True)), smoothing)
         asked = with_paths(asked, above, here)
         run = run_of(asked)
-        state = near if level == asked.levels[-1] else bent_where_missed(run, solve_from_input(run))
+        goes_on = smoothing.count and level == asked.levels[-1]
+        state = along if goes_on else bent_where_missed(run, solve_from_input(run))
     return Reached(run, in_passes(run, state, smoothing))
 
 
@@ -94,7 +95,9 @@ def _missed(asked: Asked, which: list[int], motion: Motion) -> BoolArray:
     return missed
 
 
-def given_way(above: Asked, missed: Mapping[int, BoolArray], smoothing: Passes, *, further: float = 1.0) -> tuple[Asked, Solved]:
+def given_way(
+    above: Asked, missed: Mapping[int, BoolArray], smoothing: Passes, *, further: float = 1.0
+) -> tuple[Asked, Solved]:
     """Return what is asked of a motion with paths that can be reached for constraints that are missed at frames (F,).
 
     These are the last of its layers. The smooth solution that the paths are those of is returned, too.

@@ -81,7 +81,7 @@ class Hinges:
         z: FloatArray,
         descent: Descent,
         down: Callable[..., Descent],
-        gain: float,
+        gain: FloatArray,
     ) -> None:
         """Set hinges that would leave their limits on them, take them out of the system, and go `down` again.
 

@@ -13,9 +13,9 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.kinematics import WorldPoses, forward
+from motionedit.core.priorities.annealing import Annealing
 from motionedit.core.priorities.cones import Cones, are_beyond
 from motionedit.core.priorities.constants import (
-    ANNEALED_ITERATIONS,
     FULL_GAIN_ITERATIONS,
     GAIN_DECAY,
     HASTY_ITERATIONS,
@@ -99,6 +99,7 @@ class _Block:
     reference: Reference
     memory: Memory
     sides: Sides
+    annealing: Annealing
     first: int
     root: int
     limited: bool
@@ -137,7 +138,8 @@ def _iterate(
     if not len(frames):
         return
     first, count = int(frames[0]), int(frames[-1] - frames[0]) + 1
-    block = _Block(problem, reference, Memory.empty(count, columns.size), Sides(count), first, root, limited)
+    annealing = Annealing(count, len(problem.layers), problem.max_iterations, limited=limited)
+    block = _Block(problem, reference, Memory.empty(count, columns.size), Sides(count), annealing, first, root, limited)
     memory, moved_before = block.memory, np.zeros(count)
     for iteration in range(problem.max_iterations):
         here = frames - block.first
@@ -163,7 +165,10 @@ def _iterate(
             done[nearly[met]] = True
         moved_before[here] = moved
         solution.converged[frames[done]] = True
-        frames = frames[~done]
+        over = ~done & annealing.are_over(here, problem.softness[frames], iteration)
+        if over.any():
+            solution.left[frames[over]] = _largest_left(problem, _Pose.of(state, frames[over]))
+        frames = frames[~(done | over)]
         if not len(frames):
             return
     solution.left[frames] = _largest_left(problem, _Pose.of(state, frames))
@@ -216,15 +221,16 @@ def _apply(state: Motion, columns: Columns, pose: _Pose, step: FloatArray, root:
 def _step(block: _Block, pose: _Pose, hinges: Hinges, iteration: int) -> tuple[FloatArray, Descent]:
     """Return the step, shape (N, n), and the descent behind it; hinges that leave their limits are set on them."""
     problem = block.problem
-    anneal = 2.0 ** min(0, problem.max_iterations - ANNEALED_ITERATIONS - iteration - 1)
+    evaluated, softness = [_evaluated(layer, pose) for layer in problem.layers], problem.softness[pose.frames]
+    lengths = np.stack([np.linalg.norm(each.left, axis=1) for each in evaluated], axis=1)
+    here = pose.frames - block.first
+    anneal = block.annealing.factors(here, lengths, softness, iteration)[:, None]
     gain = problem.attraction * GAIN_DECAY ** max(0, iteration + 1 - FULL_GAIN_ITERATIONS) * anneal
-    evaluated = [_evaluated(layer, pose) for layer in problem.layers]
     rows = Rows(
         [replace(each, J=block.mobility * _shifts(problem, pose, hinges.on_axes(each.J))) for each in evaluated]
     )
     z = attraction(problem.columns, block.reference, pose.world, pose.motion, pose.frames)
     z = _shifts(problem, pose, hinges.on_axes(z[:, None]))[:, 0] / block.mobility
-    softness = problem.softness[pose.frames]
     met = LARGEST_ERROR * np.where(np.arange(len(evaluated)) == 0, 1.0, anneal)
     way = _Way(np.where(softness > 0.0, LARGEST_SOFT_ERROR, met), softness, iteration >= HASTY_ITERATIONS)
     everything = np.ones(z.shape, dtype=np.bool_)
@@ -233,7 +239,7 @@ def _step(block: _Block, pose: _Pose, hinges: Hinges, iteration: int) -> tuple[F
     descent = way.down(whole, rows.taking_part(whole), z, fixed=np.zeros_like(z), free=everything, limits=none)
     cones = Cones(problem, pose.motion.rotations, pose.world) if block.limited else None
     hinges.keep_limits(rows, cones, z, descent, way.down, gain)
-    step, here = descent.tasks + gain * descent.home, pose.frames - block.first
+    step = descent.tasks + gain * descent.home
     home = accelerated(block.memory, here, descent)
     fast = descent.tasks + gain * home
     outside = hinges.out_of_limits(fast, descent.free).any(axis=1)

@@ -39,8 +39,8 @@ static const Field CONSTANTS_FIELDS[] = {NUMBER(Constants, largest_error), NUMBE
     NUMBER(Constants, no_change), NUMBER(Constants, no_direction), NUMBER(Constants, beyond_limit),
     NUMBER(Constants, met_without_limits), NUMBER(Constants, metres_per_radian), NUMBER(Constants, on_side),
     INTEGER(Constants, full_gain_iterations), INTEGER(Constants, hasty_iterations),
-    INTEGER(Constants, stale_iterations), NUMBER(Constants, same_error), INTEGER(Constants, annealed_iterations),
-    INTEGER(Constants, limit_rounds), INTEGER(Constants, sided_rounds), {0}};
+    INTEGER(Constants, stale_iterations), NUMBER(Constants, same_error), NUMBER(Constants, far_error),
+    INTEGER(Constants, annealed_iterations), INTEGER(Constants, limit_rounds), INTEGER(Constants, sided_rounds), {0}};
 static const Field NODE_FIELDS[] = {INTEGER(Node, joint), INTEGER(Node, parent), INTEGER(Node, translation),
     INTEGER(Node, column), FIELD(Node, offset, "3f8"), NUMBER(Node, share), FIELD(Node, center, "3f8"), {0}};
 static const Field TASK_FIELDS[] = {INTEGER(Task, kind), INTEGER(Task, layer), INTEGER(Task, rows), INTEGER(Task, node),

@@ -138,24 +138,27 @@ static void end_frame(Batch *batch, int lane, int converged)
     store(batch, lane);
 }
 
-/* Count the iterations in which what is missed stays so: the most important layer that shall be met and is not. */
+/* Count the iterations in which what is missed stays so: annealing.py. */
 static void watch_errors(Batch *batch)
 {
     const Constants *constants = &batch->problem->constants;
     const double same = constants->same_error;
     const V *left = left_errors(batch);
-    Mask missed = ~everywhere(), found = missed, changes = missed;
+    Mask missed = ~everywhere(), soft = missed, decided = missed, changes = missed;
     for (int l = 0; l < batch->problem->of.layers; l++) {
         Layer *layer = batch->layers + l;
         const V size = layer->held > 0 ? length(batch->held_errors + layer->joints[0].error, 3 * layer->held)
                                        : length(left + layer->first, layer->rows);
-        const Mask far = less(all(constants->met_without_limits), size), hard = ~less(all(0.0), layer->soft);
-        const Mask here = far & hard & ~found;
-        const Mask changed = here & (less(size, same * layer->error) | less(layer->error, same * size));
+        const Mask far = less(all(constants->met_without_limits), size), gives_way = less(all(0.0), layer->soft);
+        const Mask here = far & ~gives_way & ~decided;
+        const Mask changed = here & (less(size, all(constants->far_error)) | less(size, same * layer->error) |
+                                        less(layer->error, same * size));
         layer->error = choose(changed, size, layer->error);
-        missed |= far, found |= here, changes |= changed;
+        missed |= here, soft |= far & gives_way;
+        decided |= l == 0 ? here & ~changed : here, changes |= l == 0 ? ~everywhere() : changed;
     }
-    batch->stale = only(batch->steady & ~batch->limited & missed & ~changes, batch->stale + 1.0);
+    const Mask stays = (decided & ~changes) | (soft & ~missed);
+    batch->stale = only(batch->steady & ~batch->limited & stays, batch->stale + 1.0);
 }
 
 /* How each lane goes about its iteration. */
@@ -259,12 +262,16 @@ static int active(const Batch *batch)
     return count;
 }
 
-/* Whether a lane's frame has had all its iterations. */
-static int is_annealed(const Batch *batch, int lane)
+/* Whether a lane's frame has had all its iterations. What gives way comes to rest slowly: it is not waited for. */
+static int is_over(const Batch *batch, int lane)
 {
     const Problem *problem = batch->problem;
-    return batch->iteration[lane] == problem->of.max_iterations ||
-           batch->iteration[lane] == batch->annealed_from[lane] + problem->constants.annealed_iterations;
+    const int64_t iteration = batch->iteration[lane];
+    int soft = 0;
+    for (int64_t l = 0; l < problem->of.layers; l++)
+        soft |= LANE(batch->layers[l].soft, lane) > 0.0;
+    return iteration == problem->of.max_iterations ||
+           (soft && iteration == batch->annealed_from[lane] + problem->constants.annealed_iterations);
 }
 
 /* End the frames that turn out to be met, or have had all their iterations. */
@@ -272,7 +279,7 @@ static void end_before_iterating(Batch *batch)
 {
     const Mask met = any(batch->nearly) ? batch->nearly & are_met(batch) : batch->nearly;
     for (int lane = 0; lane < LANES; lane++)
-        if (batch->at[lane] >= 0 && (MASK_LANE(met, lane) || is_annealed(batch, lane)) &&
+        if (batch->at[lane] >= 0 && (MASK_LANE(met, lane) || is_over(batch, lane)) &&
             !goes_on_with_limits(batch, lane)) {
             end_frame(batch, lane, MASK_LANE(met, lane) != 0);
             batch->at[lane] = -1;

@@ -1,0 +1,63 @@
+"""When a frame's iterations come to their end: the pull and the lower layers' steps are then halved each time.
+
+That is so over the last iterations there are, and earlier where what is missed stays missed: the error of the most
+important layer that shall be met, and is not, no longer changes once steps are steady. Limits of joints are met slowly;
+with them nothing ends early.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core.priorities.constants import (
+    ANNEALED_ITERATIONS,
+    FAR_ERROR,
+    HASTY_ITERATIONS,
+    MET_WITHOUT_LIMITS,
+    SAME_ERROR,
+    STALE_ITERATIONS,
+)
+
+if TYPE_CHECKING:
+    from motionedit.core.arrays import BoolArray, FloatArray, IntArray
+
+
+class Annealing:
+    """Of `count` frames: from which iteration on they are annealed."""
+
+    def __init__(self, count: int, layers: int, max_iterations: int, *, limited: bool) -> None:
+        self._from = np.full(count, max_iterations - ANNEALED_ITERATIONS)
+        self._errors, self._stale, self._limited = np.zeros((count, layers)), np.zeros(count), limited
+
+    def factors(self, frames: IntArray, errors: FloatArray, softness: FloatArray, iteration: int) -> FloatArray:
+        """Return what the pull and the lower layers' steps are multiplied by in an iteration, shape (N,).
+
+        Parameters
+        ----------
+        errors : shape (N, L)
+            Lengths of the layers' errors.
+        softness : shape (N, L)
+            Not 0 where a layer gives way: it need not be met.
+        """
+        far, before = errors > MET_WITHOUT_LIMITS, self._errors[frames]
+        missed, gives_way = far & (softness == 0.0), softness > 0.0
+        changed = missed & ((errors < FAR_ERROR) | (errors < SAME_ERROR * before) | (before < SAME_ERROR * errors))
+        decides = missed.copy()
+        decides[:, 0] &= ~changed[:, 0]
+        decides &= np.cumsum(decides, axis=1) == 1
+        changed[:, 1:] &= decides[:, 1:]
+        self._errors[frames] = np.where(changed, errors, before)
+        stays = (decides & ~changed).any(axis=1) | ((far & gives_way).any(axis=1) & ~missed.any(axis=1))
+        stays &= iteration >= HASTY_ITERATIONS and not self._limited
+        self._stale[frames] = np.where(stays, self._stale[frames] + 1, 0)
+        early = self._stale[frames] >= STALE_ITERATIONS
+        self._from[frames] = np.where(early, np.minimum(self._from[frames], iteration), self._from[frames])
+        factors: FloatArray = 0.5 ** np.maximum(0, iteration + 1 - self._from[frames])
+        return factors
+
+    def are_over(self, frames: IntArray, softness: FloatArray, iteration: int) -> BoolArray:
+        """Return which frames have had all their iterations, shape (N,): what gives way is not waited for."""
+        over: BoolArray = (softness > 0.0).any(axis=1) & (self._from[frames] + ANNEALED_ITERATIONS <= iteration + 1)
+        return over

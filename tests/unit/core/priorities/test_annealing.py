@@ -1,0 +1,72 @@
+"""Iterations come to their end where what is missed stays as it is, and not before."""
+
+import numpy as np
+import pytest
+from person import HARD, edited, held, held_feet, swaying
+
+from motionedit.core.priorities.annealing import Annealing
+from motionedit.core.priorities.constants import ANNEALED_ITERATIONS, HASTY_ITERATIONS, STALE_ITERATIONS
+
+MOST = 40
+LAST = MOST - ANNEALED_ITERATIONS
+EARLY = HASTY_ITERATIONS + STALE_ITERATIONS - 1
+
+
+def first_annealed(errors, softness=(0.0, 0.0), *, top=0.0, limited=False):
+    """Return the first iteration whose factor is not 1 where errors(iteration) are left of two layers below the first.
+
+    Of that one `top` ** iteration is left.
+    """
+    annealing = Annealing(1, 3, MOST, limited=limited)
+    soft, frame = np.array([[0.0, *softness]]), np.array([0])
+    factors = [annealing.factors(frame, np.array([[top**i, *errors(i)]]), soft, i)[0] for i in range(MOST)]
+    first = next(i for i, each in enumerate(factors) if each < 1.0)
+    np.testing.assert_array_equal(factors[first : first + 4], [0.5, 0.25, 0.125, 0.0625])
+    return first
+
+
+@pytest.mark.parametrize(
+    ("errors", "first"),
+    [
+        (lambda _: (0.0, 0.5), EARLY),
+        (lambda i: (0.0, 0.97**i), LAST),
+        (lambda i: (0.0, 1.03**i), LAST),
+        (lambda i: (0.0, 0.97 ** min(i, 20)), 20 + STALE_ITERATIONS),
+        # The most important one decides.
+        (lambda i: (0.5, 0.97**i), EARLY),
+        (lambda i: (0.97**i, 0.5), LAST),
+        # What is nearly met is gone on with, and what is met needs no end.
+        (lambda _: (0.0, 0.04), LAST),
+        (lambda _: (0.04, 0.5), LAST),
+        (lambda _: (0.0, 0.0), LAST),
+    ],
+)
+def test_a_frame_is_annealed_once_what_it_misses_stays_so(errors, first):
+    assert first_annealed(errors) == first
+
+
+def test_layers_that_give_way_need_not_be_met():
+    assert first_annealed(lambda i: (0.0, 0.97**i), (0.0, 0.01)) == EARLY
+    assert first_annealed(lambda i: (0.5, 0.97**i), (0.01, 0.0)) == LAST
+
+
+def test_the_first_layer_is_not_waited_for_but_may_be_out_of_reach_itself():
+    assert first_annealed(lambda _: (0.5, 0.0), top=0.9) == EARLY
+    assert first_annealed(lambda _: (0.0, 0.0), top=0.9) == LAST
+    assert first_annealed(lambda i: (0.97**i, 0.0), top=1.0) == EARLY
+
+
+def test_with_limits_nothing_ends_early():
+    assert first_annealed(lambda _: (0.0, 0.5), limited=True) == LAST
+
+
+def test_what_is_out_of_reach_ends_early_and_leaves_what_is_above_it_exact():
+    motion = swaying(8)
+    reached, far = (
+        edited(motion, [*held_feet(8), held("RightHand", 8, shift, priority=2)], HARD)
+        for shift in ((0.1, 0.1, 0.1), (0.0, 2.0, 1.0))
+    )
+    assert far.converged.all()
+    assert far.iterations.max() < LAST + STALE_ITERATIONS
+    assert max(each.positions.max() for each in far.errors[:-1]) < 1e-6
+    assert reached.errors[-1].positions.max() < 1e-6
