@@ -7,6 +7,7 @@ more and along smoother paths.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,13 +21,15 @@ from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray
-    from motionedit.core.priorities.frames import Solved
+    from motionedit.core.priorities.frames import Run, Solved
     from motionedit.core.priorities.giving_way import Reached
     from motionedit.core.priorities.groups import Asked
     from motionedit.core.priorities.settings import Passes
 
 # How far what yields gives way: one after the other, while a viewer would see something.
 _FURTHER = (1.0, 2.0, 4.0)
+# From so many times the input's jerk on passes are tried with a root that is so much less mobile.
+_UNSTEADY, _FIRM = 1.15, 0.4
 # Times what was seen before that a layer is to blame for, and of the least that is seen that is seen plainly.
 _MORE, _PLAINLY = 1.1, 1.2
 
@@ -34,9 +37,9 @@ _MORE, _PLAINLY = 1.1, 1.2
 def calmed(found: Reached, smoothing: Passes) -> Solved:
     """Return an edit's solution in which what need not be met gives way where a viewer would see something."""
     seen = seen_of(found.run, found.state.motion, steps=found.state.steps)
-    if not seen.much.any():
-        return found.state
-    last, asked = _Layers(found.run.asked, found.state, seen), found.run.asked
+    last, asked = _steadied(found.run, _Layers(found.run.asked, found.state, seen), smoothing), found.run.asked
+    if not last.seen.much.any():
+        return last.state
     before = np.zeros(len(asked.motion))
     for level in asked.levels:
         here = down_to(level, asked)
@@ -63,6 +66,21 @@ class _Layers:
         """Return how much is seen that was not before, shape (F,)."""
         much = self.seen.much
         return np.where(much > _MORE * before, much, 0.0)
+
+
+def _steadied(run: Run, layers: _Layers, smoothing: Passes) -> _Layers:
+    """Return the same layers as they are, or passed once more with a root that shifts less, which may jerk less.
+
+    Passes correct little, frame by frame, and what the root corrects all joints do.
+    """
+    body = run.asked.body
+    if layers.seen.jerk < _UNSTEADY or body.mobility is None:
+        return layers
+    firm = run_of(replace(run.asked, body=replace(body, root_mobility=_FIRM * body.root_mobility)))
+    state = in_passes(firm, replace(layers.state), smoothing)
+    new = _Layers(layers.asked, state, seen_of(run, state.motion, steps=state.steps))
+    is_steadier = new.seen.jerk < layers.seen.jerk and new.seen.much.max() <= layers.seen.much.max()
+    return new if is_steadier else layers
 
 
 def _calmest(layers: _Layers, members: list[int], before: FloatArray, smoothing: Passes) -> _Layers:

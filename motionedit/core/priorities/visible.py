@@ -30,11 +30,13 @@ _OWN_JERK = 2.0
 class Seen:
     """What a viewer sees of an edited motion at each frame: how far joints step, and how much it jerks, shape (F,).
 
-    Both are multiples of the least that is seen, and 0 where that is not reached.
+    Both are multiples of the least that is seen, and 0 where that is not reached. `jerk` is all the motion's over all
+    the input's, root mean squares.
     """
 
     steps: FloatArray
     jerks: FloatArray
+    jerk: float = 1.0
 
     @property
     def much(self) -> FloatArray:
@@ -44,7 +46,7 @@ class Seen:
 
 def seen_of(run: Run, after: Motion, *, steps: FloatArray | None = None) -> Seen:
     """Return what a viewer sees of an edited motion, of which `steps_at` may be known."""
-    return Seen((steps_at(run, after) if steps is None else steps) / _step(run), jerks_at(run, after))
+    return Seen((steps_at(run, after) if steps is None else steps) / _step(run), *_jerks_of(run, after))
 
 
 def _step(run: Run) -> float:
@@ -83,7 +85,12 @@ def steps_at(run: Run, after: Motion, *, within: FloatArray | None = None) -> Fl
 
 
 def jerks_at(run: Run, after: Motion) -> FloatArray:
-    """Return by how much of what a viewer sees the body jerks at each frame, 0 where he does not, shape (F,).
+    """Return by how much of what a viewer sees the body jerks at each frame, 0 where he does not, shape (F,)."""
+    return _jerks_of(run, after)[0]
+
+
+def _jerks_of(run: Run, after: Motion) -> tuple[FloatArray, float]:
+    """Return how much the body jerks at each frame, as `jerks_at`, and all in all, times the input.
 
     The jerk of a frame is that of all joints, sqrt(mean |p(f+3) - 3 p(f+2) + 3 p(f+1) - p(f)|^2), over ten times the
     root mean square of the input's.
@@ -91,16 +98,16 @@ def jerks_at(run: Run, after: Motion) -> FloatArray:
     before, first = run.motion, run.asked.body.first
     found, count = np.zeros(len(before)), len(before) - first - 3
     if count < 1:
-        return found
+        return found, 1.0
     is_kept = before.is_fixed and len(before) <= BLOCK_FRAMES
     was, now = (_jerk_again if is_kept else _jerk)(before, first), _jerk(after, first)
-    least = max(float(np.sqrt(np.mean(was * was))), STILL * before.frame_time**3)
-    seen = np.where(now > _OWN_JERK * was, now / (_JERK * least), 0.0)
+    own = max(float(np.sqrt(np.mean(was * was))), STILL * before.frame_time**3)
+    seen = np.where(now > _OWN_JERK * was, now / (_JERK * own), 0.0)
     seen[seen <= 1.0] = 0.0
     # It is seen in the middle of its four frames.
     for middle in (first + 1, first + 2):
         found[middle : middle + count] = np.maximum(found[middle : middle + count], seen)
-    return found
+    return found, float(np.sqrt(np.mean(now * now))) / own
 
 
 def _jerk(motion: Motion, first: int) -> FloatArray:

@@ -36,6 +36,12 @@ def prepared(*constraints):
     return prepare(MOTION, [*held_feet(FRAMES), *constraints], BODY, SMOOTH)[0]
 
 
+def stiff_run():
+    """Return an edit that is feasible, of a body with stiffness."""
+    body = replace(BODY, mobility=np.ones(len(MOTION.skeleton)))
+    return prepare(MOTION, [*held_feet(FRAMES), reaching((0.0, 0.25, 0.3), ease=3)], body, SMOOTH)[0]
+
+
 def looking_so(monkeypatch, *found):
     """Let each look at a solution find what is seen at all frames, one after the other."""
     seen = (Seen(np.full(FRAMES, float(each)), np.zeros(FRAMES)) for each in found)
@@ -72,6 +78,42 @@ def test_of_goals_that_count_only_a_missed_one_gives_way_further(shift, tries, m
     assert (np.max(lefts_of(edit.asked, edit.motion)[-1]) > 1e-4) == (tries > 1)
     _before, _after, tried = of_two_layers(monkeypatch, 5, 0, 4, 3, 2, shift=shift)
     assert len(tried) == tries
+
+
+@pytest.mark.parametrize(
+    ("jerks", "kept"), [([1.14], 0), ([1.2, 1.19], 1), ([1.2, 1.2], 0), ([1.5, 1.4], 1), ([1.5, 1.6], 0)]
+)
+def test_passes_with_a_firm_root_are_kept_where_the_body_jerks_less(jerks, kept, monkeypatch):
+    run = stiff_run()
+    before = within_reach(run, solve_frames(run, MOTION, reference=MOTION, pull_root=False), Passes())
+    tried = []
+    passes = calming.in_passes
+    monkeypatch.setattr(calming, "in_passes", lambda run, *more: tried.append(passes(run, *more)) or tried[-1])
+    none = np.zeros(FRAMES)
+    seen = (Seen(none, none, each) for each in jerks)
+    monkeypatch.setattr(calming, "seen_of", lambda *_, **__: next(seen))
+    after = calmed(before, Passes())
+    assert len(tried) == len(jerks) - 1
+    assert after is [before.state, *tried][kept]
+
+
+def test_a_firm_root_is_not_kept_where_more_is_seen(monkeypatch):
+    run = stiff_run()
+    before = within_reach(run, solve_frames(run, MOTION, reference=MOTION, pull_root=False), Passes())
+    seen = (Seen(np.full(FRAMES, much), np.zeros(FRAMES), jerk) for much, jerk in ((0.0, 1.5), (1.0, 1.2)))
+    monkeypatch.setattr(calming, "seen_of", lambda *_, **__: next(seen))
+    assert calmed(before, Passes()) is before.state
+
+
+def test_passes_with_a_firm_root_shift_it_less_and_meet_the_goals():
+    run = stiff_run()
+    found = within_reach(run, solve_frames(run, MOTION, reference=MOTION, pull_root=False), Passes())
+    layers = calming._Layers(run.asked, found.state, Seen(np.zeros(FRAMES), np.zeros(FRAMES), 9.0))
+    firm = calming._steadied(run, layers, Passes()).state.motion
+    assert firm is not found.state.motion
+    shifts = [np.abs(np.diff(each.translations, 3, axis=0)).sum() for each in (found.state.motion, firm)]
+    assert shifts[1] < shifts[0]
+    assert np.array(lefts_of(run.asked, firm))[:, 35:51].max() < 1e-4
 
 
 def test_whether_a_layer_is_to_blame_is_judged_without_what_is_below(monkeypatch):
