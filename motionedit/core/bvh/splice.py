@@ -26,8 +26,9 @@ if TYPE_CHECKING:
     from motionedit.core.euler_pieces import Piece
     from motionedit.core.motion import Motion
 
-# Rows of a long clip that are solved and held at a time.
-SEGMENT = 1 << 14
+# Rows of a long clip that are solved and held at a time; of a shorter one all angles are held, and so many of its rows
+# laid out at a time, near the processor.
+SEGMENT, _ROWS = 1 << 14, 1 << 10
 # Blanks between two values that are copied column by column; wider gaps are rare and copied one by one.
 _WIDE_GAP = 16
 
@@ -68,8 +69,9 @@ def edited_pieces(
         return
     yield head_bytes(clip, frames=len(motion), frame_time=motion.frame_time)
     at = clip.text.header.rows_start
-    for start in range(0, len(motion), SEGMENT):
-        edit = _edit(plan, motion, touched, moved, slice(start, min(start + SEGMENT, len(motion))))
+    step = _ROWS if len(motion) <= SEGMENT else SEGMENT
+    for start in range(0, len(motion), step):
+        edit = _edit(plan, motion, touched, moved, slice(start, min(start + step, len(motion))))
         check_finite(clip, edit.values, edit.cells, first=start)
         at = yield from _spliced_rows(clip, edit, start, at)
     yield _tail(clip, at)
@@ -111,10 +113,11 @@ def _edit(plan: _Plan, motion: Motion, touched: BoolArray, moved: BoolArray | No
     for joint, pieces in plan.pieces.items():
         columns = [place[column] for column in skeleton.columns(joint, "rotation")]
         for piece in pieces:
-            if rows.start <= piece.start < rows.stop:
-                angles = piece_angles(motion, joint, piece=piece)
+            first, last = max(piece.start, rows.start), min(piece.stop, rows.stop)
+            if first < last:
+                angles = piece_angles(motion, joint, piece=piece)[first - piece.start : last - piece.start]
                 for column, angle in zip(columns, angles.T, strict=True):
-                    values[piece.start - rows.start : piece.stop - rows.start, column] = angle
+                    values[first - rows.start : last - rows.start, column] = angle
         cells[:, columns] = touched[rows, joint, None]
     for p, joint in enumerate(skeleton.translated.tolist()):
         for axis, column in position_columns(skeleton, joint):
