@@ -10,6 +10,7 @@ from prioritized_edits import ARM_ONLY, FEET_AS_CAPTURED, RAISED, WALK, hand, ro
 from motionedit.core import kinematics
 from motionedit.core import rotations as rot
 from motionedit.core.bvh import new_bytes, read_clip
+from motionedit.core.bvh.file_bytes import FileBytes
 from motionedit.core.motion import Motion
 from motionedit.core.skeleton import EndSite, Skeleton
 from motionedit.jobs.clip import facts as clip_facts
@@ -47,6 +48,16 @@ def test_verify_reads_the_edit_back_with_another_reader(edit):
     done = edit([FEET_AS_CAPTURED, RAISED], "--verify")
     assert done.result.exit_code == 0
     assert done.record["verify"]["distance"] < 0.09
+
+
+def test_a_long_file_is_not_held_and_its_other_bytes_are_read_again(edit, monkeypatch):
+    held = edit([FEET_AS_CAPTURED, RAISED]).path.read_bytes()
+    read, kept = [], FileBytes.between
+    monkeypatch.setattr(FileBytes, "between", lambda file, *span: (read.append(file._data), kept(file, *span))[1])
+    monkeypatch.setattr(edit_prioritized, "_LONG", 0)
+    assert edit([FEET_AS_CAPTURED, RAISED]).path.read_bytes() == held
+    assert read
+    assert set(read) == {None}
 
 
 def test_edited_angles_stay_continuous(edit):
