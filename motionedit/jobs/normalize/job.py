@@ -5,13 +5,13 @@ Two phases: every clip is measured, the means are taken, then every clip is resa
 
 from __future__ import annotations
 
-import contextlib
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from motionedit.dataclass import dataclass
 from motionedit.errors import EXIT_CLIP_FAILED, EXIT_USAGE, MotionEditError, UsageError
+from motionedit.jobs.batch.files import bytes_of
 from motionedit.jobs.batch.one_clip import write_file
 from motionedit.jobs.batch.plan import find_clips, plan
 from motionedit.jobs.batch.pool import standing_crew
@@ -117,7 +117,7 @@ def _both_phases(
     before_writing: Callable[[], None],
     verdicts: Verdicts | None,
 ) -> Normalized:
-    keep = options.jobs == 1 and options.scheduler is None and _bytes_of(tasks) <= _MOST_KEPT
+    keep = options.jobs == 1 and options.scheduler is None and bytes_of(task.source for task in tasks) <= _MOST_KEPT
     measure = MeasureClip(loaded, options.lenient, tuple(task.relative for task in tasks), keep)
     measured = map_tasks(measure, tasks, options, crew=crew)
     measures, failures = sound_measures(tasks, measured)
@@ -142,15 +142,6 @@ def _both_phases(
     written = [record.get("clip_sha256", "") for record in result.records]
     normalization = None if result.failures else _normalization(loaded, timeline, line, used, written)
     return Normalized(_with_failures(result, tasks, failures, warnings), normalization)
-
-
-def _bytes_of(tasks: Sequence[ClipTask]) -> int:
-    """Return how large the tasks' files are in all; what cannot be read will say so itself."""
-    sizes = 0
-    for task in tasks:
-        with contextlib.suppress(OSError):
-            sizes += 0 if task.source is None else task.source.stat().st_size
-    return sizes
 
 
 def _normalization(
