@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -41,10 +42,16 @@ def _rows_of(clips: Sequence[Path], normalized: Path) -> list[Row]:
     failures = normalize.run(spec, clips, normalized, RunOptions()).failures
     if failures:
         raise failures[0]
+
+    def again() -> object:
+        # Into a new folder, as in folders.py: to replace files a disk may wait for what was in them.
+        shutil.rmtree(normalized)
+        return normalize.run(spec, clips, normalized, RunOptions())
+
     best = best_of(
         {
             "read": lambda: [read_clip(clip) for clip in clips],
-            "normalize": lambda: normalize.run(spec, clips, normalized, RunOptions()),
+            "normalize": again,
             "fit": lambda: fit_pca.run(normalized, model, fit, RunOptions()),
         },
         rounds=3,

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from motionedit.core.motion import Motion
 
 TURN = 2.0 * np.pi
+_DEGREES = 180.0 / np.pi
 _MOST_WOUND = 1e8  # degrees: six of the digits after the point are left
 # Within this angle (rad, 1e-4 degrees) of gimbal lock the last angle is kept. The rebuilt rotation is off by no more
 # than that; a wider band would cost more than the 2e-4 degrees that are promised.
@@ -58,14 +59,18 @@ def joint_angles(motion: Motion, *, start: FloatArray) -> FloatArray:
         for joints, columns in joints_together(group.joints, group.columns, frames=len(motion)):
             solved = solved_tracks(motion.rotations, joints, group.axes)
             seeds = radians(start[columns])
+            locked = np.flatnonzero(gimbal_locked(solved).any(axis=-1)).tolist()
             whole = [(k, 0, len(motion)) for k in range(len(joints))]
-            angles = nearest_in_runs(solved, np.array(whole, dtype=np.int64), seeds)
-            for k in np.flatnonzero(gimbal_locked(solved).any(axis=-1)).tolist():
+            angles = nearest_in_runs(solved, np.array(whole, dtype=np.int64), seeds, use_up=not locked)
+            for k in locked:
                 angles[k] = near(motion.rotations[:, joints[k]], group.axes, solved[:, k], seeds[k]).T
             own = slice_or_all(columns.reshape(-1))
-            for block in _blocks(len(motion), len(joints)):
-                rows = np.degrees(angles[:, :, block]).transpose(2, 0, 1)
-                values[block, own] = rows.reshape(len(rows), -1)
+            if isinstance(own, slice):
+                # As `np.degrees` has it, and laid out as rows at once.
+                rows = values[:, own].reshape(-1, *columns.shape)
+                np.multiply(angles.transpose(2, 0, 1), _DEGREES, out=rows)
+            else:
+                values[:, own] = np.degrees(angles).transpose(2, 0, 1).reshape(len(motion), -1)
     return values
 
 
@@ -76,13 +81,16 @@ def joints_together(joints: IntArray, columns: IntArray, *, frames: int) -> Iter
         yield joints[first : first + step], columns[first : first + step]
 
 
-def solved_tracks(rotations: FloatArray, joints: IntArray, axes: tuple[int, ...]) -> FloatArray:
+def solved_tracks(
+    rotations: FloatArray, joints: IntArray, axes: tuple[int, ...], *, out: FloatArray | None = None
+) -> FloatArray:
     """Return one solution of the Euler angles (rad) of some joints at all frames, shape (A, G, F).
 
     `rotations`, shape (F, J, 4), are those of all joints: block by block, for to pick joint after joint out of a
-    long clip takes longer than to solve them.
+    long clip takes longer than to solve them. `out`, shape (G, A, F), is the result's memory, if it is given.
     """
-    solved = np.empty((len(axes), len(joints), len(rotations)))
+    # Joint by joint in memory, as they are made continuous.
+    solved = (np.empty((len(joints), len(axes), len(rotations))) if out is None else out).swapaxes(0, 1)
     kernel = compiled() if len(axes) == 3 else None
     rotations = np.ascontiguousarray(rotations, dtype=np.float64)
     places = np.ascontiguousarray(joints, dtype=np.int64)
@@ -211,12 +219,15 @@ def nearest(first: FloatArray, seed: FloatArray) -> FloatArray:
     return _unwrap(first, seed)
 
 
-def nearest_in_runs(first: FloatArray, runs: IntArray, seeds: FloatArray) -> FloatArray:
+def nearest_in_runs(first: FloatArray, runs: IntArray, seeds: FloatArray, *, use_up: bool = False) -> FloatArray:
     """Return what `nearest` does in runs of G joints' frames, shape (G, A, F), from solutions (A, G, F).
 
     A run, shape (R, 3), is a joint's place, its first frame and the one after its last; it has its own seed, (R, A).
+    Solutions that are used up may be the result's memory.
     """
-    angles, kernel = np.array(first.swapaxes(0, 1), order="C"), compiled()
+    joint_by_joint = first.swapaxes(0, 1)
+    angles = np.ascontiguousarray(joint_by_joint) if use_up else np.array(joint_by_joint, order="C")
+    kernel = compiled()
     if kernel is not None:
         whole = np.ascontiguousarray(runs, dtype=np.int64), np.ascontiguousarray(seeds)
         kernel.nearest_angles(angles, *whole, angles.shape[2])

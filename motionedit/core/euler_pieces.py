@@ -63,13 +63,22 @@ def touched_pieces(motion: Motion, touched: BoolArray, *, given: GivenRows, size
     pieces: dict[int, list[Piece]] = {}
     for group in motion.skeleton.rotation_groups:
         places = np.flatnonzero(turned[group.joints])
+        # What is held is one array: memory is had faster in large pieces.
+        held = np.empty((len(places), len(group.axes), len(motion))) if len(motion) <= size else None
+        done = 0
         for joints, columns in joints_together(group.joints[places], group.columns[places], frames=len(motion)):
             runs = _runs_of(touched[:, joints].T)
+            out = None if held is None else held[done : done + len(joints)]
+            done += len(joints)
             tracks = _Tracks(motion.rotations, joints, group.axes)
-            angles, seeds, plain = _angles_of(tracks, columns, runs, values)
-            degrees = np.degrees(angles) if len(motion) <= size or not plain.all() else angles
+            angles, seeds, plain = _angles_of(tracks, columns, runs, values, out=out)
+            if len(motion) <= size:
+                # In place: no piece is followed by another that begins from its end.
+                degrees, plain = np.degrees(angles, out=angles), np.zeros_like(plain)
+            else:
+                degrees = angles if plain.all() else np.degrees(angles)
             for i, (k, start, stop) in enumerate(runs.tolist()):
-                keep, seed = len(motion) <= size or not plain[i], seeds[i]
+                keep, seed = not plain[i], seeds[i]
                 for one, other in pairwise((start, *range((start // size + 1) * size, stop, size), stop)):
                     piece = Piece(one, other, seed, degrees[k, :, one:other].T if keep else None)
                     pieces.setdefault(int(joints[k]), []).append(piece)
@@ -118,7 +127,7 @@ class _Tracks:
 
 
 def _angles_of(
-    tracks: _Tracks, columns: IntArray, runs: IntArray, given: _Given
+    tracks: _Tracks, columns: IntArray, runs: IntArray, given: _Given, *, out: FloatArray | None
 ) -> tuple[FloatArray, FloatArray, BoolArray]:
     """Return the angles (rad) of joints in their runs of touched frames, the runs' seeds, and which are plain.
 
@@ -128,6 +137,8 @@ def _angles_of(
         The columns of the joints' channels.
     runs : shape (R, 3)
         By `_runs_of`.
+    out : shape (G, A, F), optional
+        Memory for the angles.
 
     Returns
     -------
@@ -140,16 +151,16 @@ def _angles_of(
     """
     of, starts, stops = runs.T
     axes, frames = tracks.axes, len(tracks.rotations)
-    solved = solved_tracks(tracks.rotations, tracks.joints, axes)
+    solved = solved_tracks(tracks.rotations, tracks.joints, axes, out=out)
     seeds = given.at(np.maximum(starts - 1, 0), columns[of])
-    angles = nearest_in_runs(solved, runs, seeds)
-    for k in np.flatnonzero(gimbal_locked(solved).any(axis=-1)).tolist():
+    locked, inner = np.flatnonzero(gimbal_locked(solved).any(axis=-1)).tolist(), np.flatnonzero(stops < frames)
+    angles = nearest_in_runs(solved, runs, seeds, use_up=not (locked or len(inner)))
+    for k in locked:
         for i in np.flatnonzero(of == k).tolist():
             start, stop = int(starts[i]), int(stops[i])
             q = tracks.between(k, start, stop)
             angles[k, :, start:stop] = near(q, axes, solved[:, k, start:stop], seeds[i]).T
     plain = np.ones(len(runs), dtype=np.bool_)
-    inner = np.flatnonzero(stops < frames)
     if not len(inner):
         return angles, seeds, plain
     own = columns[of[inner]]

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 
 _BLOCK_VALUES = 1 << 14
+_HALF_DEGREE = np.pi / 180.0 / 2.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,9 +93,17 @@ def write_poses(skeleton: Skeleton, values: FloatArray, *, rotations: FloatArray
         columns, joints = slice_or_all(group.columns.reshape(-1)), slice_or_all(group.joints)
         for start in range(0, len(values), step):
             angles = values[start : start + step, columns].reshape(-1, *group.columns.shape)
-            # Angle by angle, so that each is contiguous.
-            angles = np.radians(np.moveaxis(angles, -1, 0), order="C")
-            rotations[start : start + step, joints] = rot.from_euler(np.moveaxis(angles, 0, -1), group.axes)
+            block = rotations[start : start + step, joints]
+            if len(set(group.axes)) == 3:
+                # Half of each in radians, as `np.radians` has it: angle by angle, so that each is contiguous.
+                half = np.multiply(np.moveaxis(angles, -1, 0), _HALF_DEGREE, order="C")
+                in_place = block.flags.c_contiguous and isinstance(joints, slice)
+                turned = rot.from_half_angles(half, group.axes, out=block if in_place else None)
+                if in_place:
+                    continue
+            else:
+                turned = rot.from_euler(np.radians(angles), group.axes)
+            rotations[start : start + step, joints] = turned
     translations[:] = skeleton.offsets[skeleton.translated]
     for p, joint in enumerate(skeleton.translated.tolist()):
         for axis, column in position_columns(skeleton, joint):

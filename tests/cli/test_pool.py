@@ -17,7 +17,7 @@ from motionedit.errors import UsageError
 from motionedit.jobs.batch import processes
 from motionedit.jobs.batch.no_result import WorkerDiedError
 from motionedit.jobs.batch.plan import RunOptions
-from motionedit.jobs.batch.pool import results_in_order
+from motionedit.jobs.batch.pool import results_in_order, standing_crew
 
 
 def slow_first(item):
@@ -35,6 +35,14 @@ def mark(folder, item):
     (folder / str(item)).touch()
     time.sleep(0.02)
     return item
+
+
+def process_and_item(item):
+    return os.getpid(), item
+
+
+def process_and_double(item):
+    return os.getpid(), 2 * item
 
 
 def interrupt_itself(item):
@@ -98,6 +106,28 @@ def test_closing_early_leaves_no_worker():
     assert multiprocessing.active_children() == []
 
 
+def test_a_standing_crew_takes_another_function_and_ends_with_its_context():
+    options = RunOptions(jobs=2)
+    with standing_crew(options) as crew:
+        first = list(results_in_order(process_and_item, range(8), options=options, crew=crew))
+        second = list(results_in_order(process_and_double, range(8), options=options, crew=crew))
+        assert [item for _, item in first] == list(range(8))
+        assert [item for _, item in second] == list(range(0, 16, 2))
+        assert {process for process, _ in second} <= {process for process, _ in first} - {os.getpid()}
+    assert multiprocessing.active_children() == []
+
+
+def test_a_standing_crew_that_was_left_in_the_middle_or_died_begins_anew():
+    options = RunOptions(jobs=2)
+    with standing_crew(options) as crew:
+        with contextlib.closing(results_in_order(slow_first, range(50), options=options, crew=crew)) as results:
+            next(results)
+        assert multiprocessing.active_children() == []
+        found = list(results_in_order(die_at_one, [1, 1, 1], options=options, crew=crew))
+        assert [type(value) for value in found] == [WorkerDiedError] * 3
+        assert list(results_in_order(slow_first, range(6), options=options, crew=crew)) == [0, 1, 4, 9, 16, 25]
+
+
 def test_workers_that_are_started_anew_give_the_same_results(monkeypatch):
     monkeypatch.setattr(processes.sys, "platform", "darwin")
     assert list(results_in_order(math.isqrt, [16, 9, 4], options=RunOptions(jobs=2))) == [4, 3, 2]
@@ -126,7 +156,7 @@ def test_workers_end_when_their_parent_is_killed():
     code = """
 import os, time
 from motionedit.jobs.batch.plan import RunOptions
-from motionedit.jobs.batch.pool import results_in_order
+from motionedit.jobs.batch.pool import results_in_order, standing_crew
 def work(item):
     os.write(1, f"{os.getpid()}\\n".encode())
     time.sleep(60)

@@ -1,5 +1,6 @@
 """edit-prioritized on clips of other bodies, units and channels, behind a rest pose, and written in pieces."""
 
+import os
 import weakref
 
 import numpy as np
@@ -10,6 +11,7 @@ from prioritized_edits import ARM_ONLY, FEET_AS_CAPTURED, RAISED, WALK, hand, ro
 from motionedit.core import kinematics
 from motionedit.core import rotations as rot
 from motionedit.core.bvh import new_bytes, read_clip
+from motionedit.core.bvh.file_bytes import FileBytes
 from motionedit.core.motion import Motion
 from motionedit.core.skeleton import EndSite, Skeleton
 from motionedit.jobs.clip import facts as clip_facts
@@ -47,6 +49,34 @@ def test_verify_reads_the_edit_back_with_another_reader(edit):
     done = edit([FEET_AS_CAPTURED, RAISED], "--verify")
     assert done.result.exit_code == 0
     assert done.record["verify"]["distance"] < 0.09
+
+
+def test_a_long_file_is_not_held_and_its_other_bytes_are_read_again(edit, monkeypatch):
+    held = edit([FEET_AS_CAPTURED, RAISED]).path.read_bytes()
+    read, kept = [], FileBytes.between
+    monkeypatch.setattr(FileBytes, "between", lambda file, *span: (read.append(file._data), kept(file, *span))[1])
+    monkeypatch.setattr(edit_prioritized, "_LONG", 0)
+    assert edit([FEET_AS_CAPTURED, RAISED]).path.read_bytes() == held
+    assert read
+    assert set(read) == {None}
+
+
+def test_a_long_file_that_is_changed_meanwhile_fails_and_nothing_is_written(run, edit, monkeypatch, tmp_path):
+    assert edit([FEET_AS_CAPTURED, RAISED]).result.exit_code == 0  # writes the spec, too
+    path, let_go = tmp_path / "walk.bvh", FileBytes.let_go
+    path.write_bytes(WALK.read_bytes())
+
+    def let_go_and_change(file, source):
+        let_go(file, source)
+        source.write_bytes(WALK.read_bytes()[::-1])
+        os.utime(source, ns=(1, 1))
+
+    monkeypatch.setattr(FileBytes, "let_go", let_go_and_change)
+    monkeypatch.setattr(edit_prioritized, "_LONG", 0)
+    failed = run("edit-prioritized", path, "-s", next(tmp_path.glob("*.yaml")), "-o", "out")
+    assert failed.exit_code == 1
+    assert "walk.bvh: was changed while it was edited; run again" in failed.stderr
+    assert [each.name for each in (tmp_path / "out").iterdir() if each.suffix == ".bvh"] == []
 
 
 def test_edited_angles_stay_continuous(edit):

@@ -49,6 +49,31 @@ def test_rows_are_read_as_float_reads_their_words_or_left_alone(rows, blank, end
     assert [text[a:b] for a, b in zip(starts, stops, strict=True)] == [blank.join(row).encode() for row in rows]
 
 
+# As most files have them, and what is nearly so: such rows are read some dozens of bytes at a time.
+plain = st.tuples(st.floats(-9999.0, 9999.0), st.integers(1, 8)).map(lambda pair: f"{pair[0]:.{pair[1]}f}")
+nearly_plain = st.sampled_from(
+    ["-0.000000", "0", "-.5", "7.", "+1.5", "1.5e3", "12345.125", "0.123456789", "1" * 20, " 2"]
+)
+odd = st.sampled_from(["-", ".", "1.2.3", "--1.0", "1-2.0", "1.0x", "\x80.5"])
+
+
+@given(st.lists(st.one_of(plain, plain, plain, nearly_plain), min_size=40, max_size=40), st.one_of(plain, odd))
+@settings(max_examples=300)
+def test_long_rows_are_read_as_float_reads_them_wherever_a_word_is_another(tokens, last):
+    row = [*tokens[:20], last, *tokens[20:]]
+    text = (" ".join(row) + "\n").encode("latin-1") * 3
+    found = read(text, len(row))
+    if number(last.encode("latin-1")) is None:
+        assert found is None
+        return
+    count, most, values, starts, stops = found
+    assert (count, most) == (3, max(decimals(word.strip().encode()) for word in row))
+    exact = np.array([[float(word) for word in row]] * 3)
+    np.testing.assert_array_equal(values, exact)
+    np.testing.assert_array_equal(np.signbit(values), np.signbit(exact))
+    assert [text[a:b].decode() for a, b in zip(starts, stops, strict=True)] == [" ".join(row).strip()] * 3
+
+
 @pytest.mark.parametrize(
     "text", [b"1 2 3\n", b"1\n2\n", b"1 2\n3\n", b"1 2\n3 4 5\n", b"1 2\0\n", b"1 2\x1a", b"1 2,\n"]
 )
@@ -70,7 +95,9 @@ def by_numpy(values, places):
     return [row[width - length :].tobytes() for row, length in zip(text.chars, text.lengths, strict=True)]
 
 
-numbers = st.lists(st.one_of(st.floats(-1e14, 1e14), st.floats(-2.0, 2.0), st.integers(-9, 9).map(float)), min_size=1)
+carried = st.sampled_from([999.9999996, 998.9999996, -99.9999996, 9.9999996, -0.9999996, -4e-7, 4e-7, -0.0, 999.0])
+kinds = st.floats(-1e14, 1e14), st.floats(-1001.0, 1001.0), st.floats(-2.0, 2.0), st.integers(-9, 9).map(float), carried
+numbers = st.lists(st.one_of(*kinds), min_size=1)
 
 
 @given(numbers, st.integers(1, 17))

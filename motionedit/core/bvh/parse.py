@@ -1,4 +1,4 @@
-"""From decimal text to doubles, correctly rounded: what csrc/text.c leaves, and all where nothing is compiled."""
+"""From decimal text to doubles, correctly rounded: what csrc/read_text.c leaves, and all where nothing is compiled."""
 
 from __future__ import annotations
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.arrays import frozen
+from motionedit.core.bvh.file_bytes import FileBytes
 from motionedit.core.bvh.header import read_header
 from motionedit.core.bvh.rows import read_rows, row_capacity
 from motionedit.core.bvh.scan import LARGEST_LENGTH, refusal
@@ -166,7 +167,7 @@ def parse_clip(data: bytes, *, label: str, lenient: bool = False, source: Path |
     frames = len(rows.starts)
     _refuse_far_places(data, rows, translations[:frames], label=label)
     motion = Motion(skeleton, frozen(rotations[:frames]), frozen(translations[:frames]), header.frame_time)
-    text = BvhText(data, header, rows, motion, None if kept is None else frozen(kept[:frames]))
+    text = BvhText(FileBytes(data), header, rows, motion, None if kept is None else frozen(kept[:frames]))
     return Clip(label, motion, text, warnings, source)
 
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from motionedit.core.arrays import FloatArray, IntArray
+    from motionedit.core.bvh.file_bytes import FileBytes
 
     TakeRows = Callable[[int, FloatArray], None]
 
@@ -114,21 +115,22 @@ def read_rows(
     return Rows(frozen(np.concatenate(starts)), frozen(np.concatenate(stops)), decimals, cut_off, count + surplus)
 
 
-def values_between(data: bytes, rows: Rows, start: int, stop: int, *, columns: int) -> FloatArray:
+def values_between(file: FileBytes, rows: Rows, start: int, stop: int, *, columns: int) -> FloatArray:
     """Return the values of rows that were read, from frame start up to stop, shape (stop - start, C = columns)."""
     blocks = []
-    step = max(BLOCK_BYTES * len(rows.starts) // len(data), 1)
+    step = max(BLOCK_BYTES * len(rows.starts) // len(file), 1)
     for first in range(start, stop, step):
         last = min(first + step, stop)
-        begin, end = int(rows.starts[first]), int(rows.stops[last - 1])
+        text = file.between(int(rows.starts[first]), int(rows.stops[last - 1]))
         values = np.empty((last - first, columns))
-        if _whole_rows(data, begin, end, values) is None:
-            parse_block(data, *words_between(data, begin, end), out=values.reshape(-1))
+        if _whole_rows(text, 0, len(text), values) is None:
+            data = bytes(text)
+            parse_block(data, *words_between(data, 0, len(data)), out=values.reshape(-1))
         blocks.append(values)
     return np.concatenate(blocks)
 
 
-def _whole_rows(data: bytes, begin: int, end: int, out: FloatArray) -> _Block | None:
+def _whole_rows(data: bytes | memoryview, begin: int, end: int, out: FloatArray) -> _Block | None:
     """Read whole rows into `out`, shape (room, C); None where other things stand there, and without a compiler."""
     kernel = compiled()
     if kernel is None:

@@ -26,8 +26,9 @@ if TYPE_CHECKING:
     from motionedit.core.euler_pieces import Piece
     from motionedit.core.motion import Motion
 
-# Rows of a long clip that are solved and held at a time.
-SEGMENT = 1 << 14
+# Rows of a long clip that are solved and held at a time; of a shorter one all angles are held, and so many of its rows
+# laid out at a time, near the processor.
+SEGMENT, _ROWS = 1 << 14, 1 << 10
 # Blanks between two values that are copied column by column; wider gaps are rare and copied one by one.
 _WIDE_GAP = 16
 
@@ -68,11 +69,12 @@ def edited_pieces(
         return
     yield head_bytes(clip, frames=len(motion), frame_time=motion.frame_time)
     at = clip.text.header.rows_start
-    for start in range(0, len(motion), SEGMENT):
-        edit = _edit(plan, motion, touched, moved, slice(start, min(start + SEGMENT, len(motion))))
+    step = _ROWS if len(motion) <= SEGMENT else SEGMENT
+    for start in range(0, len(motion), step):
+        edit = _edit(plan, motion, touched, moved, slice(start, min(start + step, len(motion))))
         check_finite(clip, edit.values, edit.cells, first=start)
         at = yield from _spliced_rows(clip, edit, start, at)
-    yield _tail(clip, at)
+    yield from _tail(clip, at)
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,10 +113,11 @@ def _edit(plan: _Plan, motion: Motion, touched: BoolArray, moved: BoolArray | No
     for joint, pieces in plan.pieces.items():
         columns = [place[column] for column in skeleton.columns(joint, "rotation")]
         for piece in pieces:
-            if rows.start <= piece.start < rows.stop:
-                angles = piece_angles(motion, joint, piece=piece)
+            first, last = max(piece.start, rows.start), min(piece.stop, rows.stop)
+            if first < last:
+                angles = piece_angles(motion, joint, piece=piece)[first - piece.start : last - piece.start]
                 for column, angle in zip(columns, angles.T, strict=True):
-                    values[piece.start - rows.start : piece.stop - rows.start, column] = angle
+                    values[first - rows.start : last - rows.start, column] = angle
         cells[:, columns] = touched[rows, joint, None]
     for p, joint in enumerate(skeleton.translated.tolist()):
         for axis, column in position_columns(skeleton, joint):
@@ -129,26 +132,27 @@ def _spliced_rows(clip: Written, edit: _Edit, first: int, at: int) -> Generator[
 
     What stands from byte `at` up to the last touched row is yielded; the byte after it is returned.
     """
-    data, rows = memoryview(clip.text.data), clip.text.rows
+    file, rows = clip.text.file, clip.text.rows
     decimals = decimals_of_edits(clip)
-    step = max(BLOCK_BYTES * len(rows.starts) // len(data), 1)
+    step = max(BLOCK_BYTES * len(rows.starts) // len(file), 1)
     for start, stop in runs(np.asarray(edit.cells.any(axis=1))):
         for block in range(start, stop, step):
             chosen = slice(block, min(block + step, stop))
             begin, end = int(rows.starts[first + block]), int(rows.stops[first + chosen.stop - 1])
-            yield data[at:begin]
-            if edit.cells[chosen].all() and _is_plain(clip, (begin, end), edit.columns, chosen.stop - block):
+            yield from file.pieces(at, begin)
+            old = file.between(begin, end)
+            if edit.cells[chosen].all() and _is_plain(clip, old, edit.columns, chosen.stop - block):
                 yield rows_text(edit.values[chosen], decimals=decimals, ending=b"\n")[:-1]
                 at = end
                 continue
             cells, values = edit.cells[chosen].reshape(-1), edit.values[chosen].reshape(-1)
-            yield _spliced(clip, (begin, end), edit.columns, values, cells, decimals=decimals).data
+            yield _spliced(clip, old, edit.columns, values, cells, decimals=decimals).data
             at = end
     return at
 
 
-def _is_plain(clip: Written, span: tuple[int, int], columns: IntArray, count: int) -> bool:
-    """Return whether so many whole rows are written, and nothing stands between values but single blanks and LF.
+def _is_plain(clip: Written, old: bytes | memoryview, columns: IntArray, count: int) -> bool:
+    """Return whether so many whole rows are written, and nothing stands in the `old` between values but blanks and LF.
 
     Such rows need no splicing: all their bytes are new. N values have N - 1 gaps, so as many blanks leave no room for
     a second one anywhere.
@@ -158,8 +162,8 @@ def _is_plain(clip: Written, span: tuple[int, int], columns: IntArray, count: in
         return False
     kernel = compiled()
     if kernel is not None:
-        return bool(kernel.plain_gaps(memoryview(clip.text.data)[span[0] : span[1]], count * width - 1))
-    text = clip.text.data[span[0] : span[1]]
+        return bool(kernel.plain_gaps(old, count * width - 1))
+    text = bytes(old)
     if any(blank in text for blank in (b"\t", b"\r", b"\v", b"\f")):
         return False
     # All at once: where each value has one, numpy is quicker than `count`.
@@ -167,36 +171,36 @@ def _is_plain(clip: Written, span: tuple[int, int], columns: IntArray, count: in
     return bool(blanks == count * width - 1)
 
 
-def _tail(clip: Written, at: int) -> bytes | memoryview:
-    cut_off = clip.text.rows.cut_off
+def _tail(clip: Written, at: int) -> Iterator[bytes | memoryview]:
+    file, cut_off = clip.text.file, clip.text.rows.cut_off
     if cut_off is None:
-        return memoryview(clip.text.data)[at:]
+        return file.pieces(at, len(file))
     # What is left of a row that was cut short would make the file unreadable.
-    return clip.text.data[at:cut_off].rstrip(b" \t")
+    return iter([bytes(file.between(at, cut_off)).rstrip(b" \t")])
 
 
 def _spliced(
     clip: Written,
-    span: tuple[int, int],
+    old: bytes | memoryview,
     columns: IntArray,
     values: FloatArray,
     cells: BoolArray,
     *,
     decimals: int,
 ) -> NDArray[np.uint8]:
-    """Return the text of the rows in a span of bytes, with the touched cells of some columns replaced."""
-    data, (begin, end) = clip.text.data, span
+    """Return the text of rows, given the `old`, with the touched cells of some columns replaced."""
     width = clip.text.motion.skeleton.channel_count
     kernel = compiled()
     if kernel is not None:
         every = np.zeros((len(values) // len(columns), width), dtype=np.bool_)
         given = np.empty(every.shape)
         every[:, columns], given[:, columns] = cells.reshape(-1, len(columns)), values.reshape(-1, len(columns))
-        text = np.empty(end - begin + every.size * (decimals + LONGEST_WHOLE), np.uint8)
-        length = kernel.splice(memoryview(data)[begin:end], every, given, decimals, text)
+        text = np.empty(len(old) + every.size * (decimals + LONGEST_WHOLE), np.uint8)
+        length = kernel.splice(old, every, given, decimals, text)
         if length >= 0:
             return text[:length]
-    starts, stops = words_between(data, begin, end)
+    data = bytes(old)
+    starts, stops = words_between(data, 0, len(data))
     word = (np.arange(0, len(starts), width)[:, None] + columns).reshape(-1)
     if not cells.all():
         word, values = word[cells], values[cells]
@@ -211,14 +215,11 @@ def _spliced(
         growth = np.zeros(len(starts), np.intp)
         growth[word] = new.lengths - lengths[word]
         shifted = np.cumsum(growth)
-    starts -= begin
-    stops -= begin
     shifted += stops
     margin = words.shape[1]
     text = np.empty(margin + int(shifted[-1]), np.uint8)
     place(words, shifted, out=text, margin=margin)
-    old = np.frombuffer(data, np.uint8, count=end - begin, offset=begin)
-    _copy_gaps(old, starts, stops, text[margin:], shifted)
+    _copy_gaps(np.frombuffer(data, np.uint8), starts, stops, text[margin:], shifted)
     return text[margin:]
 
 

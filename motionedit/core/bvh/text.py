@@ -10,6 +10,7 @@ from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
+    from motionedit.core.bvh.file_bytes import FileBytes
     from motionedit.core.bvh.header import Header
     from motionedit.core.bvh.rows import Rows
     from motionedit.core.motion import Motion
@@ -22,23 +23,28 @@ class BvhText:
     `values`, shape (F, C), are the channel values of a short clip; of a long one they are read from the bytes again.
     """
 
-    data: bytes
+    file: FileBytes
     header: Header
     rows: Rows
     motion: Motion
     values: FloatArray | None = None
 
     @property
+    def data(self) -> bytes:
+        """The file's own bytes."""
+        return self.file.whole()
+
+    @property
     def frame_time_decimals(self) -> int:
         """How many decimals the file's frame time carries."""
-        return decimals(self.data[slice(*self.header.frame_time_span)])
+        return decimals(bytes(self.file.between(*self.header.frame_time_span)))
 
     def values_between(self, start: int, stop: int) -> FloatArray:
         """Return the channel values of the frames from start up to stop, shape (stop - start, C)."""
         if self.values is not None:
             return self.values[start:stop]
         columns = self.header.skeleton.channel_count
-        return values_between(self.data, self.rows, start, stop, columns=columns)
+        return values_between(self.file, self.rows, start, stop, columns=columns)
 
 
 class Written(Protocol):

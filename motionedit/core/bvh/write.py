@@ -86,8 +86,8 @@ def check_finite(clip: Written, values: FloatArray, cells: BoolArray | None = No
 
 def head_bytes(clip: Written, *, frames: int, frame_time: float | None = None) -> bytes:
     """Return the bytes above the rows, with the frame count, and the frame time if given, put right."""
-    data, header = clip.text.data, clip.text.header
-    start, stop = header.frames_span
+    header = clip.text.header
+    data, (start, stop) = bytes(clip.text.file.between(0, header.rows_start)), header.frames_span
     count = data[start:stop] if frames == header.frames else str(frames).encode()
     time_start, time_stop = header.frame_time_span
     time = data[time_start:time_stop]

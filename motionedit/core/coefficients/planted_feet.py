@@ -75,7 +75,8 @@ def planted_feet(
     for plant in plants:
         seconds = plant.frames * frame_time
         looks = min(plant.frames, 1 + int(seconds / _LOOKS))
-        frames = np.unique(np.linspace(plant.start, plant.stop, looks).astype(np.intp))
+        # At least a frame apart: none comes twice.
+        frames = np.linspace(plant.start, plant.stop, looks).astype(np.intp)
         columns, rows = _point_rows(projection, space, poses, points[plant.point], frames)
         feet.append(PlantedFoot(frames, columns, rows, seconds / len(frames), deviation))
     return tuple(feet)

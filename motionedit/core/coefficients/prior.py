@@ -121,7 +121,8 @@ def change_prior(
     feet : sequence of PlantedFoot
         Points that stand, and are rather not moved.
     """
-    at = np.unique(np.asarray(frames, dtype=np.intp))
+    # Not by np.unique, which imports numpy.ma: that takes longer than the edit.
+    at = np.array(sorted(set(np.asarray(frames).tolist())), dtype=np.intp)
     kernel_root = np.asarray(np.linalg.cholesky(_kernel(at, at, projection.motion.frame_time)), dtype=np.float64)
     size = len(model.components.explained_variance) + len(at) * len(columns)
     prior = ChangePrior(

@@ -26,7 +26,7 @@ _FIR_PERIODS = 1.0
 
 
 def smoothed_displacement(
-    before: Motion, after: Motion, *, sigma: float, first: int, hinges: Sequence[Hinge] = ()
+    before: Motion, after: Motion, *, sigma: float, first: int, hinges: Sequence[Hinge] = (), use_up: bool = False
 ) -> Motion:
     """Return the input plus the low-passed displacement of the edit: the next pass's start and reference.
 
@@ -39,6 +39,8 @@ def smoothed_displacement(
         Frames.
     first : int
         Frames before it, a rest pose, keep their displacement and lend none.
+    use_up : bool
+        The result may take the place of `after`, so that of a long clip there is one less.
     """
     shifts = after.translations - before.translations
     shifts[first:] = low_pass(shifts[first:], sigma=sigma)
@@ -46,7 +48,8 @@ def smoothed_displacement(
     kernel, taps = compiled(), gaussian(sigma, len(before) - first)
     axes = _axes(hinges, len(before.skeleton))
     if kernel is not None:
-        rotations = np.empty_like(before.rotations)
+        # Joint by joint: what is written is read no more.
+        rotations = after.rotations if use_up else np.empty_like(before.rotations)
         inputs = [np.ascontiguousarray(a) for a in (before.rotations, after.rotations, axes, taps)]
         kernel.smooth(*inputs, rotations, len(before), first, NO_DISPLACEMENT)
         return on_channels(Motion(before.skeleton, rotations, translations, before.frame_time), hinges)

@@ -172,6 +172,10 @@ def edit_by_priorities(
     passed = solve(run, settings.smoothing)
     state = passed.state
     asked = run.asked if state.ends is None else replace(run.asked, targets=led_to(run.asked, state.ends))
+    by: Literal["compiled", "numpy"] = "numpy"
+    if compiled() and all(group.prepared.layout for group in run.groups):
+        by = "compiled"
+    del run  # with the layouts of all its frames
     touched, moved = changes(follows.input or motion, state.motion, body.travel)
     return PrioritizedEdit(
         motion=state.motion,
@@ -181,8 +185,8 @@ def edit_by_priorities(
         iterations=passed.iterations,
         converged=state.converged,
         ranks=state.ranks,
-        solver="compiled" if compiled() and all(group.prepared.layout for group in run.groups) else "numpy",
-        recruits=run.asked.recruits,
+        solver=by,
+        recruits=asked.recruits,
         breaches=tuple(found),
         asked=asked,
     )

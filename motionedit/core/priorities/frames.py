@@ -14,6 +14,7 @@ from motionedit.core.priorities.far_turns import parts_of
 from motionedit.core.priorities.groups import Asked, Group, groups_of, part_of, retargeted, spans_of
 from motionedit.core.priorities.problem import Reference
 from motionedit.core.priorities.solver import solve_layers
+from motionedit.core.trace import frame_blocks
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -77,7 +78,15 @@ class Known:
     ranks: IntArray
 
 
-def solve_frames(run: Run, start: Motion, *, reference: Motion, pull_root: bool, known: Known | None = None) -> Solved:
+def solve_frames(
+    run: Run,
+    start: Motion,
+    *,
+    reference: Motion,
+    pull_root: bool,
+    known: Known | None = None,
+    in_place: bool = False,
+) -> Solved:
     """Return the motion with every frame solved from `start`, attracted to `reference`.
 
     Parameters
@@ -86,8 +95,10 @@ def solve_frames(run: Run, start: Motion, *, reference: Motion, pull_root: bool,
         Whether the root's translation is attracted, too.
     known : Known, optional
         What is known from the solve before.
+    in_place : bool
+        `start` is solved itself, and not a copy, be it the reference, too: of each that is read before it is written.
     """
-    solved = _unsolved(run, start)
+    solved = _unsolved(run, start, in_place=in_place)
     for group in run.groups:
         done = None if known is None else known.done[group.where]
         if done is not None and done.all():
@@ -134,12 +145,23 @@ def known_after(run: Run, previous: Solved, start: Motion) -> Known:
 
     Frames that were left as in the input, and that start from there again, need nothing.
     """
-    done = _same(start, run.motion) & _same(previous.motion, run.motion) & previous.converged
-    return Known(done, previous.ranks)
+    return known_again(run, left_alone(run, previous), start)
 
 
-def _unsolved(run: Run, start: Motion) -> Solved:
-    motion = Motion(start.skeleton, start.rotations.copy(), start.translations.copy(), start.frame_time)
+def left_alone(run: Run, previous: Solved) -> Known:
+    """Return the frames that a solve left as in the input, and its ranks."""
+    return Known(_same(previous.motion, run.motion) & previous.converged, previous.ranks)
+
+
+def known_again(run: Run, left: Known, start: Motion) -> Known:
+    """Return what a solve from `start` may leave alone of what the one before did."""
+    return Known(_same(start, run.motion) & left.done, left.ranks)
+
+
+def _unsolved(run: Run, start: Motion, *, in_place: bool = False) -> Solved:
+    motion = start
+    if not in_place:
+        motion = Motion(start.skeleton, start.rotations.copy(), start.translations.copy(), start.frame_time)
     count = len(start)
     return Solved(
         motion,
@@ -187,6 +209,7 @@ def _solve(
 
 def _same(one: Motion, other: Motion) -> BoolArray:
     """Return the frames at which two motions are alike to the bit, shape (F,)."""
-    turned = (one.rotations == other.rotations).all(axis=(1, 2))
-    same: BoolArray = turned & (one.translations == other.translations).all(axis=(1, 2))
+    same: BoolArray = (one.translations == other.translations).all(axis=(1, 2))
+    for block in frame_blocks(len(same)):
+        same[block] &= (one.rotations[block] == other.rotations[block]).all(axis=(1, 2))
     return same

@@ -9,7 +9,7 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.motion import Motion
 from motionedit.core.priorities.continuity import smoothed_displacement
-from motionedit.core.priorities.frames import Known, known_after, solve_frames
+from motionedit.core.priorities.frames import Known, known_again, left_alone, solve_frames
 from motionedit.core.priorities.ramps import ends_in, led_frames, led_to
 from motionedit.core.priorities.shares import shares_of
 from motionedit.core.priorities.targets import toward
@@ -45,9 +45,12 @@ def in_passes(run: Run, state: Solved, smoothing: Passes, *, aimed: Callable[[Mo
     """
     motion, first, hinges = run.motion, run.asked.body.first, run.asked.body.hinges
     for left in reversed(range(smoothing.count)):
-        smooth = smoothed_displacement(motion, state.motion, sigma=smoothing.sigma, first=first, hinges=hinges)
-        known = known_after(run, state, smooth) if aimed is None else None
-        state.motion = motion  # of a long one no more copies are kept than are needed, not by those who called, too
+        alone = left_alone(run, state) if aimed is None else None
+        # Of a long motion no more copies are kept than are needed, not by those who called, either.
+        before, state.motion = state.motion, motion
+        smooth = smoothed_displacement(motion, before, sigma=smoothing.sigma, first=first, hinges=hinges, use_up=True)
+        del before
+        known = None if alone is None else known_again(run, alone, smooth)
         now = run if aimed is None else aimed(smooth)
         # Smoothing rounds off where a ramp ends, until the last pass.
         state = _solved(now, smooth, known) if left else _led(now, smooth, known)
@@ -71,7 +74,7 @@ def in_passes(run: Run, state: Solved, smoothing: Passes, *, aimed: Callable[[Mo
 
 
 def _solved(run: Run, smooth: Motion, known: Known | None) -> Solved:
-    return solve_frames(run, smooth, reference=smooth, pull_root=True, known=known)
+    return solve_frames(run, smooth, reference=smooth, pull_root=True, known=known, in_place=True)
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,7 +108,9 @@ def _led(run: Run, smooth: Motion, known: Known | None, before: PassedBefore | N
     alone.done[outside] = False
     # Where one begins within the ramp of another, that is led first.
     for _ in range(2 if _are_chained(asked, outside) else min(len(outside), 1)):
+        kept = smooth.rotations[outside], smooth.translations[outside]
         ends = ends_in(asked, _solved(led if before is None else before.eased(led), smooth, alone).motion)
+        smooth.rotations[outside], smooth.translations[outside] = kept
         led = run.aimed_at(led_to(asked, ends))
     if before is not None and before.ends is not None and known is not None and ends is not None:
         known = Known(known.done & ~led_frames(asked, before.ends, ends), known.ranks)

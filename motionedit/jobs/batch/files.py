@@ -158,3 +158,12 @@ def _take_mode(old: Path, new: Path) -> None:
     # Where the old one is another user's the mode may not be ours to give; the content is.
     with contextlib.suppress(OSError):
         new.chmod(stat.S_IMODE(old.stat().st_mode))
+
+
+def bytes_of(paths: Iterable[Path | None]) -> int:
+    """Return how large files are in all; what cannot be read will say so itself, and None is none."""
+    sizes = 0
+    for path in paths:
+        with contextlib.suppress(OSError):
+            sizes += 0 if path is None else path.stat().st_size
+    return sizes

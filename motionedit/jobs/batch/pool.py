@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 import os
+from contextlib import nullcontext
 from typing import TYPE_CHECKING, TypeVar
 
 from motionedit.interrupts import clean_up_first
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Sequence
+    from contextlib import AbstractContextManager
 
     from motionedit.jobs.batch.no_result import WorkerDiedError
     from motionedit.jobs.batch.plan import RunOptions
+    from motionedit.jobs.batch.processes import Crew
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 # Windows cannot wait for more processes at once.
 _MOST_WORKERS = 60
+# Bytes from which an array's memory goes back to the system.
+_LARGE = 1 << 25
 
 
 def results_in_order(
@@ -26,12 +31,14 @@ def results_in_order(
     *,
     options: RunOptions,
     is_last: Callable[[Result | WorkerDiedError], bool] = lambda _: False,
+    crew: Crew | None = None,
 ) -> Generator[Result | WorkerDiedError]:
     """Yield function(item) for each item, in order.
 
     Several processes or a cluster need a `function`, items and results that can be pickled. After a result that
     `is_last` no item is begun; those that others had begun by then still come. An item whose worker dies gives a
-    WorkerDiedError as its value; an exception of the function is raised here.
+    WorkerDiedError as its value; an exception of the function is raised here. Where several processes do it, those of
+    `crew`, if given, do, and stay for the next run.
     """
     if options.scheduler is not None and items:
         from motionedit.jobs.batch.cluster import load_dask, on_cluster
@@ -40,12 +47,23 @@ def results_in_order(
         clean_up_first()
         return on_cluster(function, items, options.scheduler, is_last)
     clean_up_first()
+    if len(items) > 1:
+        _keep_memory()
     workers = min(options.jobs or _cores(), len(items), _MOST_WORKERS)
     if workers > 1:
         from motionedit.jobs.batch.processes import in_processes
 
-        return in_processes(function, items, workers, is_last)
+        return in_processes(function, items, workers, is_last, crew)
     return _one_by_one(function, items, is_last)
+
+
+def standing_crew(options: RunOptions) -> AbstractContextManager[Crew | None]:
+    """Return the workers of several runs, one after the other, as a context; None where this process does the work."""
+    if options.jobs == 1 or options.scheduler is not None:
+        return nullcontext()
+    from motionedit.jobs.batch.processes import Crew
+
+    return Crew()
 
 
 def threads_within(items: int, options: RunOptions) -> int:
@@ -61,6 +79,15 @@ def _one_by_one(
         yield result
         if is_last(result):
             return
+
+
+def _keep_memory() -> None:
+    """Let memory serve clip after clip, in this process and in those that it forks."""
+    from motionedit.core.compiled import compiled
+
+    kernel = compiled()
+    if kernel is not None:
+        kernel.keep_memory(_LARGE)
 
 
 def _cores() -> int:

@@ -2,7 +2,7 @@
 
 Not the library's pools: these join a queue that all workers share, and wait for ever where a worker was ended in the
 middle of a result. Here a worker's end closes its own pipe, and the parent ends workers without waiting for answers.
-The function, with all that is common to the items, goes to each worker once.
+The function, with all that is common to the items, goes to each worker once. Workers that stay take another one.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import sys
 import threading
 from collections import deque
 from multiprocessing.connection import wait
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, Self, TypeVar
 
 from motionedit.jobs.batch.no_result import Raised, WorkerDiedError
 
@@ -43,9 +43,12 @@ def in_processes(
     items: Sequence[Item],
     workers: int,
     is_last: Callable[[Result | WorkerDiedError], bool],
+    crew: Crew | None = None,
 ) -> Generator[Result | WorkerDiedError]:
-    """Yield function(item) for each item, in order; see `results_in_order`."""
-    crew = _Crew(function, workers)
+    """Yield function(item) for each item, in order; see `results_in_order`. A crew that is given goes on after it."""
+    stays = crew is not None
+    crew = crew or Crew()
+    crew.turn_to(function, workers)
     results: dict[int, Any] = {}
     waiting = deque(range(len(items)))
     taken = 0
@@ -66,13 +69,20 @@ def in_processes(
                 waiting.clear()
     finally:
         # At the end they are idle; after Ctrl-C or an error, or where nobody listens, what they do is not wanted.
-        crew.end()
+        if crew.is_busy or not stays:
+            crew.end()
+
+
+class _Turn(NamedTuple):
+    """What a worker is sent that is no item: what it does from now on."""
+
+    function: Callable[[Any], Any]
 
 
 class _Worker:
     """A process, its pipe, and the places of the items that it has, the one it works on first."""
 
-    def __init__(self, context: BaseContext, function: Callable[[Any], Any]) -> None:
+    def __init__(self, context: BaseContext, function: Callable[[Any], Any] | None) -> None:
         self.pipe, other = context.Pipe()
         self.in_hand: deque[int] = deque()
         self.process: BaseProcess = context.Process(target=_work, args=(function, other), daemon=True)  # type: ignore[attr-defined]
@@ -85,15 +95,29 @@ class _Worker:
         self.process.kill()
 
 
-class _Crew:
-    """The workers of a run; one that dies is replaced where there is more to do."""
+class Crew:
+    """The workers of a run, or of several, one after the other; one that dies is replaced where there is more to do."""
 
-    def __init__(self, function: Callable[[Any], Any], count: int) -> None:
+    def __init__(self) -> None:
         # Forked workers start in a millisecond with every module loaded; only Linux forks safely.
         self._context = multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
-        self._function = function
-        self._count = count
+        self._function: Callable[[Any], Any] | None = None
+        self._count = 0
         self._workers: list[_Worker] = []
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.end()
+
+    def turn_to(self, function: Callable[[Any], Any], count: int) -> None:
+        """Take a function for so many workers; those that are there get it, a new one is born with it."""
+        self._function, self._count = function, count
+        for worker in self._workers:
+            # As in `begin`.
+            with contextlib.suppress(BrokenPipeError, ConnectionError):
+                worker.pipe.send(_Turn(function))
 
     @property
     def is_busy(self) -> bool:
@@ -134,6 +158,7 @@ class _Crew:
             worker.end()
         for worker in self._workers:
             worker.process.join(_SECONDS_TO_END)
+        self._workers = []
 
 
 @contextlib.contextmanager
@@ -159,6 +184,9 @@ def _work(function: Callable[[Any], Any], pipe: Connection[Any, Any]) -> None:
             item = pipe.recv()
         except (EOFError, OSError):
             return
+        if isinstance(item, _Turn):
+            function = item.function
+            continue
         try:
             result: Any = function(item)
         except Exception as error:  # noqa: BLE001  it is raised where the results are taken

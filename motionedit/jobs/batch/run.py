@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
     from motionedit.jobs.batch.one_clip import Work
     from motionedit.jobs.batch.plan import ClipTask, RunOptions
+    from motionedit.jobs.batch.processes import Crew
     from motionedit.jobs.batch.verdicts import Verdicts
 
 Item = TypeVar("Item")
@@ -92,7 +93,11 @@ def run_batch(
 
 
 def run_each(
-    pairs: Sequence[tuple[ClipTask, Work]], options: RunOptions, *, verdicts: Verdicts | None = None
+    pairs: Sequence[tuple[ClipTask, Work]],
+    options: RunOptions,
+    *,
+    verdicts: Verdicts | None = None,
+    crew: Crew | None = None,
 ) -> BatchResult:
     """Read, work on, verify and write every clip that is not current, each with its own work.
 
@@ -103,7 +108,7 @@ def run_each(
     options = replace(options, report_frames=options.tells_frames(len(pairs)))
     run_one = RunOwn(_for_workers(options))
     items = [(task, work) for task, work in pairs if not task.current]
-    return _run([task for task, _ in pairs], run_one, items, options, verdicts)
+    return _run([task for task, _ in pairs], run_one, items, options, verdicts, crew)
 
 
 def earlier(tasks: Sequence[ClipTask], options: RunOptions) -> BatchResult:
@@ -117,6 +122,7 @@ def _run(
     items: Sequence[object],
     options: RunOptions,
     verdicts: Verdicts | None,
+    crew: Crew | None = None,
 ) -> BatchResult:
     """Return what a run over tasks came to; `items` are what `run_one` takes of those that are not current."""
     from motionedit.core import bvh as _bvh  # noqa: F401  loaded once here, not in every forked worker
@@ -130,7 +136,7 @@ def _run(
         if not options.dry_run:
             clean_leftovers(folders)
         results = results_in_order(
-            run_one, items, options=options, is_last=lambda one: not options.keep_going and _has_failed(one)
+            run_one, items, options=options, is_last=lambda one: not options.keep_going and _has_failed(one), crew=crew
         )
         with closing(results), options.progress(len(waiting)) as advance:
             for result in results:
@@ -182,23 +188,23 @@ def _make_stale(tasks: Sequence[ClipTask]) -> None:
 
 
 def map_tasks(
-    function: Callable[[Item], Value], items: Sequence[Item], options: RunOptions
+    function: Callable[[Item], Value], items: Sequence[Item], options: RunOptions, *, crew: Crew | None = None
 ) -> list[Value | MotionEditError]:
     """Return function(item) for each item in order, on the workers that `options` asks for.
 
     A MotionEditError or OSError of an item comes back as its value; every item is tried. `function`, items and
-    values are pickled where there are several workers.
+    values are pickled where there are several workers, those of `crew` if it is given.
     """
-    return list(values_in_order(function, items, options))
+    return list(values_in_order(function, items, options, crew=crew))
 
 
 def values_in_order(
-    function: Callable[[Item], Value], items: Sequence[Item], options: RunOptions
+    function: Callable[[Item], Value], items: Sequence[Item], options: RunOptions, *, crew: Crew | None = None
 ) -> Generator[Value | MotionEditError]:
     """Yield what `map_tasks` returns, one by one: of many large values few are held at a time."""
     from motionedit.core import bvh as _bvh  # noqa: F401  as above
 
-    results = results_in_order(_Guarded(function), items, options=options)
+    results = results_in_order(_Guarded(function), items, options=options, crew=crew)
     with closing(results), options.progress(len(items)) as advance:
         for value in results:
             yield value

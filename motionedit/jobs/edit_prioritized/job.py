@@ -88,6 +88,10 @@ def edit(
     return run_batch(tasks, with_page(work, loaded.data, options), options, verdicts=verdicts)
 
 
+# Bytes from which a file is not held while its motion is edited.
+_LONG = 1 << 25
+
+
 @dataclass(frozen=True)
 class EditByPriorities:
     """The work on one clip."""
@@ -99,6 +103,8 @@ class EditByPriorities:
 
     def __call__(self, clip: Clip, task: ClipTask) -> Outcome:
         """Return the edited clip, and how near each constraint came."""
+        if task.clip is None and task.source is not None and len(clip.text.file) > _LONG:
+            clip.text.file.let_go(task.source)
         sized, constraints = self.resolved(clip, task)
         settings = self.settings(clip)
         other = self._reference(clip, task)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import PurePath
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,7 @@ from motionedit.core.pca.model import DatabaseClip
 from motionedit.core.skeleton_match import match_joints
 from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError, ModelError, MotionEditError, UsageError, together
-from motionedit.jobs.batch.files import place
+from motionedit.jobs.batch.files import bytes_of, place
 from motionedit.jobs.batch.one_clip import read_task
 from motionedit.jobs.batch.plan import ClipTask
 from motionedit.jobs.batch.run import values_in_order
@@ -24,6 +25,10 @@ if TYPE_CHECKING:
     from motionedit.core.motion import Motion
     from motionedit.core.skeleton import Skeleton
     from motionedit.jobs.batch.plan import RunOptions
+
+
+# Bytes of clips that are read here before workers have begun, and have sent what they read.
+_FEW_BYTES = 1 << 25
 
 
 @dataclass(frozen=True)
@@ -75,6 +80,8 @@ def motions_of(database: Database, options: RunOptions) -> Iterator[DatabaseMoti
     items = [
         _Listed(task, each, frames) for task, each in zip(database.tasks, database.normalization.clips, strict=True)
     ]
+    if bytes_of(task.source for task in database.tasks) <= _FEW_BYTES and options.scheduler is None:
+        options = replace(options, jobs=1)
     errors: list[MotionEditError] = []
     reference: Skeleton | None = None
     height = 0.0

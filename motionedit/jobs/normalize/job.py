@@ -5,15 +5,16 @@ Two phases: every clip is measured, the means are taken, then every clip is resa
 
 from __future__ import annotations
 
-import contextlib
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from motionedit.dataclass import dataclass
 from motionedit.errors import EXIT_CLIP_FAILED, EXIT_USAGE, MotionEditError, UsageError
+from motionedit.jobs.batch.files import bytes_of
 from motionedit.jobs.batch.one_clip import write_file
 from motionedit.jobs.batch.plan import find_clips, plan
+from motionedit.jobs.batch.pool import standing_crew
 from motionedit.jobs.batch.run import BatchResult, earlier, failed_record, map_tasks, run_each
 from motionedit.jobs.batch.verdicts import run_key, verdicts_in
 from motionedit.jobs.normalize.common_timeline import common_timeline, events_out_of_order
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 
     from motionedit.core.timeline.warp import Timeline
     from motionedit.jobs.batch.plan import ClipTask, RunOptions
+    from motionedit.jobs.batch.processes import Crew
     from motionedit.jobs.batch.verdicts import Verdicts
     from motionedit.jobs.clip.facts import Line
     from motionedit.spec.load import LoadedSpec
@@ -103,9 +105,21 @@ def normalize(
     SpecError
         As `run`.
     """
-    keep = options.jobs == 1 and options.scheduler is None and _bytes_of(tasks) <= _MOST_KEPT
+    with standing_crew(options) as crew:
+        return _both_phases(loaded, tasks, options, crew, before_writing, verdicts)
+
+
+def _both_phases(
+    loaded: LoadedSpec[NormalizeSpec],
+    tasks: Sequence[ClipTask],
+    options: RunOptions,
+    crew: Crew | None,
+    before_writing: Callable[[], None],
+    verdicts: Verdicts | None,
+) -> Normalized:
+    keep = options.jobs == 1 and options.scheduler is None and bytes_of(task.source for task in tasks) <= _MOST_KEPT
     measure = MeasureClip(loaded, options.lenient, tuple(task.relative for task in tasks), keep)
-    measured = map_tasks(measure, tasks, options)
+    measured = map_tasks(measure, tasks, options, crew=crew)
     measures, failures = sound_measures(tasks, measured)
     if failures and (not options.keep_going or not measures):
         return Normalized(_failed(tasks, failures))
@@ -124,19 +138,10 @@ def normalize(
     given = [replace(task, clip=task.clip or by_label[task.label].read) for task in good]
     if not options.dry_run:
         before_writing()
-    result = run_each(list(zip(given, works, strict=True)), options, verdicts=verdicts)
+    result = run_each(list(zip(given, works, strict=True)), options, verdicts=verdicts, crew=crew)
     written = [record.get("clip_sha256", "") for record in result.records]
     normalization = None if result.failures else _normalization(loaded, timeline, line, used, written)
     return Normalized(_with_failures(result, tasks, failures, warnings), normalization)
-
-
-def _bytes_of(tasks: Sequence[ClipTask]) -> int:
-    """Return how large the tasks' files are in all; what cannot be read will say so itself."""
-    sizes = 0
-    for task in tasks:
-        with contextlib.suppress(OSError):
-            sizes += 0 if task.source is None else task.source.stat().st_size
-    return sizes
 
 
 def _normalization(

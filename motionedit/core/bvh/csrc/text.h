@@ -23,11 +23,8 @@ int read_rows(const char *text, int64_t length, int64_t columns, int64_t room, R
 /* The most characters that a number of so many decimals takes. */
 int64_t longest_number(int decimals);
 
-/* Write a number with a fixed number of decimals, never as -0; returns its length, or -1 where it is too large. */
-int write_number(double value, int decimals, char *out);
-
-/* Write N rows of `columns` numbers, a blank between two and `ending` after each row; returns the length of the text,
-   or -1 where a number is too large. */
+/* Write N rows of `columns` numbers with a fixed number of decimals, never as -0, a blank between two and `ending` after
+   each row, in N * columns * `longest_number` bytes and those of the endings; returns the length of the text, or -1 where a number is too large. */
 int64_t write_rows(
     const double *values, int64_t rows, int64_t columns, int decimals, const char *ending, int64_t after, char *out);
 

@@ -13,6 +13,9 @@
 #include "layered.h"
 
 #include <math.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
@@ -623,6 +626,21 @@ static PyObject *splice(PyObject *self, PyObject *arguments)
     return length < -1 ? NULL : PyLong_FromLongLong(length);
 }
 
+/* A system gives memory page by page, and slowly: what a clip let go of serves the next. Arrays beyond `largest` bytes
+   still come from the system and go back to it. */
+static PyObject *keep_memory(PyObject *self, PyObject *arguments)
+{
+    int largest;
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "i", &largest))
+        return NULL;
+#ifdef __GLIBC__
+    mallopt(M_MMAP_THRESHOLD, largest);
+    mallopt(M_TRIM_THRESHOLD, largest);
+#endif
+    Py_RETURN_NONE;
+}
+
 /* To ask `os.environ` takes fifteen times as long, and whoever changes that changes this. */
 static PyObject *is_set(PyObject *self, PyObject *arguments)
 {
@@ -641,6 +659,7 @@ static PyMethodDef methods[] = {
     {"forward", forward_frames, METH_VARARGS, "Write the world transforms of all joints at all frames."},
     {"smooth", smooth, METH_VARARGS, "Write rotations plus their low-passed displacement."},
     {"low_pass", low_pass_rows, METH_VARARGS, "Write rows smoothed over frames."},
+    {"keep_memory", keep_memory, METH_VARARGS, "Keep memory that was let go of, but for large arrays (glibc alone)."},
     {"is_set", is_set, METH_VARARGS, "Return whether a variable of the environment has a value."},
     {"multiply", multiply, METH_VARARGS,
         "Write the products of quaternions; False where they lie otherwise in memory."},
