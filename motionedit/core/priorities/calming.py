@@ -77,10 +77,17 @@ def _steadied(run: Run, layers: _Layers, smoothing: Passes) -> _Layers:
     if layers.seen.jerk < _UNSTEADY or body.mobility is None:
         return layers
     firm = run_of(replace(run.asked, body=replace(body, root_mobility=_FIRM * body.root_mobility)))
-    state = in_passes(firm, replace(layers.state), smoothing)
+    state = in_passes(firm, _copied(layers.state), smoothing)
     new = _Layers(layers.asked, state, seen_of(run, state.motion, steps=state.steps))
     is_steadier = new.seen.jerk < layers.seen.jerk and new.seen.much.max() <= layers.seen.much.max()
     return new if is_steadier else layers
+
+
+def _copied(state: Solved) -> Solved:
+    """Return a solution with a motion of its own: passes use theirs up."""
+    motion = state.motion
+    own = replace(motion, rotations=motion.rotations.copy(), translations=motion.translations.copy())
+    return replace(state, motion=own)
 
 
 def _calmest(layers: _Layers, members: list[int], before: FloatArray, smoothing: Passes) -> _Layers:
