@@ -175,7 +175,7 @@ class EditPcSpec(Document):
         kinds.either(("auto",), kinds.number(at_least=0.0, at_most=1.0)),
         default="auto",
         description="method: map; the share of a change that may leave the components, 0 to 1; auto: from the share of "
-        "an unseen clip that the model does not explain.",
+        "an unseen clip that the model does not explain, and from what goals at several frames ask for.",
     )
     feet: Literal["keep", "move", "off"] | None = spec_key(
         kinds.or_off(kinds.word("keep", "move", "off")),

@@ -193,6 +193,16 @@ def test_section_7_goals_at_several_frames_are_all_met_together_or_interpolated(
     assert edit.record["metrics"]["after"]["jerk_rms"] < 1.1 * edit.record["metrics"]["before"]["jerk_rms"]
 
 
+def test_goals_at_several_frames_that_no_swing_goes_through_are_a_local_matter(golf):
+    def share(goals, **spec):
+        return golf.lab.edit(golf.swings[3], golf.model, {"goals": goals, **spec}).record["change"]["residual_share"]
+
+    alone, *_ = [share([goal]) for goal in FOUR[:2]]
+    astray = [{**goal, "shift": [0, 0, way]} for goal, way in zip(FOUR, (15, -15, 15, -15), strict=True)]
+    assert share(astray) > 2.0 * alone
+    assert share(astray, residual_share=0.1) == share(list(FOUR), residual_share=0.1) == 0.1
+
+
 def test_section_7_of_goals_of_differing_priority_the_larger_is_met(golf):
     ahead = {"name": "ahead", "at": "hit", "effector": {"end_site": "Club"}, "shift": [10, 0, 0], "priority": 2}
     back = {**ahead, "name": "back", "shift": [-10, 0, 0], "priority": 1}

@@ -17,7 +17,9 @@ import numpy as np
 from motionedit.core.arrays import frozen
 from motionedit.core.coefficients.about_goals import components_about
 from motionedit.core.coefficients.algorithm_1 import solve_damped
+from motionedit.core.coefficients.evidence import likeliest_share
 from motionedit.core.coefficients.goal_chains import columns_behind, columns_of, goal_of
+from motionedit.core.coefficients.goals import stacked_errors
 from motionedit.core.coefficients.likeliest import likeliest_change
 from motionedit.core.coefficients.methods import GaussNewton, Likeliest
 from motionedit.core.coefficients.prior import change_prior, interpolated
@@ -31,7 +33,10 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.coefficients.goal_chains import GoalRequest
+    from motionedit.core.coefficients.goals import Goal
     from motionedit.core.coefficients.methods import Damped
+    from motionedit.core.coefficients.planted_feet import PlantedFoot
+    from motionedit.core.coefficients.prior import ChangePrior
     from motionedit.core.motion import Motion
     from motionedit.core.pca.model import MotionModel
 
@@ -78,6 +83,11 @@ class CoefficientEdit:
         return max((change.norm for change in self.changes if change.norm is not None), default=None)
 
     @property
+    def share(self) -> float | None:
+        """The largest share of a change's variance that might leave the components; None where no prior has one."""
+        return max((change.share for change in self.changes if change.share is not None), default=None)
+
+    @property
     def reasons(self) -> dict[int, str]:
         """Why the solver stopped, for each request by its place among them."""
         return {i: reason for change in self.changes for i, reason in change.reasons.items()}
@@ -99,6 +109,8 @@ class Change:
         As of the edit.
     residual : shape (K, n) or None
         What leaves the components at those frames, columns of Theta.
+    share : float or None
+        g of the prior.
     """
 
     solution: CoefficientSolution
@@ -106,6 +118,7 @@ class Change:
     frames: tuple[int, ...]
     norm: float | None = None
     residual: FloatArray | None = None
+    share: float | None = None
 
 
 def edit_by_coefficients(
@@ -243,16 +256,26 @@ def _likeliest(
     given: _Given, requests: Sequence[GoalRequest], group: Sequence[int], frames: tuple[int, ...], solver: Likeliest
 ) -> Change:
     projection, model = given.projection, given.model
-    prior = change_prior(projection, model, frames=frames, columns=given.columns, share=solver.share, feet=solver.feet)
+
+    def prior_of(share: float, *, feet: Sequence[PlantedFoot]) -> ChangePrior:
+        return change_prior(projection, model, frames=frames, columns=given.columns, share=share, feet=feet)
+
+    def goals_of(places: Sequence[int], prior: ChangePrior) -> list[Goal]:
+        return [
+            goal_of(projection, model, given.rows, requests[i], smoothing=given.smoothing, prior=prior) for i in places
+        ]
+
+    share = solver.share
+    if solver.most is not None and len(frames) > 1:
+        apart = prior_of(share, feet=())
+        error, jacobian = stacked_errors(goals_of(group, apart), np.zeros(apart.size))
+        share = likeliest_share(error, jacobian, components=len(apart.deviations), share=share, most=solver.most)
+    prior = prior_of(share, feet=solver.feet)
     layers = [
         [i for i in group if requests[i].priority == priority]
         for priority in sorted({requests[i].priority for i in group}, reverse=True)
     ]
-    goals = [
-        [goal_of(projection, model, given.rows, requests[i], smoothing=given.smoothing, prior=prior) for i in layer]
-        for layer in layers
-    ]
-    found = likeliest_change(goals, size=prior.size, bound=solver.bound)
+    found = likeliest_change([goals_of(layer, prior) for layer in layers], size=prior.size, bound=solver.bound)
     beta = prior.coefficients(found.change)
     return Change(
         CoefficientSolution(beta, found.iterations, found.history, found.reason),
@@ -260,4 +283,5 @@ def _likeliest(
         frames,
         float(np.linalg.norm(found.change)),
         prior.residual(found.change),
+        share,
     )

@@ -26,6 +26,8 @@ class Likeliest:
         Joints that the residual leaves alone.
     believed, heading, position
         Of the components, as of `components_about`.
+    most : float or None
+        The largest g that goals at several frames may speak for, by `likeliest_share`; None: g is `share`.
     """
 
     share: float
@@ -35,6 +37,7 @@ class Likeliest:
     believed: float = 1.0
     heading: bool = False
     position: bool = False
+    most: float | None = None
 
 
 @dataclass(frozen=True)

@@ -21,14 +21,13 @@ if TYPE_CHECKING:
 # Rad: below the first angle a knee is nearly straight, a millimetre at the ankle being a centimetre there; above the
 # second it is bent.
 _STRAIGHT_TO_BENT = np.radians(15.0), np.radians(40.0)
-# Rad: over which a knee that comes down onto a lowered pelvis passes from bent back to bent forward.
-_ROUND = np.radians(1.0)
+# Rad: a straight knee that a lowered pelvis would bend by this is bent by half of it.
+_TO_BENT = np.radians(4.0)
 _TURNS = 0.05  # s before and after for which a leg counts as nearly straight
-# Rad: a knee comes no nearer to straight than its own angle, rounded off over this: it is the angle's logarithm that
-# eases, so that no knee is bent back by what it does not need.
+# Rad: no knee is bent back by what it does not need; it straightens by its own angle, rounded off over this, at most.
 _SLACK = np.radians(2.0)
 _ORDER = 2  # the third difference would go on too far in what a knee at its straightest was about
-_BENDS = 0.016  # s: how slowly the correction of a knee bends
+_BENDS = 0.024  # s: how slowly the correction of a knee bends
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,10 +63,14 @@ class Knee:
     def lowered(self, way: FloatArray) -> FloatArray:
         """Return the angle at a way that a lowered pelvis has made shorter, shape (F,); its own where it has not.
 
-        A leg that is bent back comes forward by as much as one bent forward as far would; exact for the latter.
+        With x its own angle and y the one at that way, x + d^2 / (d^2 + a^2) (y - x), d^2 = y^2 - x^2: one that is bent
+        back comes forward, smoothly as it passes through straight, also where the pelvis hardly bends it. A leg that is
+        above its hip, from which a lower pelvis goes away, comes down with it.
         """
         own, bent = self.angle, self.bent(way)
-        return own + np.hypot(bent, _ROUND) - np.hypot(own, _ROUND)
+        by = np.maximum(bent**2 - own**2, 0.0)
+        angle: FloatArray = own + by / (by + _TO_BENT**2) * (bent - own)
+        return angle
 
 
 def knee_of(skeleton: Skeleton, poses: WorldPoses, leg: Leg, bend: Bend) -> Knee:
@@ -109,13 +112,28 @@ def eased_ways(
     ways = np.linalg.norm(ankle - hip, axis=1)
     own, now = knee.lowered(np.linalg.norm(before - hip, axis=1)), np.where(back, -1.0, 1.0) * knee.bent(ways)
     slack = 0.5 * (own + np.hypot(own, _SLACK))
-    change = np.maximum(now - own, -0.999 * slack)
-    change = np.where(change < 0.0, slack * np.log1p(np.minimum(change, 0.0) / slack), change)
-    change = eased(change[:, None], known, frame_time, bends=_BENDS, order=_ORDER)[:, 0]
-    angle = own + np.where(change < 0.0, slack * np.expm1(np.minimum(change, 0.0) / slack), change)
+    change = _unfolded(now - own, slack)
+    change = _folded(eased(change[:, None], known, frame_time, bends=_BENDS, order=_ORDER)[:, 0], slack)
+    angle = own + change
     straight = 1.0 - (1.0 - straightness(own)) * (1.0 - straightness(now))
     share = np.where(known, 0.0, smooth_cover(straight, frame_time, ease=_TURNS))
     return ways + share * (knee.way(angle) - ways), (share > 0.5) & (angle < 0.0)
+
+
+def _unfolded(change: FloatArray, slack: FloatArray) -> FloatArray:
+    """Return what eases, u, of which `_folded` makes changes of angles, shape (F,); -2 slack of one below -slack.
+
+    A knee that the leg is too short for is straight within a frame or two. The way from hip to ankle goes as the square
+    of the angle, and u with the way; what grew without end there would overshoot as far once it eases.
+    """
+    left = np.maximum(1.0 + np.minimum(change, 0.0) / slack, 0.0)
+    return np.maximum(change, 0.0) + 2.0 * slack * (np.sqrt(left) - 1.0)
+
+
+def _folded(u: FloatArray, slack: FloatArray) -> FloatArray:
+    """Return changes of angles, shape (F,): u where it bends a knee, and u + u^2 / (4 slack), never below -slack."""
+    down = np.clip(u, -2.0 * slack, 0.0)
+    return np.maximum(u, 0.0) + down + down**2 / (4.0 * slack)
 
 
 def straightness(angle: FloatArray) -> FloatArray:

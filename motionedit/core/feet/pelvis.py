@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 # Seconds before and after for which the pelvis stays low, and eases down and up.
 EASE = 0.2
 # The pelvis goes down no farther than this share of a leg.
-_DEEPEST = 0.1
+_DEEPEST = 0.15
 # Of a length squared: by so little a leg that is as long as it was may seem too short, and no pelvis comes down.
 _ROUNDING = 1e-12
 

@@ -81,7 +81,11 @@ def edit_record(
             "bound": bound,
             "database_max": largest,
         },
-        "change": {"norm": edit.norm, "bound": None if edit.norm is None else bound, "residual_share": share},
+        "change": {
+            "norm": edit.norm,
+            "bound": None if edit.norm is None else bound,
+            "residual_share": share if edit.share is None else edit.share,
+        },
         "nearest": {
             "before": _nearest(model, projection.coefficients),
             "after": _nearest(model, edit.coefficients),

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 # g over r^2, r being the share of an unseen clip that the database does not explain; and g's limits: a database that
 # explains nearly all still needs room for its noise, and one that explains nothing still knows a style.
 _OF_LEFT_OUT, _LEAST_SHARE, _MOST_SHARE = 0.85, 0.05, 0.3
+# Goals at several frames may speak for more: what no way of the database's goes through is a local matter.
+_MOST_OF_SEVERAL = 0.6
 # A model that was made before its left-out error was kept: a share between that of clean sets and that of real strokes.
 _UNKNOWN_SHARE = 0.25
 
@@ -44,6 +46,7 @@ def chosen_solver(
         believed=_believed(share),
         heading=astray and align["heading"],
         position=astray and align["position"],
+        most=max(share, _MOST_OF_SEVERAL) if spec.residual_share == "auto" else None,
     )
 
 
