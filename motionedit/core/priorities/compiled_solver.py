@@ -6,7 +6,7 @@ field and no order is kept here.
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, lru_cache
 from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +16,7 @@ from motionedit.core import rotations as rot
 from motionedit.core import units
 from motionedit.core.compiled import compiled
 from motionedit.core.priorities import constants
+from motionedit.core.priorities.points import places_of
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -25,7 +26,15 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.body.center_of_mass import Masses
-    from motionedit.core.priorities.problem import CompiledTask, LayeredSolution, Problem, Reference, WeightedTask
+    from motionedit.core.priorities.problem import (
+        CompiledTask,
+        HingeColumns,
+        LayeredSolution,
+        LimitColumns,
+        Problem,
+        Reference,
+        WeightedTask,
+    )
 
 # Frames a thread takes at least.
 _LEAST_SHARE = 32
@@ -60,10 +69,10 @@ def layout_of(problem: Problem) -> Layout | None:
     rows = _rows(problem, module.row_kinds) if module is not None and knows_root else None
     if rows is None:
         return None
-    columns, skeleton, hinges = problem.columns, problem.columns.skeleton, problem.hinges
+    columns, skeleton = problem.columns, problem.columns.skeleton
     masses = next((task.masses for task, _, _ in rows if task.masses is not None), None)
     nodes = _nodes(problem, rows, masses)
-    node_of = _places(nodes, len(skeleton))
+    node_of = places_of(nodes, len(skeleton))
     tasks, targets = _tasks(rows, node_of, module.row_kinds)
     return Layout(
         {
@@ -73,19 +82,8 @@ def layout_of(problem: Problem) -> Layout | None:
             "column_nodes": _integers(node_of[columns.joints]),
             "mobility": _numbers(problem.mobility),
             "tasks": tasks,
-            "hinges": _records(
-                "hinges",
-                len(hinges.places),
-                {
-                    "column": hinges.places,
-                    "second": hinges.second,
-                    "axis": hinges.axes,
-                    "upper": hinges.upper,
-                    "lower": hinges.lower,
-                    "limits": hinges.limits,
-                },
-            ),
-            "limits": _limit_records(problem),
+            "hinges": _hinge_records(problem.hinges),
+            "limits": _limit_records(problem.limits),
             "recruited": np.ascontiguousarray([task.recruited.joints for task, _, _ in rows], dtype=np.uint8),
             "targets": targets,
         }
@@ -196,8 +194,8 @@ def _node_records(problem: Problem, nodes: IntArray, node_of: IntArray, masses: 
     values = {
         "joint": nodes,
         "parent": np.where(parents >= 0, node_of[parents], -1),
-        "translation": _places(skeleton.translated, len(skeleton))[nodes],
-        "column": _places(problem.columns.joints, len(skeleton))[nodes],
+        "translation": skeleton.translation_places[nodes],
+        "column": problem.columns.places[nodes],
         "offset": skeleton.offsets[nodes],
     }
     if masses is not None:
@@ -205,8 +203,21 @@ def _node_records(problem: Problem, nodes: IntArray, node_of: IntArray, masses: 
     return _records("nodes", len(nodes), values)
 
 
-def _limit_records(problem: Problem) -> NDArray[Any]:
-    limits = problem.limits
+@lru_cache(maxsize=4)
+def _hinge_records(hinges: HingeColumns) -> NDArray[Any]:
+    values = {
+        "column": hinges.places,
+        "second": hinges.second,
+        "axis": hinges.axes,
+        "upper": hinges.upper,
+        "lower": hinges.lower,
+        "limits": hinges.limits,
+    }
+    return _records("hinges", len(hinges.places), values)
+
+
+@lru_cache(maxsize=4)
+def _limit_records(limits: LimitColumns) -> NDArray[Any]:
     halves = np.stack([limits.swing, limits.twist], axis=1)
     values = {
         "column": limits.places,
@@ -247,13 +258,6 @@ def _tasks(rows: Sequence[_Row], node_of: IntArray, kinds: Sequence[str]) -> tup
         counted = task.measure.counted
         axes[place, : len(counted)], measures[place, : len(counted)] = counted, task.measure.rows
     return records, np.concatenate([np.zeros(0), *given])
-
-
-def _places(joints: IntArray, count: int) -> IntArray:
-    """Return each joint's place among some of them, shape (count,); -1 where it is none of them."""
-    places = np.full(count, -1)
-    places[joints] = np.arange(len(joints))
-    return places
 
 
 def _integers(values: Any) -> IntArray:  # noqa: ANN401  whatever numpy takes
