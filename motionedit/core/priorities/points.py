@@ -9,6 +9,7 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
+from motionedit.core.body.bones import below
 from motionedit.core.kinematics import Effector, WorldPoses, effector_positions
 from motionedit.dataclass import dataclass
 
@@ -118,7 +119,7 @@ class Point:
     @property
     def moves_with_root(self) -> bool:
         """Whether the root's translation is recruited and moves it."""
-        return self.recruited.root and self.columns.root in self.columns.skeleton.chain(self.effector.joint)
+        return self.recruited.root and bool(below(self.columns.skeleton, self.columns.root)[self.effector.joint])
 
 
 def lever_rows(levers: FloatArray, mask: FloatArray | BoolArray, *, root: bool) -> FloatArray:
