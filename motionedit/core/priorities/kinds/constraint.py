@@ -169,15 +169,16 @@ class Scene:
         The input, as far as the constraints look at it.
     curve : Curve
         What the parameter of splines is.
-    goals : mapping from joints to shape (F, 3)
-        Where constraints that do not wait for others want joints in the world, nan where nothing does.
+    goals : callable
+        Returns where constraints that do not wait for others want joints in the world, a mapping from joints to shape
+        (F, 3), nan where nothing does.
     others : callable
         Returns the Sight of the motion that the constraints which do not wait for others ask for, solved once.
     """
 
     before: Sight
     curve: Curve
-    goals: Mapping[int, FloatArray]
+    goals: Callable[[], Mapping[int, FloatArray]]
     others: Callable[[], Sight]
 
 
