@@ -262,7 +262,7 @@ def _task(asked: Asked, i: int, frames: IntArray, columns: Columns) -> Task:
     return asked.constraints[i].task(asked.targets[i], stage)
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=2)
 def _of_columns(body: Body, columns: Columns) -> tuple[HingeColumns, LimitColumns, FloatArray]:
     """Return the hinges among columns, the limits of those that are none, and the mobility of all and of the root."""
     hinges, limits = _of_all_joints(body)
