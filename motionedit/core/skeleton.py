@@ -117,8 +117,19 @@ class Skeleton:
 
     def columns(self, joint: int, kind: str) -> list[int]:
         """Return the columns of a joint's channels of one kind, `rotation` or `position`, in channel order."""
-        start = int(self.channel_starts[joint])
-        return [start + c for c, name in enumerate(self.channels[joint]) if name.endswith(kind)]
+        return self._columns[kind][joint]
+
+    @cached_property
+    def _columns(self) -> dict[str, list[list[int]]]:
+        """Columns of every joint's channels, by their kinds."""
+        starts = self.channel_starts.tolist()
+        return {
+            kind: [
+                [start + c for c, name in enumerate(names) if name.endswith(kind)]
+                for start, names in zip(starts, self.channels, strict=True)
+            ]
+            for kind in ("rotation", "position")
+        }
 
     @cached_property
     def translated(self) -> IntArray:

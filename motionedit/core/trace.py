@@ -9,15 +9,14 @@ import numpy as np
 from motionedit.core.arrays import frozen
 from motionedit.core.body.center_of_mass import center_of_mass
 from motionedit.core.body.quality import JerkMeter
-from motionedit.core.kinematics import WorldPoses, effector_positions, forward
+from motionedit.core.kinematics import WorldPoses, forward
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator
 
     from motionedit.core.arrays import FloatArray
     from motionedit.core.body.center_of_mass import Masses
-    from motionedit.core.kinematics import Effector
     from motionedit.core.motion import Motion
 
 # Frames of a block, whose arrays stay near the processor.
@@ -48,7 +47,7 @@ class Trace:
 
 def trace_of(
     blocks: Iterable[WorldPoses],
-    points: Sequence[Effector],
+    tracked: Callable[[WorldPoses], FloatArray],
     *,
     frame_time: float,
     first: int,
@@ -58,15 +57,14 @@ def trace_of(
 
     Parameters
     ----------
-    points : sequence of Effector
-        Whose tracks are kept.
+    tracked : callable
+        Returns the tracks of a block that are kept, shape (F, P, 3).
     first : int
         The first frame after a rest pose; earlier ones have no jerk.
     """
     tracks, centers, jerk = [], [], JerkMeter(first)
     for poses in blocks:
-        paths = [effector_positions(poses, point) for point in points]
-        tracks.append(np.stack(paths, axis=1) if paths else np.zeros((len(poses.positions), 0, 3)))
+        tracks.append(tracked(poses))
         if masses is not None:
             centers.append(center_of_mass(poses, masses))
         jerk.add(poses.positions)

@@ -95,9 +95,12 @@ def plain(value: Any) -> Any:  # noqa: ANN401  any value that a report may hold
         return _rounded(value)
     if isinstance(value, (list, tuple)):
         # Most are numbers of frames, for which the other questions take longer than the answer.
-        return [_rounded(item) if type(item) is float else plain(item) for item in value]
+        return [
+            _rounded(item) if type(item) is float else item if type(item) in _AS_THEY_ARE else plain(item)
+            for item in value
+        ]
     if isinstance(value, Mapping):
-        return {str(key): plain(item) for key, item in value.items()}
+        return {str(key): item if type(item) in _AS_THEY_ARE else plain(item) for key, item in value.items()}
     if hasattr(value, "tolist"):  # numpy's numbers and arrays
         return plain(value.tolist())
     return value if isinstance(value, (int, str)) else str(value)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +13,7 @@ from motionedit.core.body.in_one_loop import read_off
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.body.anatomy import Anatomy, Leg
@@ -56,12 +57,14 @@ def find_bends(skeleton: Skeleton, poses: WorldPoses, anatomy: Anatomy, *, first
     A limb bends as it does in the clip's own frames from `first` on. One that is always straight bends as bodies do:
     knees to the toes' side, elbows so that the hands come to the front.
     """
-    front = _front(poses, anatomy)
-    limbs: list[tuple[tuple[int, int, int], FloatArray | None]] = []
-    for leg in anatomy.legs or ():
+    front = cache(lambda: _front(poses, anatomy))
+
+    def backward(leg: Leg) -> FloatArray | None:
         toes = _toes(poses, leg)
-        forward = front if toes is None else toes
-        limbs.append(((leg.thigh, leg.knee, leg.ankle), None if forward is None else -forward))
+        forward = front() if toes is None else toes
+        return None if forward is None else -forward
+
+    limbs: list[_Limb] = [((leg.thigh, leg.knee, leg.ankle), partial(backward, leg)) for leg in anatomy.legs or ()]
     limbs += [((arm.shoulder, arm.elbow, arm.wrist), front) for arm in anatomy.arms or ()]
     # A few limbs at a time: those of a long motion all at once would take several times its memory.
     together = max(_BLOCK_POSES // len(poses.positions), 1)
@@ -69,10 +72,11 @@ def find_bends(skeleton: Skeleton, poses: WorldPoses, anatomy: Anatomy, *, first
     return tuple(bend for i in starts for bend in _bends(skeleton, poses, limbs[i : i + together], first))
 
 
-def _bends(
-    skeleton: Skeleton, poses: WorldPoses, limbs: Sequence[tuple[tuple[int, int, int], FloatArray | None]], first: int
-) -> tuple[Bend, ...]:
-    """Return the bends of limbs, each with the side, shape (F, 3), `towards` which it bends where no frame shows it."""
+# A limb's joints, and what returns the side, shape (F, 3), towards which it bends where no frame shows it.
+_Limb = tuple[tuple[int, int, int], "Callable[[], FloatArray | None]"]
+
+
+def _bends(skeleton: Skeleton, poses: WorldPoses, limbs: Sequence[_Limb], first: int) -> tuple[Bend, ...]:
     tops, joints, ends = np.array([limb for limb, _ in limbs]).T
     parents = skeleton.parents[joints]
     sides = _sides(poses.positions, tops, joints, ends)
@@ -80,7 +84,7 @@ def _bends(
     bent = sines > _BENT
     bent[:first] = False
     for i in np.flatnonzero(~bent.any(axis=0)).tolist():
-        towards = limbs[i][1]
+        towards = limbs[i][1]()
         if towards is not None:
             lower = poses.positions[:, ends[i]] - poses.positions[:, joints[i]]
             sides[:, i], bent[:, i] = rot.cross(lower, towards), True

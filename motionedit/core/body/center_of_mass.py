@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
-from motionedit.core.body.in_one_loop import read_off
+from motionedit.core.body.in_one_loop import carried
 from motionedit.core.body.segments import lay_by_length, lay_given, lay_human
 from motionedit.core.kinematics import WorldPoses
 from motionedit.dataclass import dataclass
@@ -17,7 +16,7 @@ from motionedit.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from motionedit.core.arrays import FloatArray, IntArray
+    from motionedit.core.arrays import FloatArray
     from motionedit.core.body.anatomy import Anatomy
     from motionedit.core.body.segments import Laid
     from motionedit.core.skeleton import Skeleton
@@ -101,7 +100,7 @@ def center_of_mass(poses: WorldPoses, masses: Masses) -> FloatArray:
     for start in range(0, len(center), _BLOCK_FRAMES):
         block = slice(start, start + _BLOCK_FRAMES)
         part = WorldPoses(poses.positions[block], poses.rotations[block])
-        center[block] = masses.shares[carriers] @ _carried(part, masses, carriers)
+        center[block] = masses.shares[carriers] @ carried(part, carriers, masses.points[carriers])
     return center
 
 
@@ -120,7 +119,8 @@ def subtree_centers(poses: WorldPoses, masses: Masses) -> tuple[FloatArray, Floa
     carriers = np.flatnonzero(shares)
     # Joint by joint first, so that a level is added to its parents in whole rows.
     moments = np.zeros((len(shares), len(poses.positions), 3))
-    moments[carriers] = _carried(poses, masses, walk.joints[carriers]).swapaxes(0, 1) * shares[carriers, None, None]
+    places = carried(poses, walk.joints[carriers], masses.points[walk.joints[carriers]])
+    moments[carriers] = places.swapaxes(0, 1) * shares[carriers, None, None]
     for start, stop in reversed(walk.levels):
         np.add.at(moments, walk.parents[start:stop], moments[start:stop])
         np.add.at(shares, walk.parents[start:stop], shares[start:stop])
@@ -130,12 +130,3 @@ def subtree_centers(poses: WorldPoses, masses: Masses) -> tuple[FloatArray, Floa
     below = np.empty_like(shares)
     below[walk.joints] = shares
     return centers, below
-
-
-def _carried(poses: WorldPoses, masses: Masses, joints: IntArray) -> FloatArray:
-    """Return the centres in the world of what moves with each of K joints, shape (F, K, 3)."""
-    shape, points = (len(poses.positions), len(joints), 3), masses.points[joints]
-    carried = read_off("carried", poses.positions, poses.rotations, joints, points, shape=shape)
-    if carried is None:
-        carried = poses.positions[:, joints] + rot.rotate(poses.rotations[:, joints], points)
-    return carried

@@ -10,8 +10,8 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen, median
+from motionedit.core.body.in_one_loop import carried
 from motionedit.core.compiled import compiled
-from motionedit.core.kinematics import effector_positions
 from motionedit.core.units import STANDARD_LEG
 from motionedit.dataclass import dataclass
 
@@ -173,8 +173,9 @@ def find_plants(motion: Motion, poses: WorldPoses, anatomy: Anatomy, *, up: Floa
 
 def sole_tracks(poses: WorldPoses, anatomy: Anatomy) -> FloatArray:
     """Return the paths of `Anatomy.sole_points` in the world, shape (F, P, 3), clip units."""
-    paths = [effector_positions(poses, point.effector) for point in anatomy.sole_points]
-    return np.stack(paths, axis=1) if paths else np.zeros((len(poses.positions), 0, 3))
+    points = anatomy.sole_points
+    joints, offsets = np.array([point.joint for point in points], np.intp), np.array([point.offset for point in points])
+    return carried(poses, joints, offsets.reshape(-1, 3))
 
 
 def plants_of(tracks: FloatArray, anatomy: Anatomy, *, up: FloatArray, first: int, frame_time: float) -> list[Plant]:

@@ -6,12 +6,14 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from motionedit.core import rotations as rot
 from motionedit.core.compiled import compiled
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from motionedit.core.arrays import FloatArray, IntArray
+    from motionedit.core.kinematics import WorldPoses
 
 Work = Literal["ways", "products", "widest", "carried"]
 
@@ -46,3 +48,12 @@ def read_off(
     turns, which = np.ascontiguousarray(rotations, np.float64), np.ascontiguousarray(joints, np.int64)
     getattr(kernel, what)(places, turns, frames, count, first, which, len(which), given, out)
     return out
+
+
+def carried(poses: WorldPoses, joints: IntArray, points: FloatArray) -> FloatArray:
+    """Return where n points, (n, 3) in the frames of n joints, are in the world at each frame, shape (F, n, 3)."""
+    shape = (len(poses.positions), len(joints), 3)
+    found = read_off("carried", poses.positions, poses.rotations, joints, points, shape=shape)
+    if found is None:
+        return poses.positions[:, joints] + rot.rotate(poses.rotations[:, joints], points)
+    return found

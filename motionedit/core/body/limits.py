@@ -7,6 +7,7 @@ centre is the clip's own mean.
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -118,16 +119,16 @@ def limit_of(motion: Motion, joint: int, along: FloatArray, half: Range, *, firs
 def _limits(motion: Motion, joints: IntArray, along: FloatArray, halves: Sequence[Range], first: int) -> list[Limit]:
     """Return the limits of n joints whose bones are `along`, shape (n, 3)."""
     centers = _means(motion, joints, first)
-    widest, farthest = _widest(motion, joints, centers, along, first).T
+    widest = _widest(motion, joints, centers, along, first).tolist()
     return [
         Limit(
             joint,
             frozen(centers[i]),
             frozen(along[i]),
-            max(float(np.radians(half.swing)), float(widest[i])),
-            max(float(np.radians(half.twist)), float(farthest[i])),
+            max(math.radians(half.swing), swing),
+            max(math.radians(half.twist), twist),
         )
-        for i, (joint, half) in enumerate(zip(joints.tolist(), halves, strict=True))
+        for i, (joint, half, (swing, twist)) in enumerate(zip(joints.tolist(), halves, widest, strict=True))
     ]
 
 

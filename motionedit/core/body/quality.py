@@ -123,16 +123,16 @@ def foot_slide_max(tracks: FloatArray, plants: Sequence[Plant], *, up: FloatArra
 
     `tracks` (F, P, 3) are those of `sole_tracks`. For an edit the plants are those of its input.
     """
-    longer = [plant for plant in plants if plant.stop > plant.start]
-    down = frames_of(plants if len(longer) == len(plants) else longer)
+    down = frames_of(plants)
     if down is None:
         return 0.0
+    # From each frame of a plant to the next: not from its last.
     inner = np.ones(len(down.frames), dtype=np.bool_)
     inner[down.starts + down.counts - 1] = False
     frames, points = down.frames[inner], down.points[inner]
     step = tracks[frames + 1, points] - tracks[frames, points]
     level = step - (step @ up)[:, None] * up
-    return float(rot.length(level).max()) / frame_time
+    return float(rot.length(level).max(initial=0.0)) / frame_time
 
 
 def foot_drift(before: FloatArray, after: FloatArray, plants: Sequence[Plant]) -> float:

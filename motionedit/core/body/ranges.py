@@ -126,11 +126,14 @@ def bent_back(
         way = before.skeleton.chain(end).tolist()
         if joint not in axes or not touched[way[way.index(limb[0]) :]].any():
             continue
-        taken = _bend(after, limb, axes[joint])[first:]
+        bones = _bones(after, limb)
+        if (rot.cross(*bones)[first:] @ axes[joint] >= 0.0).all():
+            continue
+        taken = _bend(*bones, axes[joint])[first:]
         worst = int(np.argmin(taken))
         if taken[worst] >= -BACK:
             continue
-        own = _bend(before, limb, axes[joint])[first:]
+        own = _bend(*_bones(before, limb), axes[joint])[first:]
         degrees = min(0.0, float(own.min())) - float(taken[worst])
         if degrees > BACK:
             found.append(Beyond(joint, None, first + worst, degrees, BACK))
@@ -205,8 +208,8 @@ def _product(rotations: FloatArray, way: Sequence[int]) -> FloatArray:
     return product
 
 
-def _bend(motion: Motion, limb: tuple[int, int, int], axis: FloatArray) -> FloatArray:
-    """Return how a limb is bent, shape (F,), degrees, positive where it bends about `axis` of its joint's parent."""
+def _bones(motion: Motion, limb: tuple[int, int, int]) -> tuple[FloatArray, FloatArray]:
+    """Return the upper bone of a limb, shape (F, 3) or (3,), and the lower one, (F, 3), seen by its joint's parent."""
     top, joint, end = limb
     skeleton = motion.skeleton
     frame = int(skeleton.parents[joint])
@@ -216,7 +219,11 @@ def _bend(motion: Motion, limb: tuple[int, int, int], axis: FloatArray) -> Float
         way = skeleton.chain(frame).tolist()
         turned = _product(motion.rotations, way[way.index(top) + 1 :])
         upper = upper + rot.unrotate(turned, _path(motion, top, frame))
-    lower = rot.rotate(motion.rotations[:, joint], lower)
+    return upper, rot.rotate(motion.rotations[:, joint], lower)
+
+
+def _bend(upper: FloatArray, lower: FloatArray, axis: FloatArray) -> FloatArray:
+    """Return how a limb's bones are bent, shape (F,), degrees, positive where they are about an `axis`."""
     side = rot.cross(upper, lower)
     angle = np.arctan2(rot.length(side), rot.dot(upper, lower))
     bend: FloatArray = np.degrees(np.where(side @ axis < 0.0, -angle, angle))

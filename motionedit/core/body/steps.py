@@ -8,6 +8,7 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
+from motionedit.core.compiled import compiled
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -47,6 +48,8 @@ class Steps:
 
 def own_steps(motion: Motion, *, first: int) -> Steps:
     """Return the largest steps of a motion's local rotations; a rest pose before `first` is left out."""
+    if compiled() is not None:
+        return _steps_at_once(None, motion, first)
     joints = np.arange(len(motion.skeleton))
     return _steps(joints, lambda some: motion.rotations[first:, some], motion, first)
 
@@ -57,6 +60,8 @@ def change_steps(before: Motion, after: Motion, *, first: int) -> Steps:
     Both motions have the same frames of the same skeleton. Where both hold a rotation by the same numbers nothing
     steps, to the bit.
     """
+    if compiled() is not None:
+        return _steps_at_once(before, after, first)
     one, other = before.rotations[first:], after.rotations[first:]
     differ = np.zeros(one.shape[1:], dtype=np.bool_)
     # A few frames at a time: of a long motion all at once would take as much memory as its rotations have numbers.
@@ -69,6 +74,16 @@ def change_steps(before: Motion, after: Motion, *, first: int) -> Steps:
         return rot.between(one[:, some], other[:, some])
 
     return _steps(changed, changes, before, first)
+
+
+def _steps_at_once(before: Motion | None, after: Motion, first: int) -> Steps:
+    """Return the steps of all joints in one compiled loop: of a motion's own rotations, or of what changed them."""
+    joints = len(after.skeleton)
+    angles, frames = np.empty(joints), np.empty(joints, dtype=np.int64)
+    turns = [None if each is None else np.ascontiguousarray(each.rotations) for each in (before, after)]
+    compiled().steps(*turns, len(after), joints, first, angles, frames)
+    degrees = np.degrees(angles) / (after.frame_time * STEP_RATE)
+    return Steps(frozen(degrees), frozen(frames.astype(np.intp, copy=False)))
 
 
 def _steps(joints: IntArray, turns: Callable[[IntArray], FloatArray], motion: Motion, first: int) -> Steps:

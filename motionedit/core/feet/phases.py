@@ -5,13 +5,16 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from motionedit.core.body.contacts import sole_tracks
-from motionedit.core.feet.reach import reach_of, released
+from motionedit.core.compiled import compiled
+from motionedit.core.feet.reach import ROUNDING, reach_of, released
 from motionedit.core.feet.settled import settled
-from motionedit.core.feet.stance import feet_of, foot_path, stance_of
+from motionedit.core.feet.stance import feet_of, foot_path, spans_of, stance_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from motionedit.core.arrays import FloatArray
     from motionedit.core.body.anatomy import Anatomy
@@ -34,23 +37,55 @@ def find_phases(
 def kept(plants: Sequence[Plant], poses: WorldPoses, anatomy: Anatomy, frame_time: float) -> list[Plant]:
     """Return plants whose heels come up once the leg cannot hold them in one place any more (`released`)."""
     found: list[Plant] = []
-    shortest = max(2, round(_SHORTEST / frame_time))
+    shortest, kernel = max(2, round(_SHORTEST / frame_time)), compiled()
     for foot in feet_of(anatomy):
-        here: list[Plant | None] = [plant for plant in plants if plant.foot == foot.side]
+        own = [plant for plant in plants if plant.foot == foot.side]
         path, hip, reach = foot_path(poses, foot), poses.positions[:, foot.leg.thigh], reach_of(poses, foot)
-        asked = list(range(len(here)))
-        for _ in range(_ROUNDS):
-            before = [plant for plant in (here[i] for i in asked) if plant is not None]
-            after = _held(before, path, shortest, hip=hip, reach=reach)
-            for i, plant in zip(asked, after, strict=True):
-                here[i] = plant
-            # What hangs together with none that changed would come out as it is.
-            again = _beside_changed(before, after)
-            asked = [i for i, changed in zip(asked, again, strict=True) if changed and here[i] is not None]
-            if not asked:
-                break
-        found += [plant for plant in here if plant is not None]
+        if kernel is not None:
+            found += _kept_at_once(kernel.kept, own, path, shortest, hip=hip, reach=reach)
+        else:
+            found += _kept_in_rounds(own, path, shortest, hip=hip, reach=reach)
     return found
+
+
+def _kept_at_once(
+    work: Callable[..., None],
+    plants: Sequence[Plant],
+    path: FootPath,
+    shortest: int,
+    *,
+    hip: FloatArray,
+    reach: FloatArray,
+) -> list[Plant]:
+    """Return the plants of a foot that are left as the compiled part finds them: `_kept_in_rounds` in one call."""
+    spans = spans_of(plants)
+    given = (path.ankle, path.toe_place, path.turn, path.toe, hip, reach)
+    work(*(np.ascontiguousarray(each) for each in given), spans, len(hip), len(plants), shortest, _ROUNDS, ROUNDING)
+    stops = spans[:, 2].tolist()
+    return [
+        plant if stop == plant.stop else replace(plant, stop=stop)
+        for plant, stop in zip(plants, stops, strict=True)
+        if stop >= 0
+    ]
+
+
+def _kept_in_rounds(
+    plants: Sequence[Plant], path: FootPath, shortest: int, *, hip: FloatArray, reach: FloatArray
+) -> list[Plant]:
+    """Return the plants of a foot that are left, cut until no heel comes up any more."""
+    here: list[Plant | None] = [*plants]
+    asked = list(range(len(here)))
+    for _ in range(_ROUNDS if here else 0):
+        before = [plant for plant in (here[i] for i in asked) if plant is not None]
+        after = _held(before, path, shortest, hip=hip, reach=reach)
+        for i, plant in zip(asked, after, strict=True):
+            here[i] = plant
+        # What hangs together with none that changed would come out as it is.
+        again = _beside_changed(before, after)
+        asked = [i for i, changed in zip(asked, again, strict=True) if changed and here[i] is not None]
+        if not asked:
+            break
+    return [plant for plant in here if plant is not None]
 
 
 def _beside_changed(before: Sequence[Plant], after: Sequence[Plant | None]) -> list[bool]:

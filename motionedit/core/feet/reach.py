@@ -25,7 +25,7 @@ LOWERED_ON_PATH = 0.04  # where a path is longer than the old one, and steps wit
 # Of a leg: how far a pelvis calms knees at most, where feet keep their own places, and where they go to another's.
 CALMS_OWN, CALMS_ANOTHER = 0.01, 1.0
 _LEAST = float(np.radians(5.0))  # rad
-_ROUNDING = 1e-9
+ROUNDING = 1e-9  # of a reach
 # Rad/s, and times how fast it was about then: a knee that would bend faster beside a heel that stands is bent more.
 _CALM, _FASTER = float(np.radians(300.0)), 1.5
 _ABOUT_THEN = 0.05  # s before and after
@@ -102,7 +102,7 @@ def released(stance: Stance, hip: FloatArray, reach: FloatArray) -> Stance:
 
     A body that goes on over its foot ends a heel's plant; a strain that passes is the pelvis' to bear.
     """
-    far = stance.flat & (rot.length(hip - stance.heel_place) > reach * (1.0 + _ROUNDING))
+    far = stance.flat & (rot.length(hip - stance.heel_place) > reach * (1.0 + ROUNDING))
     if not far.any():
         return stance
     heel = stance.heel.copy()

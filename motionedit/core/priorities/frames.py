@@ -99,11 +99,14 @@ def solve_frames(
         `start` is solved itself, and not a copy, be it the reference, too: of each that is read before it is written.
     """
     solved = _unsolved(run, start, in_place=in_place)
+    travels = bool(run.motion.translations.shape[1])
+    root = np.ascontiguousarray(reference.translations[:, run.place]) if pull_root and travels else None
+    aim = Reference(reference.rotations, root)
     for group in run.groups:
         done = None if known is None else known.done[group.where]
         if done is not None and done.all():
             continue
-        _solve(run, solved, group, reference, done=done, pull_root=pull_root)
+        _solve(run, solved, group, aim, done=done)
     if known is not None:
         solved.ranks[known.done] = known.ranks[known.done]
     return solved
@@ -135,7 +138,7 @@ def solve_in_order(run: Run) -> Solved:
             motion.rotations[first, joints] = motion.rotations[first - 1, joints]
             if part.problem.moves_root:
                 motion.translations[first, run.place] = motion.translations[first - 1, run.place]
-        _solve(run, solved, part, run.motion, pull_root=False, in_order=True)
+        _solve(run, solved, part, Reference(run.motion.rotations, None), in_order=True)
         before = first + len(span) - 1
     return solved
 
@@ -176,19 +179,16 @@ def _solve(
     run: Run,
     solved: Solved,
     group: Group,
-    reference: Motion,
+    reference: Reference,
     *,
-    pull_root: bool,
     done: BoolArray | None = None,
     in_order: bool = False,
 ) -> None:
     """Solve a group's frames of `solved` from where they are, in place."""
-    travels = bool(run.motion.translations.shape[1])
-    root = np.ascontiguousarray(reference.translations[:, run.place]) if pull_root and travels else None
     solution = solve_layers(
         group.prepared,
         solved.motion,
-        Reference(reference.rotations, root),
+        reference,
         group.frames,
         done=done,
         in_order=in_order,

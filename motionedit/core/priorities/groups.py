@@ -11,7 +11,7 @@ import numpy as np
 
 from motionedit.core.priorities.continuity import NO_DISPLACEMENT
 from motionedit.core.priorities.kinds.constraint import Stage
-from motionedit.core.priorities.points import Columns
+from motionedit.core.priorities.points import columns_of
 from motionedit.core.priorities.problem import HingeColumns, LimitColumns, Problem, WeightedTask, order_of_layers
 from motionedit.core.priorities.sight import sight_of
 from motionedit.core.priorities.solver import Prepared, prepare_problem
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.kinds.constraint import Constraint, Targets
+    from motionedit.core.priorities.points import Columns
     from motionedit.core.priorities.problem import Task
     from motionedit.core.priorities.recruiting import Recruits
     from motionedit.core.priorities.settings import Body, LayeredSettings
@@ -198,23 +199,28 @@ def spans_of(frames: IntArray) -> list[IntArray]:
 
 
 def _group(asked: Asked, members: Sequence[int], frames: IntArray) -> Group:
-    joints = np.array(sorted(set().union(*(asked.recruits[i].joints for i in members))), dtype=np.intp)
-    columns = Columns(asked.motion.skeleton, joints, asked.body.travel)
+    joints = frozenset().union(*(asked.recruits[i].joints for i in members))
+    columns = columns_of(asked.motion.skeleton, joints, asked.body.travel)
+    hinges, limits, mobility = _of_columns(asked.body, columns)
     # Of one priority, what gives way is a layer below what is met.
-    softness = np.stack([asked.softness_at(i, frames) for i in members], axis=1)
-    places = [(-asked.constraints[i].priority, bool(softness[0, k] > 0.0)) for k, i in enumerate(members)]
+    soft = {i: asked.softness_at(i, frames) for i in members if asked.softness[i] is not None}
+    places = [(-asked.constraints[i].priority, i in soft and bool(soft[i][0] > 0.0)) for i in members]
     order = sorted(set(places))
     layers = tuple(tuple(i for i, place in zip(members, places, strict=True) if place == layer) for layer in order)
+    softness = np.zeros((len(frames), len(order)))
+    for k, layer in enumerate(layers):
+        if layer[0] in soft:
+            softness[:, k] = soft[layer[0]]
     problem = Problem(
         columns=columns,
         moves_root=any(asked.recruits[i].root for i in members),
         layers=_tasks(asked, layers, frames, columns),
-        hinges=_hinge_columns(asked.body, joints),
-        limits=_limit_columns(asked.body, joints),
+        hinges=hinges,
+        limits=limits,
         attraction=asked.settings.attraction,
         max_iterations=asked.settings.max_iterations,
-        mobility=_mobility(asked.body, joints),
-        softness=np.stack([softness[:, places.index(layer)] for layer in order], axis=1),
+        mobility=mobility,
+        softness=softness,
     )
     levels = asked.levels
     return Group(frames, np.array([levels.index(-priority) for priority, _ in order]), layers, prepare_problem(problem))
@@ -256,35 +262,30 @@ def _task(asked: Asked, i: int, frames: IntArray, columns: Columns) -> Task:
     return asked.constraints[i].task(asked.targets[i], stage)
 
 
-def _mobility(body: Body, joints: IntArray) -> FloatArray:
-    turns = np.ones(len(joints)) if body.mobility is None else body.mobility[joints]
-    return np.append(turns, body.root_mobility)
-
-
-def _hinge_columns(body: Body, joints: IntArray) -> HingeColumns:
-    """Return the hinges among the columns, which are `joints`."""
-    every, _ = _of_all_joints(body)
-    here = np.isin(every.places, joints)
-    return HingeColumns(
-        places=np.searchsorted(joints, every.places[here]),
-        axes=every.axes[here],
-        upper=every.upper[here],
-        lower=every.lower[here],
-        limits=every.limits[here],
-        second=every.second[here],
-    )
-
-
-def _limit_columns(body: Body, joints: IntArray) -> LimitColumns:
-    """Return the limits among the columns, which are `joints`; a hinge has its own."""
-    _, every = _of_all_joints(body)
-    here = np.isin(every.places, joints)
-    return LimitColumns(
-        places=np.searchsorted(joints, every.places[here]),
-        centers=every.centers[here],
-        along=every.along[here],
-        swing=every.swing[here],
-        twist=every.twist[here],
+@lru_cache(maxsize=2)
+def _of_columns(body: Body, columns: Columns) -> tuple[HingeColumns, LimitColumns, FloatArray]:
+    """Return the hinges among columns, the limits of those that are none, and the mobility of all and of the root."""
+    hinges, limits = _of_all_joints(body)
+    turns = np.ones(len(columns.joints)) if body.mobility is None else body.mobility[columns.joints]
+    mine, own = columns.places[hinges.places], columns.places[limits.places]
+    here, there = mine >= 0, own >= 0
+    return (
+        HingeColumns(
+            places=mine[here],
+            axes=hinges.axes[here],
+            upper=hinges.upper[here],
+            lower=hinges.lower[here],
+            limits=hinges.limits[here],
+            second=hinges.second[here],
+        ),
+        LimitColumns(
+            places=own[there],
+            centers=limits.centers[there],
+            along=limits.along[there],
+            swing=limits.swing[there],
+            twist=limits.twist[there],
+        ),
+        np.append(turns, body.root_mobility),
     )
 
 

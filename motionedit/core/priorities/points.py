@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from motionedit.core import rotations as rot
+from motionedit.core.arrays import frozen
+from motionedit.core.body.bones import below
 from motionedit.core.kinematics import Effector, WorldPoses, effector_positions
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
+    from motionedit.core.priorities.recruiting import Recruits
     from motionedit.core.skeleton import Skeleton
 
 
@@ -28,10 +32,28 @@ class Columns:
         """Number of unknowns, 3 K + 3."""
         return 3 * len(self.joints) + 3
 
+    @cached_property
+    def places(self) -> IntArray:
+        """Each joint's place among the columns, shape (J,); -1 where it is none."""
+        return frozen(places_of(self.joints, len(self.skeleton)))
+
     @property
     def root_is_free(self) -> bool:
         """Whether the root has all three position channels; it moves along those that it has."""
         return len(self.skeleton.position_axes[self.root]) == 3
+
+
+@lru_cache(maxsize=32)
+def columns_of(skeleton: Skeleton, joints: frozenset[int], root: int) -> Columns:
+    """Return the unknowns of joints and a root: the same for all clips that share a skeleton."""
+    return Columns(skeleton, frozen(np.array(sorted(joints), dtype=np.intp)), root)
+
+
+def places_of(joints: IntArray, count: int) -> IntArray:
+    """Return each joint's place among some of them, shape (count,); -1 where it is none of them."""
+    places = np.full(count, -1)
+    places[joints] = np.arange(len(joints))
+    return places
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +62,14 @@ class Recruited:
 
     joints: BoolArray
     root: bool
+
+
+@lru_cache(maxsize=64)
+def recruited_of(columns: Columns, recruits: Recruits) -> Recruited:
+    """Return which of the columns are recruited."""
+    mine = np.zeros(len(columns.skeleton), dtype=np.bool_)
+    mine[list(recruits.joints)] = True
+    return Recruited(frozen(mine[columns.joints]), recruits.root)
 
 
 def moved_by(skeleton: Skeleton, joint: int, *, itself: bool) -> BoolArray:
@@ -89,7 +119,7 @@ class Point:
     @property
     def moves_with_root(self) -> bool:
         """Whether the root's translation is recruited and moves it."""
-        return self.recruited.root and self.columns.root in self.columns.skeleton.chain(self.effector.joint)
+        return self.recruited.root and bool(below(self.columns.skeleton, self.columns.root)[self.effector.joint])
 
 
 def lever_rows(levers: FloatArray, mask: FloatArray | BoolArray, *, root: bool) -> FloatArray:

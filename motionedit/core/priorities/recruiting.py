@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING, Literal
 
 from motionedit.core.body.bones import below
@@ -53,8 +54,9 @@ class NotOnTheWayError(ValueError):
         self.joint, self.way = joint, way
 
 
+@lru_cache(maxsize=256)
 def recruit_chain(skeleton: Skeleton, rule: RecruitRule, *, start: int, travel: int) -> Recruits:
-    """Return what a constraint on an effector recruits.
+    """Return what a constraint on an effector recruits: the same for all clips that share a skeleton.
 
     Parameters
     ----------

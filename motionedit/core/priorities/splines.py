@@ -40,9 +40,11 @@ def kochanek_bartels(
         At the first and last knot, per unit of `knots`.
     at : shape (N,)
     """
-    at = np.clip(at, knots[0], knots[-1])
-    i = np.clip(np.searchsorted(knots, at, side="right") - 1, 0, len(knots) - 2)
-    into, out = _tangents(knots, values, np.stack((tension, continuity, bias)))
+    at = np.minimum(np.maximum(at, knots[0]), knots[-1])
+    i = np.minimum(np.searchsorted(knots, at, side="right") - 1, len(knots) - 2)
+    into, out = np.zeros_like(values), np.zeros_like(values)
+    if len(knots) > 2:
+        into[1:-1], out[1:-1] = _tangents(knots, values, np.stack((tension, continuity, bias)))
     out[0], into[-1] = start_tangent, end_tangent
     h = (knots[i + 1] - knots[i])[:, None]
     s = (at - knots[i])[:, None] / h
@@ -55,14 +57,13 @@ def kochanek_bartels(
 
 
 def _tangents(knots: FloatArray, values: FloatArray, shape: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the tangents into and out of each knot, per unit of the knots, shape (K, D) each; 0 at both ends."""
-    into, out = np.zeros_like(values), np.zeros_like(values)
+    """Return the tangents into and out of each inner knot, per unit of the knots, shape (K - 2, D) each."""
     h, steps = np.diff(knots)[:, None], np.diff(values, axis=0)
     before, after = steps[:-1], steps[1:]
     t, c, b = shape[:, 1:-1, None]
     # [KB84] has them per span. Per unit they are divided by the span, h0 in and h1 out, which leaves of the correction
     # for uneven knots the same factor for both.
     pull = (1.0 - t) / (h[:-1] + h[1:])
-    into[1:-1] = pull * ((1.0 - c) * (1.0 + b) * before + (1.0 + c) * (1.0 - b) * after)
-    out[1:-1] = pull * ((1.0 + c) * (1.0 + b) * before + (1.0 - c) * (1.0 - b) * after)
+    into: FloatArray = pull * ((1.0 - c) * (1.0 + b) * before + (1.0 + c) * (1.0 - b) * after)
+    out: FloatArray = pull * ((1.0 + c) * (1.0 + b) * before + (1.0 - c) * (1.0 - b) * after)
     return into, out

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -29,12 +30,13 @@ def eased_from_others(asked: Asked, smoothing: Passes) -> Run:
     """
     motion = asked.motion
     alone: dict[tuple[int, ...], Motion] = {}
+    wanted = cache(lambda others: _wanted(asked.only(others), motion))
     targets, ramps = list(asked.targets), []
     for i in range(len(targets)):
         own = list(ramps_of(asked, i))
         for k, ramp in enumerate(own):
             others = _others(asked, i, ramp)
-            if not others or not _is_moved(asked.only(others), motion, ramp.left > 0.0):
+            if not others or not wanted(others)[ramp.left > 0.0].any():
                 continue
             if others not in alone:
                 alone[others] = solve_in_passes(run_of(asked.only(others)), smoothing).state.motion
@@ -51,10 +53,11 @@ def _others(asked: Asked, i: int, ramp: Ramp) -> tuple[int, ...]:
     return tuple(k for k, span in enumerate(asked.targets) if k != i and span.first <= ramp.outside <= span.last)
 
 
-def _is_moved(asked: Asked, motion: Motion, frames: BoolArray) -> bool:
-    """Return whether constraints want anything of some frames that these do not do already."""
+def _wanted(asked: Asked, motion: Motion) -> BoolArray:
+    """Return at which frames constraints want anything that a motion does not do already, shape (F,)."""
+    wanted = np.zeros(len(motion), dtype=np.bool_)
     for errors, targets in zip(errors_of(asked, motion), asked.targets, strict=True):
         for left in (errors.positions, errors.angles):
-            if left is not None and np.any(left[frames[targets.span]] > NO_DISPLACEMENT):
-                return True
-    return False
+            if left is not None:
+                wanted[targets.span] |= left > NO_DISPLACEMENT
+    return wanted

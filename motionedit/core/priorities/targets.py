@@ -50,7 +50,7 @@ def with_targets(
     theirs = before if follows.reference is None else seen_by(constraints, follows.reference, body)
     seen = [theirs if each.follow == "reference" else before for each in constraints]
     free = [i for i, each in enumerate(constraints) if not each.waits_for_others]
-    found = {i: constraints[i].targets(Scene(seen[i], settings.curve, {}, lambda: before)) for i in free}
+    found = {i: constraints[i].targets(Scene(seen[i], settings.curve, dict, lambda: before)) for i in free}
 
     @cache
     def others() -> Sight:
@@ -61,7 +61,7 @@ def with_targets(
         solved = solve_from_input(run_of(Asked.of(motion, *own, body, settings)))
         return seen_by(constraints, solved.motion, body)
 
-    goals = _goals(constraints, found, len(motion))
+    goals = cache(lambda: _goals(constraints, found, len(motion)))
     targets = tuple(
         found[i] if i in found else each.targets(Scene(seen[i], settings.curve, goals, others))
         for i, each in enumerate(constraints)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from motionedit.core import rotations as rot
+from motionedit.core.body.contacts import sole_tracks
 from motionedit.core.body.quality import foot_drift, foot_slide_max
 from motionedit.core.feet.measures import foot_measures
 from motionedit.core.trace import Trace, trace_of
@@ -21,8 +23,8 @@ if TYPE_CHECKING:
 
 def feet_of(facts: ClipFacts, blocks: Iterable[WorldPoses], *, masses: Masses | None = None) -> Trace:
     """Return what `edit_metrics` needs of a motion whose world transforms come in blocks: the tracks are the feet's."""
-    points = [point.effector for point in facts.anatomy.sole_points]
-    return trace_of(blocks, points, frame_time=facts.clip.motion.frame_time, first=facts.first, masses=masses)
+    tracked = partial(sole_tracks, anatomy=facts.anatomy)
+    return trace_of(blocks, tracked, frame_time=facts.clip.motion.frame_time, first=facts.first, masses=masses)
 
 
 def edit_metrics(facts: ClipFacts, before: Trace, after: Trace | None, *, steps: Steps | None) -> dict[str, Any]:

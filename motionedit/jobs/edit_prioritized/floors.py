@@ -40,7 +40,7 @@ def refuse_floors_out_of_reach(
                 continue
             if scene is None:
                 before = seen_by(constraints, sized.input, sized.body)
-                scene = Scene(before, curve, {}, lambda before=before: before)  # type: ignore[misc]
+                scene = Scene(before, curve, dict, lambda before=before: before)  # type: ignore[misc]
             goal = each.goal(each.targets(scene))
             above = 0.0 if goal is None or level is None else -float(level.above(goal[1]).min())
             if above > length:

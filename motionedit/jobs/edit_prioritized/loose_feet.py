@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import BoolArray
     from motionedit.core.body.anatomy import Leg
-    from motionedit.core.body.contacts import Plant
     from motionedit.core.priorities.kinds.constraint import Constraint
     from motionedit.core.trace import Trace
     from motionedit.jobs.edit_prioritized.body import SizedClip
@@ -34,15 +33,19 @@ def loose_feet(sized: SizedClip, constraints: Sequence[Constraint], before: Trac
     before, after : Trace
         By `feet_of`.
     """
-    facts = sized.facts
+    facts, down = sized.facts, frames_of(sized.facts.phases)
+    if down is None:
+        return []
+    ways = rot.length(down.of(after.tracks) - down.of(before.tracks))
     lines = []
     for foot, leg in zip(("left", "right"), facts.anatomy.legs or (), strict=False):
-        free = ~_placed(sized, constraints, leg)
-        found = _drift(before, after, [plant for plant in facts.phases if plant.foot == foot], free)
-        if found is not None and found[0] * sized.scale > _LOOSE:
+        own = np.array([point.foot == foot for point in facts.anatomy.sole_points])[down.points]
+        loose = np.where(own & ~_placed(sized, constraints, leg)[down.frames], ways, 0.0)
+        worst = int(np.argmax(loose))
+        if loose[worst] * sized.scale > _LOOSE:
             lines.append(
-                f"the {foot} foot moves by {found[0]:.3g} at frame {found[1]} while it is planted, and no constraint "
-                "holds it"
+                f"the {foot} foot moves by {loose[worst]:.3g} at frame {down.frames[worst]} while it is planted, "
+                "and no constraint holds it"
             )
     return lines
 
@@ -56,16 +59,3 @@ def _placed(sized: SizedClip, constraints: Sequence[Constraint], leg: Leg) -> Bo
             first, last = each.active(frames)
             placed[first : last + 1] = True
     return placed
-
-
-def _drift(before: Trace, after: Trace, plants: Sequence[Plant], free: BoolArray) -> tuple[float, int] | None:
-    """Return how far a planted point goes from its place in the input at most, clip units, and at which frame.
-
-    Frames that are not `free`, shape (F,), do not count; None where none does.
-    """
-    down = frames_of(plants)
-    if down is None:
-        return None
-    way = np.where(free[down.frames], rot.length(down.of(after.tracks) - down.of(before.tracks)), -1.0)
-    worst = int(np.argmax(way))
-    return (float(way[worst]), int(down.frames[worst])) if way[worst] >= 0.0 else None

@@ -144,7 +144,7 @@ def _new_path(sized: SizedClip, constraints: Sequence[ClipConstraint], curve: Cu
         ask = each.constraint
         if ask.stands or ask.at is None or ask.at.joint != travel or np.any(ask.at.offset) or ask.waits_for_others:
             continue
-        targets = ask.targets(Scene(before, curve, {}, lambda: before))
+        targets = ask.targets(Scene(before, curve, dict, lambda: before))
         goal = ask.goal(targets)
         if goal is not None:
             shift[targets.span] = (goal[1] - before.poses.positions[targets.span, travel]) / sized.scale

@@ -11,11 +11,15 @@ from motionedit.core.body import center_of_mass as center_of_mass_module
 from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.center_of_mass import center_of_mass, find_masses
 from motionedit.core.body.quality import jerk_rms
-from motionedit.core.kinematics import Effector, forward
+from motionedit.core.kinematics import forward
 from motionedit.core.trace import blocks_of, forward_blocks, frame_blocks, trace_of
 
 HAND = skeleton_of().names.index("LeftHand")
-POINTS = [Effector(HAND, np.array([0.1, -0.3, 0.2])), Effector(1, np.zeros(3))]
+JOINTS, OFFSETS = np.array([HAND, 1]), np.array([[0.1, -0.3, 0.2], [0.0, 0.0, 0.0]])
+
+
+def tracks_of(poses):
+    return poses.positions[:, JOINTS] + rot.rotate(poses.rotations[:, JOINTS], OFFSETS)
 
 
 @pytest.fixture
@@ -34,16 +38,15 @@ def test_a_trace_by_blocks_is_that_of_the_whole_motion(moving, monkeypatch, size
     masses = find_masses(moving.skeleton, find_anatomy(moving.skeleton))
     parts = (moving.at(block) for block in frame_blocks(len(moving)))
     for blocks in (blocks_of(poses), forward_blocks(parts)):
-        found = trace_of(blocks, POINTS, frame_time=moving.frame_time, first=first, masses=masses)
-        tracks = [poses.positions[:, p.joint] + rot.rotate(poses.rotations[:, p.joint], p.offset) for p in POINTS]
-        np.testing.assert_allclose(found.tracks, np.stack(tracks, axis=1), atol=1e-12)
+        found = trace_of(blocks, tracks_of, frame_time=moving.frame_time, first=first, masses=masses)
+        np.testing.assert_allclose(found.tracks, tracks_of(poses), atol=1e-12)
         np.testing.assert_allclose(found.center, center_of_mass(poses, masses), atol=1e-12)
         assert found.jerk_rms == pytest.approx(jerk_rms(poses.positions, frame_time=moving.frame_time, first=first))
         assert found.jerk_rms > 0.0
 
 
 def test_without_masses_there_is_no_path_of_their_center(moving):
-    assert trace_of(blocks_of(forward(moving)), [], frame_time=0.01, first=0).center is None
+    assert trace_of(blocks_of(forward(moving)), tracks_of, frame_time=0.01, first=0).center is None
 
 
 @pytest.mark.parametrize("shape", [(1,), (2,), (7, 3), (8, 3)])

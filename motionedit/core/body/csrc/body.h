@@ -63,6 +63,11 @@ void widest_turns(const Poses *poses, int64_t first, const int64_t *joints, cons
 /* Where points (n, 3) in the frames of n joints are in the world at each frame: shape (F, n, 3). */
 void carry(const Poses *poses, const int64_t *joints, const double *points, int64_t count, double *out);
 
+/* The largest step of each joint's rotations (F, J, 4) from one frame to the next, from frame `first` on: rad, and the
+   frame that it leads into, (J,) each. With `before` those of before^-1 after: joints that are the same do not step. */
+void largest_steps(const double *before, const double *after, int64_t frames, int64_t joints, int64_t first,
+    double *angles, int64_t *into);
+
 /* Of positions (F, J, 3) the square of each frame's third difference, summed over joints, (F - 3,). Returns the largest
    of any joint, and at which frame and joint. */
 double squared_jerks(

@@ -166,11 +166,38 @@ static PyObject *jerks(PyObject *self, PyObject *arguments)
     return found;
 }
 
+static PyObject *steps(PyObject *self, PyObject *arguments)
+{
+    Held held = {.count = 0};
+    PyObject *given[4];
+    long long frames, joints, first;
+    Poses before, after;
+    int fits = 0;
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "OOLLLOO", given, given + 1, &frames, &joints, &first, given + 2, given + 3))
+        return NULL;
+    if (first < 0 || given[1] == Py_None)
+        return PyErr_Format(PyExc_ValueError, "no such frames, or no rotations");
+    if (poses_of(&held, Py_None, given[0], frames, joints, &before) &&
+        poses_of(&held, Py_None, given[1], frames, joints, &after)) {
+        double *angles = items_of(&held, given[2], joints, sizeof *angles, 1, "angles");
+        int64_t *into = angles == NULL ? NULL : items_of(&held, given[3], joints, sizeof *into, 1, "frames");
+        fits = into != NULL;
+        if (fits)
+            largest_steps(before.rotations, after.rotations, frames, joints, first, angles, into);
+    }
+    let_go(&held);
+    if (!fits)
+        return NULL;
+    Py_RETURN_NONE;
+}
+
 PyMethodDef body_methods[] = {
     {"ways", ways, METH_VARARGS, "Write sums of ways between joints, seen from others."},
     {"products", products, METH_VARARGS, "Write sums of products of joints' rotations."},
     {"widest", widest, METH_VARARGS, "Write how far joints swing and twist about their centers."},
     {"carried", carried, METH_VARARGS, "Write where points in joints' frames are at each frame."},
+    {"steps", steps, METH_VARARGS, "Write the largest step of each joint, and the frames into which these lead."},
     {"jerks", jerks, METH_VARARGS, "Write squared third differences; return the largest, its frame and joint."},
     {NULL, NULL, 0, NULL},
 };

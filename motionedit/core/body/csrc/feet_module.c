@@ -135,16 +135,40 @@ static PyObject *settled(PyObject *self, PyObject *arguments)
     Py_RETURN_NONE;
 }
 
+/* An array of a foot's frames, or of its plants. */
+typedef struct {
+    const char *name;
+    size_t bytes;
+    int64_t width;
+} Item;
+
+/* Where the arrays of a foot are, the plants at `plants_at` and what is written from `written` on; 0, and an error,
+   where one does not fit. */
+static int take_foot(Held *held, PyObject **given, const Item *items, int count, int plants_at, int written,
+    int64_t frames, int64_t plants, void **at)
+{
+    for (int i = 0; i < count; i++) {
+        const int64_t many = items[i].width * (i == plants_at ? plants : frames);
+        at[i] = items_of(held, given[i], many, items[i].bytes, i >= written, items[i].name);
+        if (at[i] == NULL)
+            return 0;
+    }
+    for (int64_t k = 0; k < plants; k++) {
+        const PlantSpan *plant = (const PlantSpan *)at[plants_at] + k;
+        if (plant->start < 0 || plant->start > plant->stop || plant->stop >= frames) {
+            PyErr_Format(PyExc_ValueError, "plant %lld is at no frames", (long long)k);
+            return 0;
+        }
+    }
+    return 1;
+}
+
 static PyObject *stance(PyObject *self, PyObject *arguments)
 {
     enum { ANKLE, TOE_PLACE, TURN, TOE, PLANTS, HEEL_DOWN, TOE_DOWN, HEEL_OUT, TOE_OUT, TURN_OUT, WHOLE, COUNT };
-    static const struct {
-        const char *name;
-        size_t bytes;
-        int64_t width;
-    } items[COUNT] = {{"ankle", 8, 3}, {"toe place", 8, 3}, {"turn", 8, 4}, {"toe", 8, 3}, {"plants", 8, 3},
-        {"heel down", 1, 1}, {"toe down", 1, 1}, {"heel places", 8, 3}, {"toe places", 8, 3}, {"turns", 8, 4},
-        {"stands", 8, 1}};
+    static const Item items[COUNT] = {{"ankle", 8, 3}, {"toe place", 8, 3}, {"turn", 8, 4}, {"toe", 8, 3},
+        {"plants", 8, 3}, {"heel down", 1, 1}, {"toe down", 1, 1}, {"heel places", 8, 3}, {"toe places", 8, 3},
+        {"turns", 8, 4}, {"stands", 8, 1}};
     Held held = {.count = 0};
     PyObject *given[COUNT];
     void *at[COUNT];
@@ -154,22 +178,38 @@ static PyObject *stance(PyObject *self, PyObject *arguments)
     if (!PyArg_ParseTuple(arguments, "OOOOOOOOOOOLL", given, given + 1, given + 2, given + 3, given + 4, given + 5,
             given + 6, given + 7, given + 8, given + 9, given + 10, &frames, &plants))
         return NULL;
-    int fits = 1;
-    for (int i = 0; fits && i < COUNT; i++) {
-        const int64_t count = items[i].width * (i == PLANTS ? plants : frames);
-        at[i] = items_of(&held, given[i], count, items[i].bytes, i > PLANTS, items[i].name);
-        fits = at[i] != NULL;
-    }
-    for (long long k = 0; fits && k < plants; k++) {
-        const PlantSpan *plant = (const PlantSpan *)at[PLANTS] + k;
-        fits = 0 <= plant->start && plant->start <= plant->stop && plant->stop < frames;
-        if (!fits)
-            PyErr_Format(PyExc_ValueError, "plant %lld is at no frames", k);
-    }
-    if (fits) {
+    if (take_foot(&held, given, items, COUNT, PLANTS, HEEL_DOWN, frames, plants, at)) {
         const FootTrack track = {frames, at[ANKLE], at[TOE_PLACE], at[TURN], at[TOE]};
         const StanceFound found = {at[HEEL_DOWN], at[TOE_DOWN], at[HEEL_OUT], at[TOE_OUT], at[TURN_OUT], at[WHOLE]};
         status = find_stance(&track, at[PLANTS], plants, &found);
+        if (status < 0)
+            PyErr_NoMemory();
+    }
+    let_go(&held);
+    if (status < 0)
+        return NULL;
+    Py_RETURN_NONE;
+}
+
+static PyObject *kept(PyObject *self, PyObject *arguments)
+{
+    enum { ANKLE, TOE_PLACE, TURN, TOE, HIP, REACH, PLANTS, COUNT };
+    static const Item items[COUNT] = {{"ankle", 8, 3}, {"toe place", 8, 3}, {"turn", 8, 4}, {"toe", 8, 3},
+        {"hip", 8, 3}, {"reach", 8, 1}, {"plants", 8, 3}};
+    Held held = {.count = 0};
+    PyObject *given[COUNT];
+    void *at[COUNT];
+    long long frames, plants, shortest, rounds;
+    double rounding;
+    int status = -2;
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "OOOOOOOLLLLd", given, given + 1, given + 2, given + 3, given + 4, given + 5,
+            given + 6, &frames, &plants, &shortest, &rounds, &rounding))
+        return NULL;
+    if (take_foot(&held, given, items, COUNT, PLANTS, PLANTS, frames, plants, at)) {
+        const FootTrack track = {frames, at[ANKLE], at[TOE_PLACE], at[TURN], at[TOE]};
+        const HipReach leg = {at[HIP], at[REACH], rounding};
+        status = keep_plants(&track, &leg, shortest, rounds, at[PLANTS], plants);
         if (status < 0)
             PyErr_NoMemory();
     }
@@ -184,5 +224,6 @@ PyMethodDef feet_methods[] = {
     {"foot_figures", foot_figures, METH_VARARGS, "Return how well feet stand, in seven figures."},
     {"settled", settled, METH_VARARGS, "Write which frames of plants are the first and the last that have settled."},
     {"stance", stance, METH_VARARGS, "Write where a foot stands, from the plants of its heel and its toe."},
+    {"kept", kept, METH_VARARGS, "Cut plants of a foot to what its leg can hold in one place."},
     {NULL, NULL, 0, NULL},
 };

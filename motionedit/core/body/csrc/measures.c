@@ -96,6 +96,44 @@ void carry(const Poses *poses, const int64_t *joints, const double *points, int6
         }
 }
 
+/* Beside the largest arc others may be larger by their rounding: only these are taken as angles. */
+#define NEARLY (1.0 - 1e-12)
+
+void largest_steps(const double *before, const double *after, int64_t frames, int64_t joints, int64_t first,
+    double *angles, int64_t *into)
+{
+    for (int64_t j = 0; j < joints; j++) {
+        Arc largest = {0.0, 1.0};
+        double last[4], inverse[4], turn[4];
+        int differ = before == NULL;
+        angles[j] = 0.0, into[j] = first + 1;
+        for (int64_t f = first; f < frames; f++) {
+            const double *q = after + 4 * (f * joints + j);
+            double change[4];
+            memcpy(change, q, sizeof change);
+            if (before != NULL) {
+                const double *own = before + 4 * (f * joints + j);
+                differ |= q[0] != own[0] || q[1] != own[1] || q[2] != own[2] || q[3] != own[3];
+                q_conjugate(own, inverse);
+                q_multiply(inverse, q, change);
+            }
+            if (f > first) {
+                q_conjugate(last, inverse);
+                q_multiply(inverse, change, turn);
+                const double sine = sqrt(dot(turn + 1, turn + 1)), cosine = fabs(turn[0]);
+                if (sine * largest.cosine > largest.sine * cosine * NEARLY) {
+                    const double angle = 2.0 * atan2(sine, cosine);
+                    if (angle > angles[j])
+                        angles[j] = angle, into[j] = f, largest = (Arc){sine, cosine};
+                }
+            }
+            memcpy(last, change, sizeof last);
+        }
+        if (!differ)
+            angles[j] = 0.0, into[j] = first + 1;
+    }
+}
+
 double squared_jerks(
     const double *positions, int64_t frames, int64_t joints, double *out, int64_t *frame, int64_t *joint)
 {

@@ -33,4 +33,15 @@ typedef struct {
 /* Fill in the stance of a foot from n plants, which lie within the frames; -1 where memory ran out. */
 int find_stance(const FootTrack *track, const PlantSpan *plants, int64_t count, const StanceFound *found);
 
+/* A leg's hip in the world (F, 3), and how far from it an ankle may be (F,), a rounding more by its own share. */
+typedef struct {
+    const double *hip, *reach;
+    double rounding;
+} HipReach;
+
+/* Cut plants of a foot to what the leg can hold in one place, in so many rounds at most: `stop` is then where each is
+   held to, -1 where no `shortest` frames are left of one. -1 where memory ran out. */
+int keep_plants(
+    const FootTrack *track, const HipReach *leg, int64_t shortest, int64_t rounds, PlantSpan *plants, int64_t count);
+
 #endif

@@ -78,8 +78,9 @@ class CenterOfMass(Constraint):
         before, span = scene.before, self.active(len(scene.before.motion))
         path = before.center
         if self.members:
-            now = before if self._has_goals(scene.goals, span) else scene.others()
-            path = self._mean(now.poses, scene.goals) + path - self._mean(before.poses, {})
+            goals = scene.goals()
+            now = before if self._has_goals(goals, span) else scene.others()
+            path = self._mean(now.poses, goals) + path - self._mean(before.poses, {})
         _, positions = position_targets(
             path @ self.measure.axes.T,
             self.points,

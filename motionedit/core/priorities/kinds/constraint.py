@@ -14,7 +14,7 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.kinematics import Effector
-from motionedit.core.priorities.points import Point, Recruited
+from motionedit.core.priorities.points import Point, recruited_of
 from motionedit.core.priorities.trajectories import active_interval, share_of
 from motionedit.dataclass import dataclass
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from motionedit.core.body.center_of_mass import Masses
     from motionedit.core.measure import Level
     from motionedit.core.motion import Motion
-    from motionedit.core.priorities.points import Columns
+    from motionedit.core.priorities.points import Columns, Recruited
     from motionedit.core.priorities.problem import Task
     from motionedit.core.priorities.recruiting import Recruits
     from motionedit.core.priorities.sight import Sight
@@ -169,15 +169,16 @@ class Scene:
         The input, as far as the constraints look at it.
     curve : Curve
         What the parameter of splines is.
-    goals : mapping from joints to shape (F, 3)
-        Where constraints that do not wait for others want joints in the world, nan where nothing does.
+    goals : callable
+        Returns where constraints that do not wait for others want joints in the world, a mapping from joints to shape
+        (F, 3), nan where nothing does.
     others : callable
         Returns the Sight of the motion that the constraints which do not wait for others ask for, solved once.
     """
 
     before: Sight
     curve: Curve
-    goals: Mapping[int, FloatArray]
+    goals: Callable[[], Mapping[int, FloatArray]]
     others: Callable[[], Sight]
 
 
@@ -197,9 +198,7 @@ class Stage:
     @cached_property
     def recruited(self) -> Recruited:
         """The recruited unknowns."""
-        mine = np.zeros(len(self.columns.skeleton), dtype=np.bool_)
-        mine[list(self.recruits.joints)] = True
-        return Recruited(mine[self.columns.joints], self.recruits.root)
+        return recruited_of(self.columns, self.recruits)
 
     def point(self, effector: Effector) -> Point:
         """Return an effector as the recruited unknowns move it."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
     from motionedit.core.priorities.kinds.constraint import Scene
     from motionedit.core.priorities.sight import Sight
+    from motionedit.core.skeleton import Skeleton
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -68,16 +70,13 @@ class EffectorConstraint(Constraint):
 
     def moved_by(self, movable: Movable) -> Recruits:
         """Return the ancestors of the effector and of its base, and whether the root's translation moves it."""
-        skeleton, joint = movable.skeleton, self.effector.joint
-        moved = moved_by(skeleton, joint, itself=self.own_joint_moves_it)
-        if self.base is not None:
-            # What moves both alike moves neither against the other.
-            both = moved_by(skeleton, joint, itself=False) & moved_by(skeleton, self.base, itself=False)
-            moved = (moved | moved_by(skeleton, self.base, itself=self.base_turns_it)) & ~both
-        ends = [end for end in (joint, self.base) if end is not None]
-        # The root's translation moves it where it moves one end alone.
-        shifted = [movable.travel in skeleton.chain(end) for end in ends].count(True) == 1
-        return Recruits(frozenset(map(int, np.flatnonzero(moved))), self.shifts and shifted)
+        chains = _moves(
+            movable.skeleton,
+            (self.effector.joint, self.own_joint_moves_it),
+            None if self.base is None else (self.base, self.base_turns_it),
+            movable.travel,
+        )
+        return chains if self.shifts else Recruits(chains.joints, root=False)
 
     def looked_at(self) -> frozenset[int]:
         """Return the effector's joint and its base."""
@@ -120,3 +119,17 @@ class EffectorConstraint(Constraint):
             lengths = rot.length(place - wanted)
             places = self.measure.in_world(wanted, poses)
         return ConstraintErrors(targets.first, lengths, angles, places)
+
+
+@lru_cache(maxsize=256)
+def _moves(skeleton: Skeleton, end: tuple[int, bool], base: tuple[int, bool] | None, travel: int) -> Recruits:
+    """Return what moves a point against its base: each a joint, and whether turning that joint itself does."""
+    moved = moved_by(skeleton, end[0], itself=end[1])
+    if base is not None:
+        # What moves both alike moves neither against the other.
+        both = moved_by(skeleton, end[0], itself=False) & moved_by(skeleton, base[0], itself=False)
+        moved = (moved | moved_by(skeleton, base[0], itself=base[1])) & ~both
+    ends = [each[0] for each in (end, base) if each is not None]
+    # The root's translation moves it where it moves one end alone.
+    shifted = [travel in skeleton.chain(joint) for joint in ends].count(True) == 1
+    return Recruits(frozenset(map(int, np.flatnonzero(moved))), shifted)

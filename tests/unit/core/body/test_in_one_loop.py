@@ -14,6 +14,7 @@ from motionedit.core.body.in_one_loop import read_off
 from motionedit.core.body.limits import human_limits
 from motionedit.core.body.quality import squared_jerks
 from motionedit.core.body.ranges import bent_back, beyond_range, regions_of
+from motionedit.core.body.steps import change_steps, own_steps
 from motionedit.core.compiled import compiled, solver_name
 from motionedit.core.kinematics import forward
 
@@ -29,12 +30,18 @@ def moving(seed, reach):
     return replace(motion, rotations=turns * rng.choice([-1.0, 1.0], size=(30, len(SKELETON), 1)))
 
 
+def steps_in(steps):
+    return steps.degrees, steps.frames
+
+
 def read(motion, first):
     """Return all that is read off a motion, as arrays."""
     poses, other = forward(motion), moving(99, 0.8)
     bends = find_bends(SKELETON, poses, BODY, first=first)
     limits = human_limits(motion, poses, BODY, travel=0, first=first)
     squares, *worst = squared_jerks(poses.positions)
+    partly = replace(motion, rotations=motion.rotations.copy())
+    partly.rotations[:, 1::2] = other.rotations[:, 1::2]
     touched = {"first": first, "touched": np.ones(len(SKELETON), bool)}
     beyond = beyond_range(motion, other, regions_of(SKELETON, BODY, travel=0), **touched)
     back = bent_back(motion, other, BODY, bends, **touched)
@@ -43,6 +50,8 @@ def read(motion, first):
         *(np.array([*limit.center, *limit.along, limit.swing, limit.twist]) for limit in limits),
         *(center_of_mass(poses, find_masses(SKELETON, BODY)), squares, np.array(worst)),
         np.array([(each.joint, each.frame, each.degrees) for each in (*beyond, *back)]),
+        *steps_in(own_steps(motion, first=first)),
+        *steps_in(change_steps(motion, partly, first=first)),
     ]
 
 
@@ -82,3 +91,7 @@ def test_joints_and_arrays_that_are_none_are_an_error_and_no_crash():
         compiled().jerks(places, 2, 2, np.zeros(0))
     with pytest.raises(ValueError, match="results: 8 bytes do not fit"):
         compiled().jerks(places, 5, 2, np.zeros(1))
+    with pytest.raises(ValueError, match="no rotations"):
+        compiled().steps(turns, None, 5, 2, 0, np.zeros(2), np.zeros(2, int))
+    with pytest.raises(ValueError, match="frames: 8 bytes do not fit"):
+        compiled().steps(None, turns, 5, 2, 0, np.zeros(2), np.zeros(1, int))

@@ -9,6 +9,7 @@ from human import skeleton_of
 from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.contacts import Plant
 from motionedit.core.compiled import compiled, solver_name
+from motionedit.core.feet.phases import _kept_at_once, _kept_in_rounds
 from motionedit.core.feet.settled import settled
 from motionedit.core.feet.stance import FootPath, stance_of
 
@@ -59,6 +60,17 @@ def test_compiled_plants_settle_as_those_of_numpy(seed, monkeypatch):
     assert found == settled(asked, tracks, BODY, **how)
 
 
+@pytest.mark.compiled
+@pytest.mark.parametrize("seed", range(20))
+def test_compiled_plants_are_kept_as_those_of_numpy(seed, monkeypatch):
+    rng = np.random.default_rng(seed)
+    path, asked = foot(rng, 40), plants(rng, 40) if seed else []
+    leg = {"hip": rng.normal(size=(40, 3)), "reach": rng.uniform(0.2, 2.0, size=40)}
+    found = _kept_at_once(compiled().kept, asked, path, 2, **leg)
+    monkeypatch.setenv("MOTIONEDIT_SOLVER", "numpy")
+    assert found == _kept_in_rounds(asked, path, 2, **leg)
+
+
 @pytest.mark.skipif(solver_name() == "numpy", reason="nothing compiled here")
 def test_counts_that_are_not_those_of_the_places_are_an_error_and_no_crash():
     for counts in ([3, 3], [5, 0], [-1, 6]):
@@ -76,5 +88,7 @@ def test_plants_beyond_the_frames_and_arrays_of_another_size_are_an_error_and_no
     for span in ((0, 0, 5), (1, -1, 2), (0, 3, 2)):
         with pytest.raises(ValueError, match="plant 0 is at no frames"):
             compiled().stance(*given, np.array([span]), *out, 5, 1)
+        with pytest.raises(ValueError, match="plant 0 is at no frames"):
+            compiled().kept(*given, three, np.zeros(5), np.array([span]), 5, 1, 2, 6, 0.0)
     with pytest.raises(ValueError, match="turn: 120 bytes do not fit"):
         compiled().stance(three, three, three, three, np.zeros((0, 3), np.int64), *out, 5, 0)
