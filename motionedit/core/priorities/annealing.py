@@ -1,8 +1,9 @@
 """When a frame's iterations come to their end: the pull and the lower layers' steps are then halved each time.
 
-That is so over the last iterations there are, and earlier where what is missed stays missed: the error of the most
-important layer that shall be met, and is not, no longer changes once steps are steady. Limits of joints are met slowly;
-with them nothing ends early.
+That is so over the last iterations there are, and earlier where what is missed stays missed: once steps are steady, the
+error of the most important layer that shall be met, and is far from it, no longer changes. The first layer, which is
+never annealed, is not waited for. Where all that is missed gives way, its errors no longer change. Limits of joints are
+met slowly: with them nothing ends early.
 """
 
 from __future__ import annotations
@@ -42,14 +43,16 @@ class Annealing:
             Not 0 where a layer gives way: it need not be met.
         """
         far, before = errors > MET_WITHOUT_LIMITS, self._errors[frames]
-        missed, gives_way = far & (softness == 0.0), softness > 0.0
-        changed = missed & ((errors < FAR_ERROR) | (errors < SAME_ERROR * before) | (before < SAME_ERROR * errors))
+        missed, soft = far & (softness == 0.0), far & (softness > 0.0)
+        differs = (errors < SAME_ERROR * before) | (before < SAME_ERROR * errors)
+        changed = missed & (differs | (errors < FAR_ERROR))
         decides = missed.copy()
         decides[:, 0] &= ~changed[:, 0]
         decides &= np.cumsum(decides, axis=1) == 1
         changed[:, 1:] &= decides[:, 1:]
-        self._errors[frames] = np.where(changed, errors, before)
-        stays = (decides & ~changed).any(axis=1) | ((far & gives_way).any(axis=1) & ~missed.any(axis=1))
+        self._errors[frames] = np.where(changed | (soft & differs), errors, before)
+        rests = soft.any(axis=1) & ~(soft & differs).any(axis=1) & ~missed.any(axis=1)
+        stays = (decides & ~changed).any(axis=1) | rests
         stays &= iteration >= HASTY_ITERATIONS and not self._limited
         self._stale[frames] = np.where(stays, self._stale[frames] + 1, 0)
         early = self._stale[frames] >= STALE_ITERATIONS

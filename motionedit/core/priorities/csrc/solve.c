@@ -144,20 +144,20 @@ static void watch_errors(Batch *batch)
     const Constants *constants = &batch->problem->constants;
     const double same = constants->same_error;
     const V *left = left_errors(batch);
-    Mask missed = ~everywhere(), soft = missed, decided = missed, changes = missed;
+    Mask missed = ~everywhere(), soft = missed, decided = missed, changes = missed, soft_changes = missed;
     for (int l = 0; l < batch->problem->of.layers; l++) {
         Layer *layer = batch->layers + l;
         const V size = layer->held > 0 ? length(batch->held_errors + layer->joints[0].error, 3 * layer->held)
                                        : length(left + layer->first, layer->rows);
         const Mask far = less(all(constants->met_without_limits), size), gives_way = less(all(0.0), layer->soft);
-        const Mask here = far & ~gives_way & ~decided;
-        const Mask changed = here & (less(size, all(constants->far_error)) | less(size, same * layer->error) |
-                                        less(layer->error, same * size));
-        layer->error = choose(changed, size, layer->error);
-        missed |= here, soft |= far & gives_way;
+        const Mask here = far & ~gives_way & ~decided, here_soft = far & gives_way;
+        const Mask differs = less(size, same * layer->error) | less(layer->error, same * size);
+        const Mask changed = here & (differs | less(size, all(constants->far_error)));
+        layer->error = choose(changed | (here_soft & differs), size, layer->error);
+        missed |= here, soft |= here_soft, soft_changes |= here_soft & differs;
         decided |= l == 0 ? here & ~changed : here, changes |= l == 0 ? ~everywhere() : changed;
     }
-    const Mask stays = (decided & ~changes) | (soft & ~missed);
+    const Mask stays = (decided & ~changes) | (soft & ~soft_changes & ~missed);
     batch->stale = only(batch->steady & ~batch->limited & stays, batch->stale + 1.0);
 }
 
