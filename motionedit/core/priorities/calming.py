@@ -21,7 +21,7 @@ from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray
-    from motionedit.core.priorities.frames import Run, Solved
+    from motionedit.core.priorities.frames import Solved
     from motionedit.core.priorities.giving_way import Reached
     from motionedit.core.priorities.groups import Asked
     from motionedit.core.priorities.settings import Passes
@@ -37,21 +37,31 @@ _MORE, _PLAINLY = 1.1, 1.2
 def calmed(found: Reached, smoothing: Passes) -> Solved:
     """Return an edit's solution in which what need not be met gives way where a viewer would see something."""
     seen = seen_of(found.run, found.state.motion, steps=found.state.steps)
-    last, asked = _steadied(found.run, _Layers(found.run.asked, found.state, seen), smoothing), found.run.asked
-    if not last.seen.much.any():
-        return last.state
+    layers = _Layers(found.run.asked, found.state, seen)
+    return _steadied(_calmed(found, layers, smoothing) if seen.much.any() else layers, smoothing).state
+
+
+def _calmed(found: Reached, last: _Layers, smoothing: Passes) -> _Layers:
+    """Return the layers of an edit, `last` being all of them, in which what need not be met gives way."""
+    asked = last.asked
     before = np.zeros(len(asked.motion))
     for level in asked.levels:
         here = down_to(level, asked)
         above = asked.only(here)
-        is_last = asked is last.asked and level == asked.levels[-1]
-        layers = last if is_last else _solved(above, smoothing)
+        # As long as nothing has given way further, layers are what they would be if there were none below them.
+        is_as_found = asked is last.asked
+        if is_as_found and level == asked.levels[-1]:
+            layers = last
+        elif is_as_found and level in found.along:
+            layers = _smooth(above, found.along[level], smoothing)
+        else:
+            layers = _solved(above, smoothing)
         if level != asked.levels[0]:
             calm = _calmest(layers, members_of(level, above), before, smoothing)
             asked = asked if calm is layers else with_paths(asked, calm.asked, here)
             layers = calm
         before = np.maximum(before, layers.seen.much)
-    return layers.state
+    return layers
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,17 +78,16 @@ class _Layers:
         return np.where(much > _MORE * before, much, 0.0)
 
 
-def _steadied(run: Run, layers: _Layers, smoothing: Passes) -> _Layers:
+def _steadied(layers: _Layers, smoothing: Passes) -> _Layers:
     """Return the same layers as they are, or passed once more with a root that shifts less, which may jerk less.
 
     Passes correct little, frame by frame, and what the root corrects all joints do.
     """
-    body = run.asked.body
+    body = layers.asked.body
     if layers.seen.jerk < _UNSTEADY or body.mobility is None:
         return layers
-    firm = run_of(replace(run.asked, body=replace(body, root_mobility=_FIRM * body.root_mobility)))
-    state = in_passes(firm, _copied(layers.state), smoothing)
-    new = _Layers(layers.asked, state, seen_of(run, state.motion, steps=state.steps))
+    firm = replace(layers.asked, body=replace(body, root_mobility=_FIRM * body.root_mobility))
+    new = _smooth(firm, _copied(layers.state), smoothing)
     is_steadier = new.seen.jerk < layers.seen.jerk and new.seen.much.max() <= layers.seen.much.max()
     return new if is_steadier else layers
 

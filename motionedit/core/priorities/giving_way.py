@@ -44,15 +44,20 @@ _SMOOTHER = 1.5
 
 @dataclass(frozen=True, eq=False)
 class Reached:
-    """An edit whose goals can be reached: how it is solved, and its smooth solution."""
+    """An edit whose goals can be reached: how it is solved, and its smooth solution.
+
+    `along` has those of the layers down to each that gave way and has others below it, by priority: before they are
+    passed over toward their paths.
+    """
 
     run: Run
     state: Solved
+    along: Mapping[int, Solved]
 
 
 def within_reach(run: Run, state: Solved, smoothing: Passes) -> Reached:
     """Return an edit with goals that can be reached, and its smooth solution, from the solution of what was asked."""
-    asked = run.asked
+    asked, along = run.asked, {}
     for place, level in enumerate(asked.levels):
         # A frame in which anything is missed is not solved on with limits: how far those reach shows without it.
         unsure = state.left[:, place if not asked.body.limits else slice(place, None)]
@@ -71,12 +76,12 @@ def within_reach(run: Run, state: Solved, smoothing: Passes) -> Reached:
             missed = _missed(above, members, bent_where_missed(part, alone).motion) & unsure
         if not missed.any():
             continue
-        above, along = given_way(above, dict(zip(members, missed, strict=True)), smoothing)
+        above, along[level] = given_way(above, dict(zip(members, missed, strict=True)), smoothing)
         asked = with_paths(asked, above, here)
         run = run_of(asked)
         goes_on = smoothing.count and level == asked.levels[-1]
-        state = along if goes_on else bent_where_missed(run, solve_from_input(run))
-    return Reached(run, in_passes(run, state, smoothing))
+        state = along.pop(level) if goes_on else bent_where_missed(run, solve_from_input(run))
+    return Reached(run, in_passes(run, state, smoothing), along)
 
 
 def down_to(level: int, asked: Asked) -> list[int]:
