@@ -53,6 +53,17 @@ def test_layers_that_give_way_need_not_be_met():
     assert first_annealed(lambda i: (0.5, 0.97**i), (0.01, 0.0)) == LAST
 
 
+def test_what_gives_way_is_over_once_it_is_annealed():
+    annealing, frames = Annealing(2, 1, MOST, limited=False), np.arange(2)
+    soft = np.array([[0.01], [0.0]])
+    over = []
+    for i in range(MOST):
+        annealing.factors(frames, np.full((2, 1), 0.5), soft, i)
+        over.append(annealing.are_over(frames, soft, i))
+    assert np.flatnonzero(np.array(over)[:, 0])[0] == EARLY + ANNEALED_ITERATIONS - 1
+    assert not np.array(over)[:, 1].any()
+
+
 def test_the_first_layer_is_not_waited_for_but_may_be_out_of_reach_itself():
     assert first_annealed(lambda _: (0.5, 0.0), top=0.9) == EARLY
     assert first_annealed(lambda _: (0.0, 0.0), top=0.9) == LAST
