@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import cached_property, lru_cache
 from itertools import chain
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -28,6 +28,9 @@ if TYPE_CHECKING:
     from motionedit.core.priorities.recruiting import Recruits
     from motionedit.core.priorities.settings import Body, LayeredSettings
     from motionedit.core.priorities.sight import Sight
+
+
+_Told = TypeVar("_Told", HingeColumns, LimitColumns)
 
 
 @dataclass(frozen=True, eq=False)
@@ -267,26 +270,15 @@ def _of_columns(body: Body, columns: Columns) -> tuple[HingeColumns, LimitColumn
     """Return the hinges among columns, the limits of those that are none, and the mobility of all and of the root."""
     hinges, limits = _of_all_joints(body)
     turns = np.ones(len(columns.joints)) if body.mobility is None else body.mobility[columns.joints]
-    mine, own = columns.places[hinges.places], columns.places[limits.places]
-    here, there = mine >= 0, own >= 0
-    return (
-        HingeColumns(
-            places=mine[here],
-            axes=hinges.axes[here],
-            upper=hinges.upper[here],
-            lower=hinges.lower[here],
-            limits=hinges.limits[here],
-            second=hinges.second[here],
-        ),
-        LimitColumns(
-            places=own[there],
-            centers=limits.centers[there],
-            along=limits.along[there],
-            swing=limits.swing[there],
-            twist=limits.twist[there],
-        ),
-        np.append(turns, body.root_mobility),
-    )
+    return _among(columns, hinges), _among(columns, limits), np.append(turns, body.root_mobility)
+
+
+def _among(columns: Columns, every: _Told) -> _Told:
+    """Return what is told of joints, by their `places`, of those that are columns alone, and by theirs."""
+    places = columns.places[every.places]
+    kept = places >= 0
+    told = {each.name: getattr(every, each.name)[kept] for each in fields(every)}
+    return type(every)(**{**told, "places": places[kept]})
 
 
 @lru_cache(maxsize=2)
