@@ -46,7 +46,7 @@ class Seen:
 
 def seen_of(run: Run, after: Motion, *, steps: FloatArray | None = None) -> Seen:
     """Return what a viewer sees of an edited motion, of which `steps_at` may be known."""
-    return Seen((steps_at(run, after) if steps is None else steps) / _step(run), *_jerks_of(run, after))
+    return Seen((steps_at(run, after) if steps is None else steps) / _step(run), *jerks_of(run, after))
 
 
 def _step(run: Run) -> float:
@@ -84,13 +84,10 @@ def steps_at(run: Run, after: Motion, *, within: FloatArray | None = None) -> Fl
     return found
 
 
-def jerks_at(run: Run, after: Motion) -> FloatArray:
-    """Return by how much of what a viewer sees the body jerks at each frame, 0 where he does not, shape (F,)."""
-    return _jerks_of(run, after)[0]
+def jerks_of(run: Run, after: Motion) -> tuple[FloatArray, float]:
+    """Return by how much of what a viewer sees the body jerks at each frame, and how much all in all times the input.
 
-
-def _jerks_of(run: Run, after: Motion) -> tuple[FloatArray, float]:
-    """Return how much the body jerks at each frame, as `jerks_at`, and all in all, times the input.
+    The former, shape (F,), is 0 where he does not see it.
 
     The jerk of a frame is that of all joints, sqrt(mean |p(f+3) - 3 p(f+2) + 3 p(f+1) - p(f)|^2), over ten times the
     root mean square of the input's.

@@ -267,11 +267,14 @@ static int is_over(const Batch *batch, int lane)
 {
     const Problem *problem = batch->problem;
     const int64_t iteration = batch->iteration[lane];
-    int soft = 0;
+    if (iteration == problem->of.max_iterations)
+        return 1;
+    if (iteration != batch->annealed_from[lane] + problem->constants.annealed_iterations)
+        return 0;
     for (int64_t l = 0; l < problem->of.layers; l++)
-        soft |= LANE(batch->layers[l].soft, lane) > 0.0;
-    return iteration == problem->of.max_iterations ||
-           (soft && iteration == batch->annealed_from[lane] + problem->constants.annealed_iterations);
+        if (LANE(batch->layers[l].soft, lane) > 0.0)
+            return 1;
+    return 0;
 }
 
 /* End the frames that turn out to be met, or have had all their iterations. */

@@ -10,7 +10,7 @@ from motionedit.core.motion import Motion
 from motionedit.core.priorities.edit import prepare
 from motionedit.core.priorities.passes import solve_in_passes
 from motionedit.core.priorities.settings import LayeredSettings, Passes
-from motionedit.core.priorities.visible import jerks_at, seen_of, steps_at
+from motionedit.core.priorities.visible import jerks_of, seen_of, steps_at
 
 FRAMES = 90
 MOTION = swaying(FRAMES)
@@ -55,7 +55,7 @@ def test_a_clip_of_few_frames_jerks_nowhere():
     short = MOTION.at(slice(0, 3))
     assert not seen_of(prepared(short), short).much.any()
     four = MOTION.at(slice(0, 4))
-    assert list(np.flatnonzero(jerks_at(prepared(four), turned(30.0, [1], "Hips", four)))) == [1, 2]
+    assert list(np.flatnonzero(jerks_of(prepared(four), turned(30.0, [1], "Hips", four))[0])) == [1, 2]
 
 
 def looked_at(frames, degrees=30.0, within=None):
@@ -84,7 +84,7 @@ def test_a_joint_that_steps_by_itself_may_step_as_much_once_more():
 
 
 def test_a_jerk_is_seen_in_the_middle_of_its_frames():
-    found = jerks_at(prepared(), turned(30.0, [40], "Hips"))
+    found = jerks_of(prepared(), turned(30.0, [40], "Hips"))[0]
     assert list(np.flatnonzero(found)) == [38, 39, 40, 41, 42]
     np.testing.assert_allclose(found[38:40], found[42:40:-1], rtol=0.05)
 
@@ -92,14 +92,14 @@ def test_a_jerk_is_seen_in_the_middle_of_its_frames():
 def test_a_frame_that_jerks_twice_as_much_as_it_did_is_seen_and_no_less():
     own = turned(30.0, [40], "Hips")
     run = prepared(own)
-    assert not jerks_at(run, turned(25.0, [40], "Hips", own)).any()
-    assert jerks_at(run, turned(60.0, [40], "Hips", own)).any()
+    assert not jerks_of(run, turned(25.0, [40], "Hips", own))[0].any()
+    assert jerks_of(run, turned(60.0, [40], "Hips", own))[0].any()
 
 
 @pytest.mark.parametrize("block", [7, 30])
 def test_a_long_motion_is_seen_as_a_short_one_block_by_block(monkeypatch, block):
     run, after = prepared(), turned(30.0, [13, 14, 60])
-    steps, jerks = steps_at(run, after), jerks_at(run, after)
+    steps, jerks = steps_at(run, after), jerks_of(run, after)[0]
     monkeypatch.setattr(trace, "BLOCK_FRAMES", block)
     np.testing.assert_array_equal(steps_at(run, after), steps)
-    np.testing.assert_allclose(jerks_at(run, after), jerks, rtol=1e-12)
+    np.testing.assert_allclose(jerks_of(run, after)[0], jerks, rtol=1e-12)
