@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motionedit.core.priorities.frames import Known, run_of, solve_from_input
+from motionedit.core.priorities.frames import Known, run_of, solve_frames, solve_from_input
 from motionedit.core.priorities.ramps import ending_in
 from motionedit.core.priorities.shares import shares_of
 from motionedit.core.priorities.smoothing import in_passes
@@ -101,7 +101,12 @@ def _missed(asked: Asked, which: list[int], motion: Motion) -> BoolArray:
 
 
 def given_way(
-    above: Asked, missed: Mapping[int, BoolArray], smoothing: Passes, *, further: float = 1.0
+    above: Asked,
+    missed: Mapping[int, BoolArray],
+    smoothing: Passes,
+    *,
+    further: float = 1.0,
+    start: Motion | None = None,
 ) -> tuple[Asked, Solved]:
     """Return what is asked of a motion with paths that can be reached for constraints that are missed at frames (F,).
 
@@ -121,7 +126,7 @@ def given_way(
         return run.aimed_at(toward(soft, original, shares, smooth))
 
     run = run_of(soft)
-    state = solve_from_input(run)
+    state = solve_from_input(run) if start is None else solve_frames(run, start, reference=motion, pull_root=False)
     state = in_passes(run, state, replace(smoothing, sigma=_SMOOTHER * further * smoothing.sigma), aimed=aimed)
     everywhere = {k: np.ceil(share) for k, share in shares.items()}
     led = ending_in(above, state.ends, shares)
