@@ -79,8 +79,12 @@ def within_reach(run: Run, state: Solved, smoothing: Passes) -> Reached:
         above, along[level] = given_way(above, dict(zip(members, missed, strict=True)), smoothing)
         asked = with_paths(asked, above, here)
         run = run_of(asked)
-        goes_on = smoothing.count and level == asked.levels[-1]
-        state = along.pop(level) if goes_on else bent_where_missed(run, solve_from_input(run))
+        if smoothing.count and level == asked.levels[-1]:
+            state = along.pop(level)
+        else:
+            start = along[level].motion
+            state = solve_frames(run, start, reference=run.motion, pull_root=False)
+            state = bent_where_missed(run, state)
     return Reached(run, in_passes(run, state, smoothing), along)
 
 
