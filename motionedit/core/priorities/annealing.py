@@ -1,4 +1,4 @@
-"""When a frame's iterations come to their end: the pull and the lower layers' steps are then halved each time.
+"""When a frame's iterations come to their end: the pull and the lower layers' steps are then quartered each time.
 
 That is so over the last iterations there are, and earlier where what is missed stays missed: once steps are steady, the
 error of the most important layer that shall be met, and is far from it, no longer changes. The first layer, which is
@@ -48,7 +48,7 @@ class Annealing:
         return factors
 
     def _watch(self, frames: IntArray, errors: FloatArray, softness: FloatArray, iteration: int) -> None:
-        """Count the iterations in which what is missed stays so; the last hasty one is what the first is held against."""
+        """Count the iterations in which what is missed stays so: the first is held against the last hasty one."""
         far, before = errors > MET_WITHOUT_LIMITS, self._errors[frames]
         missed, soft = far & (softness == 0.0), far & (softness > 0.0)
         differs = (errors < SAME_ERROR * before) | (before < SAME_ERROR * errors)

@@ -321,6 +321,7 @@ int solve_frames(const Problem *problem, int64_t begin, int64_t end)
     if (memory == NULL)
         return -1;
     lay_out(&batch, memory + sizeof(V) - (uintptr_t)memory % sizeof(V));
+    set_identity(&batch);
     share_masses(&batch);
     for (int lane = 0; lane < LANES; lane++) {
         load(&batch, lane, begin); /* so that a lane without a frame has numbers, too */
