@@ -17,6 +17,9 @@
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
@@ -511,6 +514,35 @@ static PyObject *sums_of_euler(PyObject *self, PyObject *arguments)
     Py_RETURN_NONE;
 }
 
+static PyObject *lay_rows(PyObject *self, PyObject *arguments)
+{
+    enum { TRACKS, COLUMNS, OUT, COUNT };
+    Py_buffer b[COUNT] = {{0}};
+    long long frames;
+    double factor;
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "y*y*Ldw*", b, b + 1, &frames, &factor, b + 2))
+        return NULL;
+    const int64_t count = b[COLUMNS].len / (Py_ssize_t)sizeof(int64_t), *columns = b[COLUMNS].buf;
+    const int64_t width = frames > 0 ? b[OUT].len / (Py_ssize_t)sizeof(double) / frames : 0;
+    int fits = has_size(b + TRACKS, count * frames, sizeof(double), "tracks") &&
+               has_size(b + OUT, width * frames, sizeof(double), "rows");
+    for (int64_t i = 0; fits && i < count; i++)
+        if (columns[i] < 0 || columns[i] >= width) {
+            PyErr_Format(PyExc_ValueError, "rows have %lld columns", (long long)width);
+            fits = 0;
+        }
+    if (fits) {
+        Py_BEGIN_ALLOW_THREADS rows_of_tracks(b[TRACKS].buf, columns, count, frames, factor, b[OUT].buf, width);
+        Py_END_ALLOW_THREADS
+    }
+    for (int i = 0; i < COUNT; i++)
+        PyBuffer_Release(b + i);
+    if (!fits)
+        return NULL;
+    Py_RETURN_NONE;
+}
+
 /* Whether each run is of a joint that there is, and of frames that it has. */
 static int are_runs(const int64_t *runs, int64_t count, int64_t joints, int64_t frames)
 {
@@ -666,6 +698,26 @@ static PyObject *keep_memory(PyObject *self, PyObject *arguments)
     Py_RETURN_NONE;
 }
 
+/* Bytes that are not yet written, for a stream. Of many the system is asked for large pages, as numpy does for its arrays:
+   to be given small ones, one by one, takes longer than to read or to write a file. */
+static PyObject *room(PyObject *self, PyObject *arguments)
+{
+    Py_ssize_t count;
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "n", &count))
+        return NULL;
+    PyObject *bytes = PyBytes_FromStringAndSize(NULL, count);
+#ifdef MADV_HUGEPAGE
+    enum { PAGE = 1 << 12, MANY = 1 << 22 };
+    if (bytes != NULL && count >= MANY) {
+        char *const start = PyBytes_AsString(bytes);
+        const size_t before = (size_t)(PAGE - (uintptr_t)start % PAGE);
+        (void)madvise(start + before, (size_t)count - before, MADV_HUGEPAGE);
+    }
+#endif
+    return bytes;
+}
+
 /* To ask `os.environ` takes fifteen times as long, and whoever changes that changes this. */
 static PyObject *is_set(PyObject *self, PyObject *arguments)
 {
@@ -685,6 +737,7 @@ static PyMethodDef methods[] = {
     {"smooth", smooth, METH_VARARGS, "Write rotations plus their low-passed displacement."},
     {"low_pass", low_pass_rows, METH_VARARGS, "Write rows smoothed over frames."},
     {"keep_memory", keep_memory, METH_VARARGS, "Keep memory that was let go of, but for large arrays (glibc alone)."},
+    {"room", room, METH_VARARGS, "Return so many bytes that are not yet written, for a stream."},
     {"is_set", is_set, METH_VARARGS, "Return whether a variable of the environment has a value."},
     {"multiply", multiply, METH_VARARGS,
         "Write the products of quaternions; False where they lie otherwise in memory."},
@@ -700,6 +753,7 @@ static PyMethodDef methods[] = {
         "Write the quaternions of three turns, given the tangents of half their angles."},
     {"euler_sums", sums_of_euler, METH_VARARGS,
         "Write the sines, cosines and lengths that the Euler angles of some joints are arc tangents of."},
+    {"rows_of_tracks", lay_rows, METH_VARARGS, "Write tracks, times a factor, as columns of rows."},
     {"nearest_angles", make_continuous, METH_VARARGS, "Make runs of Euler angles continuous, in place."},
     {"rows_from_text", rows_from_text, METH_VARARGS,
         "Read rows of numbers; return how many and the most decimals, or None where it is no such text."},
