@@ -94,12 +94,27 @@ def recruit(
     RecruitingError
         With ``error``, at the first breach.
     """
-    skeleton, frames = motion.skeleton, len(motion)
-    turnable = _turnable(skeleton, body.travel)
-    carriers = _carriers(skeleton, tuple(np.flatnonzero(body.masses.shares > 0.0).tolist()))
-    movable = Movable(skeleton, body.travel, carriers & turnable)
+    heavy = tuple(np.flatnonzero(body.masses.shares > 0.0).tolist())
+    given = (tuple(constraints), motion.skeleton, body.travel, heavy)
+    # Goals of feet are a clip's own, and as long.
+    find = _recruit if any(each.stands for each in constraints) else _recruit_again
+    asked, found = find(*given, frames=len(motion), rule=rule)
+    return [*asked], [*found]
+
+
+def _recruit(
+    constraints: tuple[Constraint, ...],
+    skeleton: Skeleton,
+    travel: int,
+    heavy: tuple[int, ...],
+    *,
+    frames: int,
+    rule: RecruitingRule,
+) -> tuple[list[Recruits], list[Breach]]:
+    turnable, carriers = _turnable(skeleton, travel), _carriers(skeleton, heavy)
+    movable = Movable(skeleton, travel, carriers & turnable)
     asked = [each.recruits(movable) for each in constraints]
-    travels = bool(skeleton.position_axes[body.travel])
+    travels = bool(skeleton.position_axes[travel])
     asked = [Recruits(frozenset(each.joints & turnable), each.root and travels) for each in asked]
     reaches = [
         Reach(moved.joints, moved.root, *each.active(frames))
@@ -113,6 +128,10 @@ def recruit(
     if found and rule == "error":
         raise RecruitingError(found[0])
     return asked, found
+
+
+# The clips of a folder that share a skeleton mostly share their constraints, too.
+_recruit_again = lru_cache(maxsize=4)(_recruit)
 
 
 @lru_cache(maxsize=8)

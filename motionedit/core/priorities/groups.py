@@ -142,8 +142,8 @@ class Group:
 
 def seen_by(constraints: Sequence[Constraint], motion: Motion, body: Body) -> Sight:
     """Return what some constraints look at in a motion."""
-    joints = frozenset().union(*(each.looked_at() for each in constraints))
-    return sight_of(motion, joints, body.masses if any(each.weighs for each in constraints) else None)
+    masses = body.masses if any(each.weighs for each in constraints) else None
+    return sight_of(motion, lambda: frozenset().union(*(each.looked_at() for each in constraints)), masses)
 
 
 def groups_of(asked: Asked) -> tuple[Group, ...]:

@@ -139,7 +139,7 @@ def _stances(
 def _new_path(sized: SizedClip, constraints: Sequence[ClipConstraint], curve: Curve) -> NewPath:
     """Return where positions asked of the joint that carries the travel take the body, clip units."""
     shift, travel = np.zeros((len(sized.motion), 3)), sized.facts.travel
-    before = sight_of(sized.motion, [travel], None)
+    before = sight_of(sized.motion, lambda: [travel], None)
     for each in constraints:
         ask = each.constraint
         if ask.stands or ask.at is None or ask.at.joint != travel or np.any(ask.at.offset) or ask.waits_for_others:
