@@ -74,9 +74,12 @@ def touched_pieces(motion: Motion, touched: BoolArray, *, given: GivenRows, size
             angles, seeds, plain = _angles_of(tracks, columns, runs, values, out=out)
             if len(motion) <= size:
                 # In place: no piece is followed by another that begins from its end.
-                degrees, plain = np.degrees(angles, out=angles), np.zeros_like(plain)
-            else:
-                degrees = angles if plain.all() else np.degrees(angles)
+                degrees = np.degrees(angles, out=angles)
+                for i, (k, start, stop) in enumerate(runs.tolist()):
+                    piece = Piece(start, stop, seeds[i], degrees[k, :, start:stop].T)
+                    pieces.setdefault(int(joints[k]), []).append(piece)
+                continue
+            degrees = angles if plain.all() else np.degrees(angles)
             for i, (k, start, stop) in enumerate(runs.tolist()):
                 keep, seed = not plain[i], seeds[i]
                 for one, other in pairwise((start, *range((start // size + 1) * size, stop, size), stop)):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -10,7 +9,7 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -13,7 +13,7 @@ from motionedit.core.bvh.scan import words_between
 from motionedit.core.bvh.write import LONGEST_WHOLE, check_finite, decimals_of_edits, head_bytes, rows_text
 from motionedit.core.compiled import compiled
 from motionedit.core.euler_pieces import piece_angles, runs, touched_pieces
-from motionedit.core.motion import position_columns
+from motionedit.core.motion import position_columns, slice_or_all
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -110,21 +110,29 @@ def _edit(plan: _Plan, motion: Motion, touched: BoolArray, moved: BoolArray | No
     place = {column: k for k, column in enumerate(plan.columns.tolist())}
     values = np.empty((rows.stop - rows.start, len(place)))
     cells = np.zeros(values.shape, dtype=np.bool_)
+    turned = [(place[column], joint) for joint in plan.pieces for column in skeleton.columns(joint, "rotation")]
     for joint, pieces in plan.pieces.items():
-        columns = [place[column] for column in skeleton.columns(joint, "rotation")]
+        columns = _in_a_row([place[column] for column in skeleton.columns(joint, "rotation")])
         for piece in pieces:
             first, last = max(piece.start, rows.start), min(piece.stop, rows.stop)
             if first < last:
                 angles = piece_angles(motion, joint, piece=piece)[first - piece.start : last - piece.start]
-                for column, angle in zip(columns, angles.T, strict=True):
-                    values[first - rows.start : last - rows.start, column] = angle
-        cells[:, columns] = touched[rows, joint, None]
+                values[first - rows.start : last - rows.start, columns] = angles
+    if turned:
+        ks, joints = map(list, zip(*turned, strict=True))
+        cells[:, _in_a_row(ks)] = touched[rows][:, joints]
     for p, joint in enumerate(skeleton.translated.tolist()):
         for axis, column in position_columns(skeleton, joint):
             if moved is not None and column in place:
                 values[:, place[column]] = motion.translations[rows, p, axis]
                 cells[:, place[column]] = moved[rows, p]
     return _Edit(plan.columns, values, cells)
+
+
+def _in_a_row(places: list[int]) -> slice | list[int]:
+    """Return places as a slice where they follow each other: numpy copies it much faster."""
+    first, stop = places[0], places[0] + len(places)
+    return slice(first, stop) if places == list(range(first, stop)) else places
 
 
 def _spliced_rows(clip: Written, edit: _Edit, first: int, at: int) -> Generator[bytes | memoryview, None, int]:
@@ -193,8 +201,8 @@ def _spliced(
     kernel = compiled()
     if kernel is not None:
         every = np.zeros((len(values) // len(columns), width), dtype=np.bool_)
-        given = np.empty(every.shape)
-        every[:, columns], given[:, columns] = cells.reshape(-1, len(columns)), values.reshape(-1, len(columns))
+        given, own = np.empty(every.shape), slice_or_all(columns)
+        every[:, own], given[:, own] = cells.reshape(-1, len(columns)), values.reshape(-1, len(columns))
         text = np.empty(len(old) + every.size * (decimals + LONGEST_WHOLE), np.uint8)
         length = kernel.splice(old, every, given, decimals, text)
         if length >= 0:

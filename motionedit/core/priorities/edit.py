@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Literal
 
@@ -21,7 +20,7 @@ from motionedit.core.priorities.settings import Passes
 from motionedit.core.priorities.switching import eased_from_others
 from motionedit.core.priorities.targets import NOBODY, Follows, errors_of, with_targets
 from motionedit.core.trace import frame_blocks
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

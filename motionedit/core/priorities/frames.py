@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from operator import itemgetter
 from typing import TYPE_CHECKING
 
@@ -15,7 +14,7 @@ from motionedit.core.priorities.groups import Asked, Group, groups_of, part_of, 
 from motionedit.core.priorities.problem import Reference
 from motionedit.core.priorities.solver import solve_layers
 from motionedit.core.trace import frame_blocks
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
+from dataclasses import fields
 from functools import cached_property, lru_cache
 from itertools import chain
 from typing import TYPE_CHECKING, TypeVar
@@ -15,7 +15,7 @@ from motionedit.core.priorities.points import columns_of
 from motionedit.core.priorities.problem import HingeColumns, LimitColumns, Problem, WeightedTask, order_of_layers
 from motionedit.core.priorities.sight import sight_of
 from motionedit.core.priorities.solver import Prepared, prepare_problem
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -6,7 +6,6 @@ would begin with a jump of some millimetres, so in the last pass ramps are led t
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -17,6 +16,7 @@ from motionedit.core.priorities.continuity import NO_DISPLACEMENT
 from motionedit.core.priorities.groups import Ramp, seen_by
 from motionedit.core.priorities.kinds.constraint import Targets, moved
 from motionedit.core.trace import BLOCK_FRAMES
+from motionedit.dataclass import replace
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence

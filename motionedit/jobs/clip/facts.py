@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
@@ -17,7 +16,7 @@ from motionedit.core.body.rest_pose import rest_pose_frames
 from motionedit.core.body.steps import own_steps
 from motionedit.core.body.up import find_up
 from motionedit.core.feet.phases import find_phases
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 from motionedit.errors import ClipError
 
 if TYPE_CHECKING:

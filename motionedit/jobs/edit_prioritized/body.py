@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -17,7 +16,7 @@ from motionedit.core.body.stiffness import TRAVEL, human_mobility
 from motionedit.core.motion import Motion, scaled
 from motionedit.core.priorities.settings import Body
 from motionedit.core.units import STANDARD_LEG
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 from motionedit.errors import ClipError
 from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.faults import Faults

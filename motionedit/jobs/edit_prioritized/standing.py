@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +17,7 @@ from motionedit.core.kinematics import forward
 from motionedit.core.motion import scaled
 from motionedit.core.priorities.kinds.constraint import Scene, Targets
 from motionedit.core.priorities.sight import sight_of
+from motionedit.dataclass import replace
 from motionedit.jobs.clip.facts import Poses
 from motionedit.jobs.edit_prioritized.body import body_again
 
