@@ -277,6 +277,8 @@ def _among(columns: Columns, every: _Told) -> _Told:
     """Return what is told of joints, by their `places`, of those that are columns alone, and by theirs."""
     places = columns.places[every.places]
     kept = places >= 0
+    if kept.all():
+        return replace(every, places=places)
     told = {each.name: getattr(every, each.name)[kept] for each in fields(every)}
     return type(every)(**{**told, "places": places[kept]})
 
