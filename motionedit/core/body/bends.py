@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cache, partial
+from functools import cache, lru_cache, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -77,7 +77,7 @@ _Limb = tuple[tuple[int, int, int], "Callable[[], FloatArray | None]"]
 
 
 def _bends(skeleton: Skeleton, poses: WorldPoses, limbs: Sequence[_Limb], first: int) -> tuple[Bend, ...]:
-    tops, joints, ends = np.array([limb for limb, _ in limbs]).T
+    tops, joints, ends = _limbs_joints(tuple(limb for limb, _ in limbs))
     parents = skeleton.parents[joints]
     sides = _sides(poses.positions, tops, joints, ends)
     sines = rot.length(sides)
@@ -95,17 +95,20 @@ def _bends(skeleton: Skeleton, poses: WorldPoses, limbs: Sequence[_Limb], first:
     uppers = mean_directions(poses, tops, joints, seen_from=parents, first=first)
     lowers = mean_directions(poses, joints, ends, seen_from=joints, first=first)
     local = rot.between(carried, poses.rotations[:, joints])
-    lengths = np.array([np.linalg.norm(axis) for axis in axes])
+    lengths = np.sqrt([axis.dot(axis) for axis in axes])
     axes /= np.where(lengths > 0.0, lengths, 1.0)[:, None]
     turns = turns_about(axes, uppers, rot.rotate(local, lowers))
-    found = []
-    for i, joint in enumerate(joints.tolist()):
-        if lengths[i] == 0.0:
-            continue
-        straight = frozen(np.ascontiguousarray(sines[:, i] < _STRAIGHT))
-        ways = frozen(uppers[i].copy()), frozen(lowers[i].copy())
-        found.append(Bend(joint, frozen(axes[i].copy()), straight, *ways, frozen(turns[first:, i].copy())))
-    return tuple(found)
+    # Limb by limb in memory: those of a limb are looked at together.
+    straight, angles = np.ascontiguousarray((sines < _STRAIGHT).T), np.ascontiguousarray(turns[first:].T)
+    rows = map(frozen, (axes, straight, uppers, lowers, angles))
+    found = [Bend(*each) for each in zip(joints.tolist(), *rows, strict=True)]
+    return tuple(bend for bend, length in zip(found, lengths.tolist(), strict=True) if length > 0.0)
+
+
+@lru_cache(maxsize=32)
+def _limbs_joints(limbs: tuple[tuple[int, int, int], ...]) -> IntArray:
+    """Return the joints of n limbs, shape (3, n)."""
+    return frozen(np.array(limbs, dtype=np.intp).T)
 
 
 def turns_about(axis: FloatArray, start: FloatArray, stop: FloatArray) -> FloatArray:

@@ -25,7 +25,7 @@ from motionedit.dataclass import dataclass, replace
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from motionedit.core.arrays import BoolArray, IntArray
+    from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.frames import Run
     from motionedit.core.priorities.groups import Asked
@@ -212,13 +212,22 @@ def edit_by_priorities(
 
 def changes(before: Motion, after: Motion, travel: int) -> tuple[BoolArray, BoolArray]:
     """Return which joints turn otherwise, shape (F, J), and where the travel goes otherwise, shape (F,)."""
-    touched = np.empty(before.rotations.shape[:2], dtype=np.bool_)
-    for block in frame_blocks(len(before)):
-        # A turn so small is twice the vector part of its quaternion.
-        turns = rot.between(before.rotations[block], after.rotations[block])
-        x, y, z = (2.0 * np.abs(turns[..., part]) > NO_DISPLACEMENT for part in (1, 2, 3))
-        touched[block] = x | y | z
     place = np.searchsorted(before.skeleton.translated, travel)
     shifts = (after.translations - before.translations)[:, place : place + 1]
     moved: BoolArray = np.abs(shifts).max(axis=(1, 2), initial=0.0) > NO_DISPLACEMENT
-    return touched, moved
+    return _turned(before.rotations, after.rotations), moved
+
+
+def _turned(before: FloatArray, after: FloatArray) -> BoolArray:
+    """Return which rotations, shape (F, J, 4), are others than before, shape (F, J)."""
+    turned, kernel = np.empty(before.shape[:2], dtype=np.bool_), compiled()
+    if kernel is not None:
+        pair = np.ascontiguousarray(before), np.ascontiguousarray(after)
+        kernel.turned(*pair, turned.size, NO_DISPLACEMENT, turned)
+        return turned
+    for block in frame_blocks(len(before)):
+        # A turn so small is twice the vector part of its quaternion.
+        turns = rot.between(before[block], after[block])
+        x, y, z = (2.0 * np.abs(turns[..., part]) > NO_DISPLACEMENT for part in (1, 2, 3))
+        turned[block] = x | y | z
+    return turned

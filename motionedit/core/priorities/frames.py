@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.compiled import compiled
 from motionedit.core.motion import Motion
 from motionedit.core.priorities.far_floors import lifted
 from motionedit.core.priorities.far_turns import parts_of
@@ -157,7 +158,7 @@ def left_alone(run: Run, previous: Solved) -> Known:
 
 def known_again(run: Run, left: Known, start: Motion) -> Known:
     """Return what a solve from `start` may leave alone of what the one before did."""
-    return Known(_same(start, run.motion) & left.done, left.ranks)
+    return Known(_same(start, run.motion) & left.done if left.done.any() else left.done, left.ranks)
 
 
 def _unsolved(run: Run, start: Motion, *, in_place: bool = False) -> Solved:
@@ -208,6 +209,12 @@ def _solve(
 
 def _same(one: Motion, other: Motion) -> BoolArray:
     """Return the frames at which two motions are alike to the bit, shape (F,)."""
+    kernel = compiled()
+    if kernel is not None:
+        found = np.empty(len(one), dtype=np.bool_)
+        pairs = one.rotations, other.rotations, one.translations, other.translations
+        kernel.same(*map(np.ascontiguousarray, pairs), len(one), found)
+        return found
     same: BoolArray = (one.translations == other.translations).all(axis=(1, 2))
     for block in frame_blocks(len(same)):
         same[block] &= (one.rotations[block] == other.rotations[block]).all(axis=(1, 2))

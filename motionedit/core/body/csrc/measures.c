@@ -134,6 +134,40 @@ void largest_steps(const double *before, const double *after, int64_t frames, in
     }
 }
 
+void same_frames(const double *one, const double *other, int64_t frames, int64_t width, uint8_t *same)
+{
+    for (int64_t f = 0; f < frames; f++, one += width, other += width)
+        for (int64_t i = 0; i < width && same[f]; i++)
+            same[f] = one[i] == other[i];
+}
+
+void turned_otherwise(const double *before, const double *after, int64_t count, double least, uint8_t *turned)
+{
+    for (int64_t i = 0; i < count; i++, before += 4, after += 4) {
+        double inverse[4], turn[4];
+        q_conjugate(before, inverse);
+        q_multiply(inverse, after, turn);
+        turned[i] = 2.0 * fabs(turn[1]) > least || 2.0 * fabs(turn[2]) > least || 2.0 * fabs(turn[3]) > least;
+    }
+}
+
+void stepping_joints(const Poses *before, const Poses *after, double cosine, uint8_t *far)
+{
+    memset(far, 0, (size_t)before->joints);
+    for (int64_t j = 0; j < before->joints; j++) {
+        double last[4] = {0.0};
+        for (int64_t f = 0; f < before->frames && !far[j]; f++) {
+            double inverse[4], change[4];
+            q_conjugate(turn_of(before, f, j), inverse);
+            q_multiply(inverse, turn_of(after, f, j), change);
+            if (f > 0)
+                far[j] = fabs(last[0] * change[0] + last[1] * change[1] + last[2] * change[2] + last[3] * change[3]) <
+                         cosine;
+            memcpy(last, change, sizeof last);
+        }
+    }
+}
+
 double squared_jerks(
     const double *positions, int64_t frames, int64_t joints, double *out, int64_t *frame, int64_t *joint)
 {
