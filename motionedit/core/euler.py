@@ -15,7 +15,8 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.compiled import compiled
-from motionedit.core.motion import position_columns, slice_or_all
+from motionedit.core.motion import position_columns
+from motionedit.core.skeleton import slice_or_all
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

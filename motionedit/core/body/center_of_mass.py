@@ -16,7 +16,7 @@ from motionedit.dataclass import dataclass, replace
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from motionedit.core.arrays import FloatArray
+    from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.body.anatomy import Anatomy
     from motionedit.core.skeleton import Skeleton
 
@@ -50,6 +50,12 @@ class Masses:
     points: FloatArray
     is_human: bool
     warnings: tuple[str, ...] = ()
+
+    @cached_property
+    def carriers(self) -> tuple[IntArray, FloatArray, FloatArray]:
+        """The C joints that mass moves with, shape (C,), with their shares (C,) and points (C, 3)."""
+        joints = frozen(np.flatnonzero(self.shares))
+        return joints, frozen(self.shares[joints]), frozen(self.points[joints])
 
     @cached_property
     def as_bytes(self) -> tuple[bytes, bytes]:
@@ -105,13 +111,13 @@ def _masses(skeleton: Skeleton, anatomy: Anatomy, by_joint: tuple[tuple[int, flo
 
 def center_of_mass(poses: WorldPoses, masses: Masses) -> FloatArray:
     """Return c = sum m_j (p_j + R_j c_j) / M, the center of mass in the world, shape (F, 3), clip units."""
-    carriers = np.flatnonzero(masses.shares)
+    carriers, shares, points = masses.carriers
     center = np.empty((len(poses.positions), 3))
     # Block by block: what is carried takes more memory on its way than the world transforms of a long motion.
     for start in range(0, len(center), _BLOCK_FRAMES):
         block = slice(start, start + _BLOCK_FRAMES)
         part = WorldPoses(poses.positions[block], poses.rotations[block])
-        center[block] = masses.shares[carriers] @ carried(part, carriers, masses.points[carriers])
+        center[block] = shares @ carried(part, carriers, points)
     return center
 
 

@@ -13,7 +13,8 @@ from motionedit.core.bvh.scan import words_between
 from motionedit.core.bvh.write import LONGEST_WHOLE, check_finite, decimals_of_edits, head_bytes, rows_text
 from motionedit.core.compiled import compiled
 from motionedit.core.euler_pieces import piece_angles, runs, touched_pieces
-from motionedit.core.motion import position_columns, slice_or_all
+from motionedit.core.motion import position_columns
+from motionedit.core.skeleton import slice_or_all
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:

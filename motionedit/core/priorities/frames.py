@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from operator import itemgetter
 from typing import TYPE_CHECKING
 
@@ -12,8 +13,8 @@ from motionedit.core.motion import Motion
 from motionedit.core.priorities.far_floors import lifted
 from motionedit.core.priorities.far_turns import parts_of
 from motionedit.core.priorities.groups import Asked, Group, groups_of, part_of, retargeted, spans_of
-from motionedit.core.priorities.problem import Reference
-from motionedit.core.priorities.solver import solve_layers
+from motionedit.core.priorities.problem import LayeredSolution, Reference
+from motionedit.core.priorities.solver import solve_into, solve_layers
 from motionedit.core.trace import frame_blocks
 from motionedit.dataclass import dataclass, replace
 
@@ -41,10 +42,15 @@ class Run:
         """The input."""
         return self.asked.motion
 
-    @property
+    @cached_property
     def place(self) -> int:
         """The root's place among the joints with translations."""
         return int(np.searchsorted(self.motion.skeleton.translated, self.asked.body.travel))
+
+    @cached_property
+    def level_count(self) -> int:
+        """How many priorities there are."""
+        return len(self.asked.levels)
 
 
 def run_of(asked: Asked) -> Run:
@@ -168,10 +174,10 @@ def _unsolved(run: Run, start: Motion, *, in_place: bool = False) -> Solved:
     count = len(start)
     return Solved(
         motion,
-        np.zeros(count, dtype=np.intp),
+        np.zeros(count, dtype=np.int64),
         np.ones(count, dtype=np.bool_),
-        np.zeros((count, len(run.asked.levels)), dtype=np.intp),
-        np.zeros((count, len(run.asked.levels))),
+        np.zeros((count, run.level_count), dtype=np.int64),
+        np.zeros((count, run.level_count)),
     )
 
 
@@ -185,16 +191,18 @@ def _solve(
     in_order: bool = False,
 ) -> None:
     """Solve a group's frames of `solved` from where they are, in place."""
+    where, levels, threads = group.where, group.levels.tolist(), run.asked.settings.threads
+    if isinstance(where, slice) and levels == list(range(solved.ranks.shape[1])):
+        # In place: every frame is in one group.
+        solution = LayeredSolution(
+            solved.motion, solved.iterations[where], solved.converged[where], solved.ranks[where], solved.left[where]
+        )
+        solution.converged[:] = False if done is None else done
+        solve_into(solution, group.prepared, reference, group.frames, in_order=in_order, threads=threads)
+        return
     solution = solve_layers(
-        group.prepared,
-        solved.motion,
-        reference,
-        group.frames,
-        done=done,
-        in_order=in_order,
-        threads=run.asked.settings.threads,
+        group.prepared, solved.motion, reference, group.frames, done=done, in_order=in_order, threads=threads
     )
-    where, levels = group.where, group.levels.tolist()
     solved.iterations[where], solved.converged[where] = solution.iterations, solution.converged
     ranks, left = solution.ranks, solution.left
     if levels != list(range(solved.ranks.shape[1])):

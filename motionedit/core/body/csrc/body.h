@@ -68,6 +68,12 @@ void carry(const Poses *poses, const int64_t *joints, const double *points, int6
 void largest_steps(const double *before, const double *after, int64_t frames, int64_t joints, int64_t first,
     double *angles, int64_t *into);
 
+/* How n limbs bend, each a top, a joint, an end and the joint's parent, (n, 4): upper x lower of their unit bones has
+   the `sines` (F, n); what it is in the parent's frame is summed to the `axes` (n, 3) over frames from `first` on in
+   which the sine is above `bent`. Whether there are any is `shown` (n,). */
+void bent_sides(const Poses *poses, int64_t first, const int64_t *limbs, double bent, int64_t count, double *sines,
+    double *axes, uint8_t *shown);
+
 /* Let those frames be the `same` (F,) that were, and whose numbers (F, width) are equal in both. */
 void same_frames(const double *one, const double *other, int64_t frames, int64_t width, uint8_t *same);
 

@@ -2,6 +2,7 @@
 
 #include "body.h"
 
+#include <float.h>
 #include <string.h>
 
 #define ONE_LANE
@@ -132,6 +133,33 @@ void largest_steps(const double *before, const double *after, int64_t frames, in
         if (!differ)
             angles[j] = 0.0, into[j] = first + 1;
     }
+}
+
+void bent_sides(const Poses *poses, int64_t first, const int64_t *limbs, double bent, int64_t count, double *sines,
+    double *axes, uint8_t *shown)
+{
+    memset(axes, 0, 3 * sizeof *axes * (size_t)count);
+    memset(shown, 0, (size_t)count);
+    for (int64_t f = 0; f < poses->frames; f++)
+        for (int64_t i = 0; i < count; i++, sines++) {
+            const double *top = place_of(poses, f, limbs[4 * i]), *joint = place_of(poses, f, limbs[4 * i + 1]);
+            const double *end = place_of(poses, f, limbs[4 * i + 2]);
+            const double upper[3] = {joint[0] - top[0], joint[1] - top[1], joint[2] - top[2]};
+            const double lower[3] = {end[0] - joint[0], end[1] - joint[1], end[2] - joint[2]};
+            const double both = sqrt(dot(upper, upper)) * sqrt(dot(lower, lower));
+            const double lengths = both > DBL_MIN ? both : DBL_MIN;
+            double side[3], inverse[4], own[3];
+            cross(upper, lower, side);
+            for (int a = 0; a < 3; a++)
+                side[a] /= lengths;
+            *sines = sqrt(dot(side, side));
+            if (f < first || !(*sines > bent))
+                continue;
+            shown[i] = 1;
+            q_conjugate(turn_of(poses, f, limbs[4 * i + 3]), inverse);
+            q_turn(inverse, side, own);
+            add(axes + 3 * i, own);
+        }
 }
 
 void same_frames(const double *one, const double *other, int64_t frames, int64_t width, uint8_t *same)
