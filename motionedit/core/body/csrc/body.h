@@ -80,9 +80,10 @@ void same_frames(const double *one, const double *other, int64_t frames, int64_t
 /* Which of n rotations (n, 4) are `turned` (n,) from those before by more than `least`: a part of the turn's vector. */
 void turned_otherwise(const double *before, const double *after, int64_t count, double least, uint8_t *turned);
 
-/* Which joints' changes, before^-1 after, are `far` (J,) from those of the frame before: the cosine of half the angle
+/* Which joints' changes, before^-1 after of rotations (F, J, 4), are `far` (J,) from those of the frame before: the cosine of half the angle
    is below one. */
-void stepping_joints(const Poses *before, const Poses *after, double cosine, uint8_t *far);
+void stepping_joints(
+    const double *before, const double *after, int64_t frames, int64_t joints, double cosine, uint8_t *far);
 
 /* Of positions (F, J, 3) the square of each frame's third difference, summed over joints, (F - 3,). Returns the largest
    of any joint, and at which frame and joint. */

@@ -6,8 +6,6 @@
 #include "body.h"
 #include "held.h"
 
-#include <string.h>
-
 /* World transforms, of `frames` frames from the place where the arrays begin; either may be None. */
 static int poses_of(
     Held *held, PyObject *positions, PyObject *rotations, long long frames, long long joints, Poses *poses)
@@ -223,85 +221,6 @@ static PyObject *bends(PyObject *self, PyObject *arguments)
     Py_RETURN_NONE;
 }
 
-static PyObject *same(PyObject *self, PyObject *arguments)
-{
-    Held held = {.count = 0};
-    PyObject *given[5];
-    long long frames;
-    int fits = 0;
-    (void)self;
-    if (!PyArg_ParseTuple(arguments, "OOOOLO", given, given + 1, given + 2, given + 3, &frames, given + 4))
-        return NULL;
-    uint8_t *out = items_of(&held, given[4], frames, 1, 1, "frames");
-    if (out != NULL) {
-        memset(out, 1, (size_t)frames);
-        fits = 1;
-    }
-    for (int i = 0; fits && i < 4; i += 2) {
-        const double *one = some_of(&held, given[i], &(int64_t){0}, "numbers");
-        int64_t count = 0;
-        const double *other = one == NULL ? NULL : some_of(&held, given[i + 1], &count, "numbers");
-        fits = other != NULL && held.held[held.count - 2].len == held.held[held.count - 1].len &&
-               (frames > 0 ? count % frames == 0 : count == 0);
-        if (fits && frames > 0)
-            same_frames(one, other, frames, count / frames, out);
-        else if (!fits && !PyErr_Occurred())
-            PyErr_SetString(PyExc_ValueError, "numbers of other frames");
-    }
-    let_go(&held);
-    if (!fits)
-        return NULL;
-    Py_RETURN_NONE;
-}
-
-static PyObject *turned(PyObject *self, PyObject *arguments)
-{
-    Held held = {.count = 0};
-    PyObject *before, *after, *results;
-    long long count;
-    double least;
-    int fits = 0;
-    (void)self;
-    if (!PyArg_ParseTuple(arguments, "OOLdO", &before, &after, &count, &least, &results))
-        return NULL;
-    const double *one = items_of(&held, before, 4 * count, sizeof *one, 0, "rotations");
-    const double *other = one == NULL ? NULL : items_of(&held, after, 4 * count, sizeof *other, 0, "rotations");
-    uint8_t *out = other == NULL ? NULL : items_of(&held, results, count, 1, 1, "results");
-    fits = out != NULL;
-    if (fits)
-        turned_otherwise(one, other, count, least, out);
-    let_go(&held);
-    if (!fits)
-        return NULL;
-    Py_RETURN_NONE;
-}
-
-static PyObject *stepping(PyObject *self, PyObject *arguments)
-{
-    Held held = {.count = 0};
-    PyObject *given[3];
-    long long frames, joints;
-    double cosine;
-    Poses before, after;
-    int fits = 0;
-    (void)self;
-    if (!PyArg_ParseTuple(arguments, "OOLLdO", given, given + 1, &frames, &joints, &cosine, given + 2))
-        return NULL;
-    if (poses_of(&held, Py_None, given[0], frames, joints, &before) &&
-        poses_of(&held, Py_None, given[1], frames, joints, &after)) {
-        uint8_t *far = items_of(&held, given[2], joints, 1, 1, "joints");
-        fits = far != NULL && before.rotations != NULL && after.rotations != NULL;
-        if (fits)
-            stepping_joints(&before, &after, cosine, far);
-        else if (!PyErr_Occurred())
-            PyErr_SetString(PyExc_ValueError, "no rotations");
-    }
-    let_go(&held);
-    if (!fits)
-        return NULL;
-    Py_RETURN_NONE;
-}
-
 PyMethodDef body_methods[] = {
     {"ways", ways, METH_VARARGS, "Write sums of ways between joints, seen from others."},
     {"products", products, METH_VARARGS, "Write sums of products of joints' rotations."},
@@ -309,9 +228,6 @@ PyMethodDef body_methods[] = {
     {"carried", carried, METH_VARARGS, "Write where points in joints' frames are at each frame."},
     {"steps", steps, METH_VARARGS, "Write the largest step of each joint, and the frames into which these lead."},
     {"bends", bends, METH_VARARGS, "Write how much limbs are bent at each frame, and about which axes."},
-    {"same", same, METH_VARARGS, "Write which frames have the same numbers in two pairs of arrays."},
-    {"turned", turned, METH_VARARGS, "Write which rotations are turned by more than some number."},
-    {"stepping", stepping, METH_VARARGS, "Write which joints' changes step from one frame to the next."},
     {"jerks", jerks, METH_VARARGS, "Write squared third differences; return the largest, its frame and joint."},
     {NULL, NULL, 0, NULL},
 };

@@ -179,15 +179,17 @@ void turned_otherwise(const double *before, const double *after, int64_t count, 
     }
 }
 
-void stepping_joints(const Poses *before, const Poses *after, double cosine, uint8_t *far)
+void stepping_joints(
+    const double *before, const double *after, int64_t frames, int64_t joints, double cosine, uint8_t *far)
 {
-    memset(far, 0, (size_t)before->joints);
-    for (int64_t j = 0; j < before->joints; j++) {
+    memset(far, 0, (size_t)joints);
+    for (int64_t j = 0; j < joints; j++) {
         double last[4] = {0.0};
-        for (int64_t f = 0; f < before->frames && !far[j]; f++) {
+        for (int64_t f = 0; f < frames && !far[j]; f++) {
+            const int64_t at = 4 * (f * joints + j);
             double inverse[4], change[4];
-            q_conjugate(turn_of(before, f, j), inverse);
-            q_multiply(inverse, turn_of(after, f, j), change);
+            q_conjugate(before + at, inverse);
+            q_multiply(inverse, after + at, change);
             if (f > 0)
                 far[j] = fabs(last[0] * change[0] + last[1] * change[1] + last[2] * change[2] + last[3] * change[3]) <
                          cosine;

@@ -725,7 +725,8 @@ static int add_tables(PyObject *module)
         Py_XDECREF(name);
     }
     fits = fits && PyModule_AddFunctions(module, body_methods) == 0 &&
-           PyModule_AddFunctions(module, feet_methods) == 0 && PyModule_AddObjectRef(module, "records", records) == 0 &&
+           PyModule_AddFunctions(module, change_methods) == 0 && PyModule_AddFunctions(module, feet_methods) == 0 &&
+           PyModule_AddObjectRef(module, "records", records) == 0 &&
            PyModule_AddObjectRef(module, "row_kinds", kinds) == 0;
     Py_XDECREF(records);
     Py_XDECREF(kinds);

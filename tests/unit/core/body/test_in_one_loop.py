@@ -117,8 +117,8 @@ def test_joints_and_arrays_that_are_none_are_an_error_and_no_crash():
         compiled().same(turns, turns, places, places, 5, np.zeros(4, bool))
     with pytest.raises(ValueError, match="rotations: 320 bytes do not fit"):
         compiled().turned(turns, turns, 5, 0.1, np.zeros(5, bool))
-    with pytest.raises(ValueError, match="no rotations"):
-        compiled().stepping(turns, None, 5, 2, 0.9, np.zeros(2, bool))
+    with pytest.raises(ValueError, match="rotations: 320 bytes do not fit"):
+        compiled().stepping(turns, turns, 4, 2, 0.9, np.zeros(2, bool))
     with pytest.raises(ValueError, match="no rotations"):
         compiled().steps(turns, None, 5, 2, 0, np.zeros(2), np.zeros(2, int))
     with pytest.raises(ValueError, match="frames: 8 bytes do not fit"):
