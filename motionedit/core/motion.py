@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -10,7 +9,7 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -90,7 +89,7 @@ def write_poses(skeleton: Skeleton, values: FloatArray, *, rotations: FloatArray
     for group in groups:
         # Blocks of frames stay in the processor's cache and keep the memory of a long clip down.
         step = max(_BLOCK_VALUES // group.columns.size, 1)
-        columns, joints = slice_or_all(group.columns.reshape(-1)), slice_or_all(group.joints)
+        joints, columns = group.in_a_row
         for start in range(0, len(values), step):
             angles = values[start : start + step, columns].reshape(-1, *group.columns.shape)
             block = rotations[start : start + step, joints]
@@ -108,12 +107,6 @@ def write_poses(skeleton: Skeleton, values: FloatArray, *, rotations: FloatArray
     for p, joint in enumerate(skeleton.translated.tolist()):
         for axis, column in position_columns(skeleton, joint):
             translations[:, p, axis] = values[:, column]
-
-
-def slice_or_all(indices: IntArray) -> slice | IntArray:
-    """Return indices as a slice where they follow each other, as in most files: numpy copies it much faster."""
-    first, count = int(indices[0]), len(indices)
-    return slice(first, first + count) if np.array_equal(indices, np.arange(first, first + count)) else indices
 
 
 def position_columns(skeleton: Skeleton, joint: int) -> list[tuple[int, int]]:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
-from dataclasses import replace
 from pathlib import Path, PurePath
 
 from motionedit.core.bvh import Clip
+from motionedit.dataclass import replace
 from motionedit.errors import UsageError
 from motionedit.jobs.batch.one_clip import read_task
 from motionedit.jobs.batch.plan import ClipTask, find_clips

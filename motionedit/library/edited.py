@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any
 
 from motionedit.core.bvh import Clip, parse_clip
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 from motionedit.jobs.preview.job import page_of_edit
 from motionedit.library.options import switch
 from motionedit.library.outputs import contents_of, file_for, inputs_of, text_of, write_files

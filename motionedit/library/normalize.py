@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
 from typing import Any, SupportsIndex
 
 from motionedit.core.bvh import Clip, parse_clip
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 from motionedit.errors import UsageError
 from motionedit.jobs.normalize import job
 from motionedit.jobs.normalize.normalization_file import NAME, Normalization, normalization_bytes

@@ -12,6 +12,8 @@ from motionedit.version import __version__
 SCHEMA = "motionedit/report/v1"
 # Enough for any comparison, and few enough that the last bits of two machines do not show.
 _DIGITS = 9
+# Whole numbers below the first are as short already; below the second so many digits reach beyond so many decimals.
+_WHOLE, _TENTH = 10.0**_DIGITS, 0.1
 _INDENT = "\n  "
 _AS_THEY_ARE = frozenset({type(None), bool, int, str})
 
@@ -63,7 +65,7 @@ def without_frames(record: dict[str, Any]) -> dict[str, Any]:
         if isinstance(value, list)
         else value
         for key, value in record.items()
-        if key != "frames" or not isinstance(value, Mapping)
+        if key != "frames" or not (type(value) is dict or isinstance(value, Mapping))
     }
 
 
@@ -89,8 +91,14 @@ def _scalar(value: Any) -> str:  # noqa: ANN401  a number, a text, or a list of 
 
 def plain(value: Any) -> Any:  # noqa: ANN401  any value that a report may hold
     """Return a value as JSON holds it: numbers rounded, arrays as lists, what is not finite as null."""
-    if type(value) in _AS_THEY_ARE:
+    kind = type(value)
+    if kind in _AS_THEY_ARE:
         return value
+    if kind is dict or isinstance(value, Mapping):
+        return {
+            str(key): item if type(item) in _AS_THEY_ARE else _rounded(item) if type(item) is float else plain(item)
+            for key, item in value.items()
+        }
     if isinstance(value, float):
         return _rounded(value)
     if isinstance(value, (list, tuple)):
@@ -99,15 +107,15 @@ def plain(value: Any) -> Any:  # noqa: ANN401  any value that a report may hold
             _rounded(item) if type(item) is float else item if type(item) in _AS_THEY_ARE else plain(item)
             for item in value
         ]
-    if isinstance(value, Mapping):
-        return {str(key): item if type(item) in _AS_THEY_ARE else plain(item) for key, item in value.items()}
     if hasattr(value, "tolist"):  # numpy's numbers and arrays
         return plain(value.tolist())
     return value if isinstance(value, (int, str)) else str(value)
 
 
 def _rounded(value: float) -> float | None:
+    if value.is_integer() and -_WHOLE < value < _WHOLE:
+        return float(value) + 0.0
     if not math.isfinite(value):
         return None
     short = float(f"{value:.{_DIGITS}g}")
-    return round(short, _DIGITS) + 0.0 if -1.0 < short < 1.0 else short
+    return round(short, _DIGITS) + 0.0 if -_TENTH < short < _TENTH else short

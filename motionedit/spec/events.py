@@ -1,11 +1,11 @@
 """Events of a spec: instants with names, given by frame, by clip, by a CSV file, or found by a rule."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import field, replace
+from dataclasses import field
 from pathlib import Path
 from typing import Any, Literal, get_args
 
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 from motionedit.spec import kinds, scalars
 from motionedit.spec.faults import Fault, FaultyValueError, faulty, show
 from motionedit.spec.model import Context, Kind, SpecModel, spec_key

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, Literal, SupportsIndex, TypedDict, TypeVar, Unpack, overload
 
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 from motionedit.errors import MotionEditError, SpecError, together
 from motionedit.spec import SPEC_COMMANDS, model_of, schema_name
 from motionedit.spec.faults import Fault, FaultyValueError, Keys, dotted

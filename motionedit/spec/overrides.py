@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from motionedit.dataclass import replace
 from motionedit.spec.faults import Fault, FaultyValueError, did_you_mean, dotted, faulty, listed
 from motionedit.spec.syntax import DEEPEST
 from motionedit.spec.yaml_tree import Node, read_tree

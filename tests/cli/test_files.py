@@ -207,6 +207,21 @@ def test_capitals_make_another_place_only_where_the_system_says_so(monkeypatch, 
     assert (place(Path("out/Walk.bvh")) == place(Path("out/walk.bvh"))) == same
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="links need rights there")
+def test_many_places_are_those_of_each_by_itself(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "deep/er").mkdir(parents=True)
+    (tmp_path / "walk.bvh").write_bytes(b"")
+    (tmp_path / "deep/link.bvh").symlink_to(tmp_path / "walk.bvh")
+    (tmp_path / "folder").symlink_to(tmp_path / "deep")
+    (tmp_path / "deep/nowhere.bvh").symlink_to("none/at/all.bvh")
+    names = "walk.bvh", "deep/link.bvh", "folder/link.bvh", "folder/er/new.bvh", "folder", "folder/..", ".", "/"
+    places = files.Places()
+    for name in (*names, "deep/nowhere.bvh", "folder/er/..", "none/new.bvh", *names):
+        assert places.of(Path(name)) == place(Path(name))
+        assert places.identity(Path(name)) == files.identity(Path(name))
+
+
 @pytest.mark.skipif(files.fcntl is None, reason="without locks nothing is taken for a leftover while it is open")
 def test_a_file_that_another_run_takes_for_a_leftover_before_it_is_locked_is_begun_again(tmp_path, monkeypatch):
     usual, taken = files.fcntl.flock, []

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from motionedit.core.arrays import median
+from motionedit.core.arrays import frozen, median
 from motionedit.core.body.bones import bones_of, travel_joint
 from motionedit.core.body.head import SAME_PLACE, find_head
 from motionedit.core.body.legs_and_arms import find_legs_and_arms
@@ -18,7 +18,7 @@ from motionedit.core.kinematics import Effector
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from motionedit.core.arrays import FloatArray
+    from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.motion import Motion
     from motionedit.core.skeleton import Skeleton
@@ -125,6 +125,13 @@ class Anatomy:
             elif leg.tip is not None:
                 points.append(SolePoint(foot, "toe", leg.ankle, leg.tip))
         return tuple(points)
+
+    @cached_property
+    def soles(self) -> tuple[IntArray, FloatArray]:
+        """The sole points' joints, shape (P,), and where they are in their frames, shape (P, 3)."""
+        joints = np.array([point.joint for point in self.sole_points], dtype=np.intp)
+        offsets = np.array([point.offset for point in self.sole_points], dtype=np.float64)
+        return frozen(joints), frozen(offsets.reshape(-1, 3))
 
     @property
     def foot_points(self) -> tuple[tuple[str, int], ...]:

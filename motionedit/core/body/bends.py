@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cache, partial
+from functools import cache, lru_cache, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
 from motionedit.core.body.in_one_loop import read_off
+from motionedit.core.compiled import compiled
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -77,35 +78,28 @@ _Limb = tuple[tuple[int, int, int], "Callable[[], FloatArray | None]"]
 
 
 def _bends(skeleton: Skeleton, poses: WorldPoses, limbs: Sequence[_Limb], first: int) -> tuple[Bend, ...]:
-    tops, joints, ends = np.array([limb for limb, _ in limbs]).T
+    tops, joints, ends = which = _limbs_joints(tuple(limb for limb, _ in limbs))
     parents = skeleton.parents[joints]
-    sides = _sides(poses.positions, tops, joints, ends)
-    sines = rot.length(sides)
-    bent = sines > _BENT
-    bent[:first] = False
-    for i in np.flatnonzero(~bent.any(axis=0)).tolist():
-        towards = limbs[i][1]()
-        if towards is not None:
-            lower = poses.positions[:, ends[i]] - poses.positions[:, joints[i]]
-            sides[:, i], bent[:, i] = rot.cross(lower, towards), True
-    carried = poses.rotations[:, parents]
-    own = rot.unrotate(carried, sides)
-    own[~bent] = 0.0
-    axes = own.sum(axis=0)
-    uppers = mean_directions(poses, tops, joints, seen_from=parents, first=first)
-    lowers = mean_directions(poses, joints, ends, seen_from=joints, first=first)
-    local = rot.between(carried, poses.rotations[:, joints])
-    lengths = np.array([np.linalg.norm(axis) for axis in axes])
+    sines, axes = _shown(poses, which, parents, first) or _sides(poses, which, parents, limbs, first)
+    ways = (np.concatenate(each) for each in ((tops, joints), (joints, ends), (parents, joints)))
+    starts, stops, seen_from = ways
+    both = mean_directions(poses, starts, stops, seen_from=seen_from, first=first)
+    uppers, lowers = both[: len(joints)], both[len(joints) :]
+    local = rot.between(poses.rotations[:, parents], poses.rotations[:, joints])
+    lengths = np.sqrt([axis.dot(axis) for axis in axes])
     axes /= np.where(lengths > 0.0, lengths, 1.0)[:, None]
     turns = turns_about(axes, uppers, rot.rotate(local, lowers))
-    found = []
-    for i, joint in enumerate(joints.tolist()):
-        if lengths[i] == 0.0:
-            continue
-        straight = frozen(np.ascontiguousarray(sines[:, i] < _STRAIGHT))
-        ways = frozen(uppers[i].copy()), frozen(lowers[i].copy())
-        found.append(Bend(joint, frozen(axes[i].copy()), straight, *ways, frozen(turns[first:, i].copy())))
-    return tuple(found)
+    # Limb by limb in memory: those of a limb are looked at together.
+    straight, angles = np.ascontiguousarray((sines < _STRAIGHT).T), np.ascontiguousarray(turns[first:].T)
+    rows = map(frozen, (axes, straight, uppers, lowers, angles))
+    found = [Bend(*each) for each in zip(joints.tolist(), *rows, strict=True)]
+    return tuple(bend for bend, length in zip(found, lengths.tolist(), strict=True) if length > 0.0)
+
+
+@lru_cache(maxsize=32)
+def _limbs_joints(limbs: tuple[tuple[int, int, int], ...]) -> IntArray:
+    """Return the joints of n limbs, shape (3, n)."""
+    return frozen(np.array(limbs, dtype=np.intp).T)
 
 
 def turns_about(axis: FloatArray, start: FloatArray, stop: FloatArray) -> FloatArray:
@@ -145,12 +139,40 @@ def mean_directions(
     return directions
 
 
-def _sides(positions: FloatArray, tops: IntArray, joints: IntArray, ends: IntArray) -> FloatArray:
-    """Return upper x lower of n limbs' unit bones, shape (F, n, 3): axes, times the sines by which they are bent."""
-    upper, lower = positions[:, joints] - positions[:, tops], positions[:, ends] - positions[:, joints]
+def _shown(poses: WorldPoses, which: IntArray, parents: IntArray, first: int) -> tuple[FloatArray, FloatArray] | None:
+    """Return what `_sides` does in one loop; None where there is no compiler, or a limb that is never bent."""
+    kernel, (frames, joints) = compiled(), poses.rotations.shape[:2]
+    if kernel is None:
+        return None
+    count = which.shape[1]
+    sines, axes, shown = np.empty((frames, count)), np.empty((count, 3)), np.empty(count, dtype=np.bool_)
+    given = np.ascontiguousarray(poses.positions), np.ascontiguousarray(poses.rotations)
+    limbs = np.ascontiguousarray(np.vstack((which, parents)).T, dtype=np.int64)
+    kernel.bends(*given, frames, joints, first, limbs, count, _BENT, sines, axes, shown)
+    return (sines, axes) if shown.all() else None
+
+
+def _sides(
+    poses: WorldPoses, which: IntArray, parents: IntArray, limbs: Sequence[_Limb], first: int
+) -> tuple[FloatArray, FloatArray]:
+    """Return the sines by which n limbs are bent, shape (F, n), and the sums of the axes about which they are, (n, 3).
+
+    An axis is upper x lower of a limb's unit bones, in the frame of its joint's parent, which has the sine's length.
+    """
+    tops, joints, ends = which
+    upper, lower = (poses.positions[:, b] - poses.positions[:, a] for a, b in ((tops, joints), (joints, ends)))
     lengths = rot.length(upper) * rot.length(lower)
     sides: FloatArray = rot.cross(upper, lower) / np.maximum(lengths, np.finfo(float).tiny)[..., None]
-    return sides
+    sines = rot.length(sides)
+    bent = sines > _BENT
+    bent[:first] = False
+    for i in np.flatnonzero(~bent.any(axis=0)).tolist():
+        towards = limbs[i][1]()
+        if towards is not None:
+            sides[:, i], bent[:, i] = rot.cross(lower[:, i], towards), True
+    own = rot.unrotate(poses.rotations[:, parents], sides)
+    own[~bent] = 0.0
+    return sines, own.sum(axis=0)
 
 
 def _toes(poses: WorldPoses, leg: Leg) -> FloatArray | None:

@@ -6,7 +6,6 @@ where the take began, on a rig of six channels a joint it may be nothing at all.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import lru_cache
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
@@ -15,6 +14,7 @@ import numpy as np
 
 from motionedit.core.arrays import frozen, median
 from motionedit.core.body.words import bare_names, hangs_on
+from motionedit.dataclass import replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

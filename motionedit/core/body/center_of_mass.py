@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,14 +11,13 @@ from motionedit.core.arrays import frozen
 from motionedit.core.body.in_one_loop import carried
 from motionedit.core.body.segments import lay_by_length, lay_given, lay_human
 from motionedit.core.kinematics import WorldPoses
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from motionedit.core.arrays import FloatArray
+    from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.body.anatomy import Anatomy
-    from motionedit.core.body.segments import Laid
     from motionedit.core.skeleton import Skeleton
 
 _BLOCK_FRAMES = 1 << 10
@@ -52,6 +51,17 @@ class Masses:
     is_human: bool
     warnings: tuple[str, ...] = ()
 
+    @cached_property
+    def carriers(self) -> tuple[IntArray, FloatArray, FloatArray]:
+        """The C joints that mass moves with, shape (C,), with their shares (C,) and points (C, 3)."""
+        joints = frozen(np.flatnonzero(self.shares))
+        return joints, frozen(self.shares[joints]), frozen(self.points[joints])
+
+    @cached_property
+    def as_bytes(self) -> tuple[bytes, bytes]:
+        """The shares and points, for keys."""
+        return self.shares.tobytes(), self.points.tobytes()
+
 
 def find_masses(skeleton: Skeleton, anatomy: Anatomy, *, given: Mapping[int, float] | None = None) -> Masses:
     """Return the masses of a skeleton's joints.
@@ -70,7 +80,20 @@ def find_masses(skeleton: Skeleton, anatomy: Anatomy, *, given: Mapping[int, flo
     ValueError
         When the given masses are negative, not finite, or all zero.
     """
-    by_length, human = _laid(skeleton, anatomy)
+    return _masses(skeleton, anatomy, tuple((given or {}).items()))
+
+
+@lru_cache(maxsize=4)
+def scaled_masses(masses: Masses, skeleton: Skeleton, factor: float) -> Masses:
+    """Return masses on a skeleton whose lengths are a factor times those of theirs."""
+    return replace(masses, skeleton=skeleton, points=frozen(masses.points * factor))
+
+
+@lru_cache(maxsize=8)
+def _masses(skeleton: Skeleton, anatomy: Anatomy, by_joint: tuple[tuple[int, float], ...]) -> Masses:
+    """Return `find_masses`: once for the clips that share a skeleton."""
+    given = dict(by_joint)
+    by_length, human = lay_by_length(skeleton), lay_human(skeleton, anatomy)
     laid = by_length if human is None else human
     if given:
         weights = np.array(list(given.values()))
@@ -86,21 +109,15 @@ def find_masses(skeleton: Skeleton, anatomy: Anatomy, *, given: Mapping[int, flo
     )
 
 
-@lru_cache(maxsize=8)
-def _laid(skeleton: Skeleton, anatomy: Anatomy) -> tuple[Laid, Laid | None]:
-    """Return the masses by length and, of a human, those of the table: once for the clips that share a skeleton."""
-    return lay_by_length(skeleton), lay_human(skeleton, anatomy)
-
-
 def center_of_mass(poses: WorldPoses, masses: Masses) -> FloatArray:
     """Return c = sum m_j (p_j + R_j c_j) / M, the center of mass in the world, shape (F, 3), clip units."""
-    carriers = np.flatnonzero(masses.shares)
+    carriers, shares, points = masses.carriers
     center = np.empty((len(poses.positions), 3))
     # Block by block: what is carried takes more memory on its way than the world transforms of a long motion.
     for start in range(0, len(center), _BLOCK_FRAMES):
         block = slice(start, start + _BLOCK_FRAMES)
         part = WorldPoses(poses.positions[block], poses.rotations[block])
-        center[block] = masses.shares[carriers] @ carried(part, carriers, masses.points[carriers])
+        center[block] = shares @ carried(part, carriers, points)
     return center
 
 

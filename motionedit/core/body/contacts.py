@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
-from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from motionedit.core import rotations as rot
+from motionedit.core.again import LastFew, Same
 from motionedit.core.arrays import frozen, median
 from motionedit.core.body.in_one_loop import carried
 from motionedit.core.compiled import compiled
@@ -113,25 +113,14 @@ def frames_of(plants: Sequence[Plant]) -> PlantFrames | None:
     """Return the frames of plants; None of none."""
     if not plants:
         return None
-    return _frames_again(_These(plants)) if isinstance(plants, tuple) else _frames_of(plants)
+    if not isinstance(plants, tuple):
+        return _frames_of(plants)
+    # A clip's own are asked for again and again; to compare them one by one would take longer.
+    key = Same(plants)
+    return _FRAMES.get(key) or _FRAMES.keep(key, _frames_of(plants))
 
 
-class _These:
-    """Plants that are asked for again and again: the same ones, which are not compared one by one."""
-
-    def __init__(self, plants: tuple[Plant, ...]) -> None:
-        self.plants = plants
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _These) and other.plants is self.plants
-
-    def __hash__(self) -> int:
-        return id(self.plants)
-
-
-@lru_cache(maxsize=2)
-def _frames_again(these: _These) -> PlantFrames:
-    return _frames_of(these.plants)
+_FRAMES: LastFew[PlantFrames] = LastFew(2)
 
 
 def _frames_of(plants: Sequence[Plant]) -> PlantFrames:

@@ -74,28 +74,30 @@ class Limit:
 
 def human_limits(motion: Motion, poses: WorldPoses, anatomy: Anatomy, *, travel: int, first: int) -> list[Limit]:
     """Return the limits of neck, spine, clavicles, shoulders, hips, wrists and ankles that were found."""
-    wanted = _wanted(motion.skeleton, anatomy, travel)
+    wanted, halves = _wanted(motion.skeleton, anatomy, travel)
     found: dict[int, Limit] = {}
     # A few joints at a time: those of a long motion all at once would take several times its memory.
     together = max(_BLOCK_POSES // len(motion), 1)
-    for start in range(0, len(wanted), together):
-        some = wanted[start : start + together]
-        joints, tops, ends = np.array([joint for joint, _ in some]).T
+    for start in range(0, len(halves), together):
+        some = slice(start, start + together)
+        joints, tops, ends = wanted[:, some]
         along = mean_directions(poses, tops, ends, seen_from=joints, first=first)
-        found.update({each.joint: each for each in _limits(motion, joints, along, [half for _, half in some], first)})
+        found.update({each.joint: each for each in _limits(motion, joints, along, halves[some], first)})
     return [found[joint] for joint in sorted(found)]
 
 
 @lru_cache(maxsize=8)
-def _wanted(skeleton: Skeleton, anatomy: Anatomy, travel: int) -> tuple[tuple[_Joint, Range], ...]:
-    """Return the joints that have limits, with their half ranges."""
-    wanted: list[tuple[_Joint, Range]] = []
+def _wanted(skeleton: Skeleton, anatomy: Anatomy, travel: int) -> tuple[IntArray, tuple[Range, ...]]:
+    """Return the n joints that have limits and where their bones are, shape (3, n), with their half ranges."""
+    wanted: list[_Joint] = []
+    halves: list[Range] = []
     for region, joints in _regions(skeleton, anatomy, travel):
         # Of a region that n joints share each may do more than its nth part: not all of them are always asked.
         share = 1.0 / np.sqrt(len(joints))
         half = Range(share * region.swing, share * region.twist)
-        wanted += [(joint, half) for joint in joints]
-    return tuple(wanted)
+        wanted += joints
+        halves += [half] * len(joints)
+    return frozen(np.array(wanted, dtype=np.intp).reshape(-1, 3).T), tuple(halves)
 
 
 def given_limits(motion: Motion, poses: WorldPoses, given: Mapping[int, Range], *, first: int) -> list[Limit]:
@@ -118,17 +120,13 @@ def limit_of(motion: Motion, joint: int, along: FloatArray, half: Range, *, firs
 
 def _limits(motion: Motion, joints: IntArray, along: FloatArray, halves: Sequence[Range], first: int) -> list[Limit]:
     """Return the limits of n joints whose bones are `along`, shape (n, 3)."""
-    centers = _means(motion, joints, first)
+    centers, along = frozen(_means(motion, joints, first)), frozen(along)
     widest = _widest(motion, joints, centers, along, first).tolist()
     return [
-        Limit(
-            joint,
-            frozen(centers[i]),
-            frozen(along[i]),
-            max(math.radians(half.swing), swing),
-            max(math.radians(half.twist), twist),
+        Limit(joint, center, bone, max(math.radians(half.swing), swing), max(math.radians(half.twist), twist))
+        for joint, center, bone, half, (swing, twist) in zip(
+            joints.tolist(), centers, along, halves, widest, strict=True
         )
-        for i, (joint, half, (swing, twist)) in enumerate(zip(joints.tolist(), halves, widest, strict=True))
     ]
 
 

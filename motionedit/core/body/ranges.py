@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from itertools import chain
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from motionedit.core import rotations as rot
+from motionedit.core.again import LastFew, Same
+from motionedit.core.arrays import frozen
 from motionedit.core.body.bones import below
 from motionedit.dataclass import dataclass
 
@@ -81,13 +82,10 @@ def beyond_range(
     The range is the largest angle from the mean rotation of the input, the frames before `first` left out. A region
     with no joint among the `touched`, shape (J,), is left out.
     """
-    largest = _largest_changes(before, after, first, touched)
-    asked = [
-        each
-        for each in _with_ways(before.skeleton, regions)
-        # Turned by less altogether than is seen at any frame, a region cannot be farther off its mean by more.
-        if sum(largest[j] for j in chain(each[1], each[2])) > each[0].most
-    ]
+    ways = _with_ways(before.skeleton, regions)
+    # Turned by less altogether than is seen at any frame, a region cannot be farther off its mean by more.
+    far = ways.moved @ _largest_changes(before, after, first, touched) > ways.most
+    asked = [ways.regions[i] for i in np.flatnonzero(far)]
     found = []
     # A few regions at a time: those of a long motion all at once would take several times its memory.
     together = max(_BLOCK_POSES // len(before), 1)
@@ -106,14 +104,15 @@ def beyond_range(
     return found
 
 
-def _largest_changes(before: Motion, after: Motion, first: int, touched: BoolArray) -> list[float]:
-    """Return by how many degrees each joint is turned at most, J numbers, rounded up; 0 where it is not touched."""
+def _largest_changes(before: Motion, after: Motion, first: int, touched: BoolArray) -> FloatArray:
+    """Return by how many degrees each joint is turned at most, shape (J,), rounded up; 0 where it is not touched."""
     cosines = np.ones(len(touched))
     together = max(_BLOCK_POSES // len(touched), 1)
     for start in range(first, len(before), together):
         block = slice(start, start + together)
         np.minimum(cosines, rot.half_cosines(before.rotations[block], after.rotations[block]).min(axis=0), out=cosines)
-    return (np.degrees(2.0 * np.arccos(cosines * (1.0 - _ROUNDING))) * touched).tolist()  # type: ignore[no-any-return]
+    largest: FloatArray = np.degrees(2.0 * np.arccos(cosines * (1.0 - _ROUNDING))) * touched
+    return largest
 
 
 def bent_back(
@@ -123,8 +122,7 @@ def bent_back(
     found, axes = [], {bend.joint: bend.axis for bend in bends}
     for limb in _limbs(anatomy):
         _, joint, end = limb
-        way = before.skeleton.chain(end).tolist()
-        if joint not in axes or not touched[way[way.index(limb[0]) :]].any():
+        if joint not in axes or not touched[[limb[0], *_joints_between(before.skeleton, limb[0], end)]].any():
             continue
         bones = _bones(after, limb)
         if (rot.cross(*bones)[first:] @ axes[joint] >= 0.0).all():
@@ -164,12 +162,32 @@ def _trunk(skeleton: Skeleton, anatomy: Anatomy) -> frozenset[int]:
     return frozenset(int(j) for end in ends for j in skeleton.chain(end))
 
 
-@lru_cache(maxsize=8)
-def _with_ways(
-    skeleton: Skeleton, regions: tuple[Region, ...]
-) -> tuple[tuple[Region, tuple[int, ...], tuple[int, ...]], ...]:
-    """Return regions, each with its `_ways`."""
-    return tuple((region, *_ways(skeleton, region)) for region in regions)
+# A region with its `_ways`.
+_RegionWays = tuple[Region, tuple[int, ...], tuple[int, ...]]
+
+
+class _AllWays(NamedTuple):
+    """R regions with their ways, which joints turn them, shape (R, J), 1 or 0, and what is seen of each, (R,)."""
+
+    regions: tuple[_RegionWays, ...]
+    moved: FloatArray
+    most: FloatArray
+
+
+def _with_ways(skeleton: Skeleton, regions: tuple[Region, ...]) -> _AllWays:
+    """Return regions with their ways: once for the clips that share a skeleton."""
+    key = skeleton, Same(regions)
+    known = _ALL_WAYS.get(key)
+    if known is not None:
+        return known
+    every = tuple((region, *_ways(skeleton, region)) for region in regions)
+    moved = np.zeros((len(every), len(skeleton)))
+    for row, (_, up, down) in zip(moved, every, strict=True):
+        row[[*up, *down]] = 1.0
+    return _ALL_WAYS.keep(key, _AllWays(every, frozen(moved), frozen(np.array([each.most for each in regions]))))
+
+
+_ALL_WAYS: LastFew[_AllWays] = LastFew(8)
 
 
 def _ways(skeleton: Skeleton, region: Region) -> tuple[tuple[int, ...], tuple[int, ...]]:
@@ -182,9 +200,7 @@ def _ways(skeleton: Skeleton, region: Region) -> tuple[tuple[int, ...], tuple[in
     return tuple(upper[shared:]), tuple(lower[shared:])
 
 
-def _all_relative(
-    rotations: FloatArray, asked: Sequence[tuple[Region, tuple[int, ...], tuple[int, ...]]]
-) -> FloatArray:
+def _all_relative(rotations: FloatArray, asked: Sequence[_RegionWays]) -> FloatArray:
     """Return `_relative` of all regions, shape (F, n, 4)."""
     # Most are a joint against its parent.
     turned = rotations[:, [down[0] if down else 0 for _, _, down in asked]]
@@ -216,8 +232,7 @@ def _bones(motion: Motion, limb: tuple[int, int, int]) -> tuple[FloatArray, Floa
     upper, lower = _path(motion, frame, joint), _path(motion, joint, end)
     if top != frame:
         # The upper bone comes from further up: seen from the frame that the axis is fixed in.
-        way = skeleton.chain(frame).tolist()
-        turned = _product(motion.rotations, way[way.index(top) + 1 :])
+        turned = _product(motion.rotations, _joints_between(skeleton, top, frame))
         upper = upper + rot.unrotate(turned, _path(motion, top, frame))
     return upper, rot.rotate(motion.rotations[:, joint], lower)
 
@@ -230,10 +245,16 @@ def _bend(upper: FloatArray, lower: FloatArray, axis: FloatArray) -> FloatArray:
     return bend
 
 
+@lru_cache(maxsize=64)
+def _joints_between(skeleton: Skeleton, top: int, end: int) -> tuple[int, ...]:
+    """Return the joints below one and down to another that hangs on it, that one in."""
+    return tuple(skeleton.between(top, end))
+
+
 def _path(motion: Motion, top: int, end: int) -> FloatArray:
     """Return where a joint is in the frame of one above it, shape (F, 3), or (3,) where that is one place for all."""
-    skeleton, way = motion.skeleton, motion.skeleton.chain(end).tolist()
-    joints = way[way.index(top) + 1 :]
+    skeleton = motion.skeleton
+    joints = _joints_between(skeleton, top, end)
     path, turned = np.zeros(3), rot.IDENTITY
     for j in joints:
         place = skeleton.translation_places[j]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -16,7 +15,7 @@ from motionedit.core.bvh.scan import LARGEST_LENGTH, refusal
 from motionedit.core.bvh.text import BvhText
 from motionedit.core.compiled import room
 from motionedit.core.motion import Motion, write_poses
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 from motionedit.errors import BvhError
 from motionedit.regular_files import NotAFileError, read_file
 

@@ -10,7 +10,6 @@ correlation of poses far apart in time is mostly chance: c is how much of it is 
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +17,7 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
 from motionedit.core.coefficients.chain import exp_and_left_jacobian
+from motionedit.dataclass import replace
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray, IntArray

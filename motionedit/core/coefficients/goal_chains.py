@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +11,7 @@ from motionedit.core.coefficients.chain import CoefficientChain
 from motionedit.core.coefficients.goals import Goal
 from motionedit.core.measure import WORLD, Measure
 from motionedit.core.timeline.interpolation import low_pass, natural_spline
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

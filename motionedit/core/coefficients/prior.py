@@ -10,13 +10,12 @@ mapped to beta and rho, so that the least |y| is the likeliest change.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from motionedit.core.arrays import frozen
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,7 +19,7 @@ from motionedit.core.pca.coordinates import (
 from motionedit.core.rotation_vectors import relabelled
 from motionedit.core.timeline.alignment import Alignment, TravelPath, travel_path, with_travel_path
 from motionedit.core.timeline.resample import resample
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray, IntArray

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +10,7 @@ from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
 from motionedit.core.motion import Motion
 from motionedit.core.timeline.interpolation import low_pass
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -11,6 +10,7 @@ from motionedit.core.compiled import compiled
 from motionedit.core.feet.reach import ROUNDING, reach_of, released
 from motionedit.core.feet.settled import settled
 from motionedit.core.feet.stance import FootPath, feet_of, foot_path, spans_of, stance_of
+from motionedit.dataclass import replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.feet.stance import runs
+from motionedit.dataclass import replace
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray

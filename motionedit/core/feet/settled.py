@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,6 +10,7 @@ from motionedit.core import rotations as rot
 from motionedit.core.body.contacts import frames_of
 from motionedit.core.compiled import compiled
 from motionedit.core.units import STANDARD_LEG
+from motionedit.dataclass import replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

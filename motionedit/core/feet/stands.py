@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from motionedit.core.feet.reach import released
+from motionedit.dataclass import replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,7 +22,7 @@ from motionedit.core.pca.tracks import MeanRotations, make_consistent
 from motionedit.core.pca.vectors import CentredVectors, MotionVectors, VectorsInFile, VectorsInMemory, motion_vectors
 from motionedit.core.timeline.alignment import NO_ALIGNMENT, travel_path
 from motionedit.core.units import STANDARD_LEG
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -7,7 +7,6 @@ more and along smoother paths.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,7 +16,7 @@ from motionedit.core.priorities.giving_way import down_to, given_way, members_of
 from motionedit.core.priorities.smoothing import in_passes
 from motionedit.core.priorities.straight import bent_where_missed
 from motionedit.core.priorities.visible import Seen, seen_of
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -53,23 +52,22 @@ def layout_of(problem: Problem) -> Layout | None:
         return None
     rows = tuple(row for row, _ in found)
     masses = next((task.masses for _, task in found if task.masses is not None), None)
-    weights = None if masses is None else (masses.shares.tobytes(), masses.points.tobytes())
-    nodes, column_nodes, tasks, recruited = structure_of(problem.columns, rows, weights)
-    given = [np.ravel(task.targets) for _, task in found]
+    given = [task.targets.ravel() for _, task in found]
+    counts = tuple(map(len, given))
+    structure = structure_of(problem.columns, rows, None if masses is None else masses.as_bytes, counts=counts)
     targets = np.concatenate([np.zeros(0), *given])
-    tasks = tasks.copy()
-    tasks["targets"] = [0, *accumulate(len(each) for each in given)][:-1]
+    asked = sum(len(row.counted) for row in rows)
     return Layout(
         {
-            "settings": settings_of(problem, nodes, tasks, targets=len(targets)),
+            "settings": settings_of(problem, structure, rows=asked, targets=len(targets)),
             "constants": constants_record(),
-            "nodes": nodes,
-            "column_nodes": column_nodes,
+            "nodes": structure.nodes,
+            "column_nodes": structure.column_nodes,
             "mobility": _numbers(problem.mobility),
-            "tasks": tasks,
+            "tasks": structure.tasks,
             "hinges": hinge_records(problem.hinges),
             "limits": limit_records(problem.limits),
-            "recruited": recruited,
+            "recruited": structure.recruited,
             "targets": targets,
         }
     )

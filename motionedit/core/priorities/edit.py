@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Literal
 
@@ -21,12 +20,12 @@ from motionedit.core.priorities.settings import Passes
 from motionedit.core.priorities.switching import eased_from_others
 from motionedit.core.priorities.targets import NOBODY, Follows, errors_of, with_targets
 from motionedit.core.trace import frame_blocks
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from motionedit.core.arrays import BoolArray, IntArray
+    from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.frames import Run
     from motionedit.core.priorities.groups import Asked
@@ -94,12 +93,27 @@ def recruit(
     RecruitingError
         With ``error``, at the first breach.
     """
-    skeleton, frames = motion.skeleton, len(motion)
-    turnable = _turnable(skeleton, body.travel)
-    carriers = _carriers(skeleton, tuple(np.flatnonzero(body.masses.shares > 0.0).tolist()))
-    movable = Movable(skeleton, body.travel, carriers & turnable)
+    heavy = tuple(np.flatnonzero(body.masses.shares > 0.0).tolist())
+    given = (tuple(constraints), motion.skeleton, body.travel, heavy)
+    # Goals of feet are a clip's own, and as long.
+    find = _recruit if any(each.stands for each in constraints) else _recruit_again
+    asked, found = find(*given, frames=len(motion), rule=rule)
+    return [*asked], [*found]
+
+
+def _recruit(
+    constraints: tuple[Constraint, ...],
+    skeleton: Skeleton,
+    travel: int,
+    heavy: tuple[int, ...],
+    *,
+    frames: int,
+    rule: RecruitingRule,
+) -> tuple[list[Recruits], list[Breach]]:
+    turnable, carriers = _turnable(skeleton, travel), _carriers(skeleton, heavy)
+    movable = Movable(skeleton, travel, carriers & turnable)
     asked = [each.recruits(movable) for each in constraints]
-    travels = bool(skeleton.position_axes[body.travel])
+    travels = bool(skeleton.position_axes[travel])
     asked = [Recruits(frozenset(each.joints & turnable), each.root and travels) for each in asked]
     reaches = [
         Reach(moved.joints, moved.root, *each.active(frames))
@@ -113,6 +127,10 @@ def recruit(
     if found and rule == "error":
         raise RecruitingError(found[0])
     return asked, found
+
+
+# The clips of a folder that share a skeleton mostly share their constraints, too.
+_recruit_again = lru_cache(maxsize=4)(_recruit)
 
 
 @lru_cache(maxsize=8)
@@ -194,13 +212,22 @@ def edit_by_priorities(
 
 def changes(before: Motion, after: Motion, travel: int) -> tuple[BoolArray, BoolArray]:
     """Return which joints turn otherwise, shape (F, J), and where the travel goes otherwise, shape (F,)."""
-    touched = np.empty(before.rotations.shape[:2], dtype=np.bool_)
-    for block in frame_blocks(len(before)):
-        # A turn so small is twice the vector part of its quaternion.
-        turns = rot.between(before.rotations[block], after.rotations[block])
-        x, y, z = (2.0 * np.abs(turns[..., part]) > NO_DISPLACEMENT for part in (1, 2, 3))
-        touched[block] = x | y | z
     place = np.searchsorted(before.skeleton.translated, travel)
     shifts = (after.translations - before.translations)[:, place : place + 1]
     moved: BoolArray = np.abs(shifts).max(axis=(1, 2), initial=0.0) > NO_DISPLACEMENT
-    return touched, moved
+    return _turned(before.rotations, after.rotations), moved
+
+
+def _turned(before: FloatArray, after: FloatArray) -> BoolArray:
+    """Return which rotations, shape (F, J, 4), are others than before, shape (F, J)."""
+    turned, kernel = np.empty(before.shape[:2], dtype=np.bool_), compiled()
+    if kernel is not None:
+        pair = np.ascontiguousarray(before), np.ascontiguousarray(after)
+        kernel.turned(*pair, turned.size, NO_DISPLACEMENT, turned)
+        return turned
+    for block in frame_blocks(len(before)):
+        # A turn so small is twice the vector part of its quaternion.
+        turns = rot.between(before[block], after[block])
+        x, y, z = (2.0 * np.abs(turns[..., part]) > NO_DISPLACEMENT for part in (1, 2, 3))
+        turned[block] = x | y | z
+    return turned

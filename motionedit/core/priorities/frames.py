@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from functools import cached_property
 from operator import itemgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.compiled import compiled
 from motionedit.core.motion import Motion
 from motionedit.core.priorities.far_floors import lifted
 from motionedit.core.priorities.far_turns import parts_of
 from motionedit.core.priorities.groups import Asked, Group, groups_of, part_of, retargeted, spans_of
-from motionedit.core.priorities.problem import Reference
-from motionedit.core.priorities.solver import solve_layers
+from motionedit.core.priorities.problem import LayeredSolution, Reference
+from motionedit.core.priorities.solver import solve_into, solve_layers
 from motionedit.core.trace import frame_blocks
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
@@ -41,10 +42,15 @@ class Run:
         """The input."""
         return self.asked.motion
 
-    @property
+    @cached_property
     def place(self) -> int:
         """The root's place among the joints with translations."""
         return int(np.searchsorted(self.motion.skeleton.translated, self.asked.body.travel))
+
+    @cached_property
+    def level_count(self) -> int:
+        """How many priorities there are."""
+        return len(self.asked.levels)
 
 
 def run_of(asked: Asked) -> Run:
@@ -158,7 +164,7 @@ def left_alone(run: Run, previous: Solved) -> Known:
 
 def known_again(run: Run, left: Known, start: Motion) -> Known:
     """Return what a solve from `start` may leave alone of what the one before did."""
-    return Known(_same(start, run.motion) & left.done, left.ranks)
+    return Known(_same(start, run.motion) & left.done if left.done.any() else left.done, left.ranks)
 
 
 def _unsolved(run: Run, start: Motion, *, in_place: bool = False) -> Solved:
@@ -168,10 +174,10 @@ def _unsolved(run: Run, start: Motion, *, in_place: bool = False) -> Solved:
     count = len(start)
     return Solved(
         motion,
-        np.zeros(count, dtype=np.intp),
+        np.zeros(count, dtype=np.int64),
         np.ones(count, dtype=np.bool_),
-        np.zeros((count, len(run.asked.levels)), dtype=np.intp),
-        np.zeros((count, len(run.asked.levels))),
+        np.zeros((count, run.level_count), dtype=np.int64),
+        np.zeros((count, run.level_count)),
     )
 
 
@@ -185,16 +191,18 @@ def _solve(
     in_order: bool = False,
 ) -> None:
     """Solve a group's frames of `solved` from where they are, in place."""
+    where, levels, threads = group.where, group.levels.tolist(), run.asked.settings.threads
+    if isinstance(where, slice) and levels == list(range(solved.ranks.shape[1])):
+        # In place: every frame is in one group.
+        solution = LayeredSolution(
+            solved.motion, solved.iterations[where], solved.converged[where], solved.ranks[where], solved.left[where]
+        )
+        solution.converged[:] = False if done is None else done
+        solve_into(solution, group.prepared, reference, group.frames, in_order=in_order, threads=threads)
+        return
     solution = solve_layers(
-        group.prepared,
-        solved.motion,
-        reference,
-        group.frames,
-        done=done,
-        in_order=in_order,
-        threads=run.asked.settings.threads,
+        group.prepared, solved.motion, reference, group.frames, done=done, in_order=in_order, threads=threads
     )
-    where, levels = group.where, group.levels.tolist()
     solved.iterations[where], solved.converged[where] = solution.iterations, solution.converged
     ranks, left = solution.ranks, solution.left
     if levels != list(range(solved.ranks.shape[1])):
@@ -209,6 +217,12 @@ def _solve(
 
 def _same(one: Motion, other: Motion) -> BoolArray:
     """Return the frames at which two motions are alike to the bit, shape (F,)."""
+    kernel = compiled()
+    if kernel is not None:
+        found = np.empty(len(one), dtype=np.bool_)
+        pairs = one.rotations, other.rotations, one.translations, other.translations
+        kernel.same(*map(np.ascontiguousarray, pairs), len(one), found)
+        return found
     same: BoolArray = (one.translations == other.translations).all(axis=(1, 2))
     for block in frame_blocks(len(same)):
         same[block] &= (one.rotations[block] == other.rotations[block]).all(axis=(1, 2))

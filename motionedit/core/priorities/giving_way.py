@@ -8,7 +8,6 @@ what was asked for over some time before and after; and it is soft, |e|^2 + lamb
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,7 +18,7 @@ from motionedit.core.priorities.shares import shares_of
 from motionedit.core.priorities.smoothing import in_passes
 from motionedit.core.priorities.straight import bent_where_missed
 from motionedit.core.priorities.targets import lefts_of, toward
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
+from dataclasses import fields
 from functools import cached_property, lru_cache
 from itertools import chain
 from typing import TYPE_CHECKING, TypeVar
@@ -15,7 +15,7 @@ from motionedit.core.priorities.points import columns_of
 from motionedit.core.priorities.problem import HingeColumns, LimitColumns, Problem, WeightedTask, order_of_layers
 from motionedit.core.priorities.sight import sight_of
 from motionedit.core.priorities.solver import Prepared, prepare_problem
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -142,8 +142,8 @@ class Group:
 
 def seen_by(constraints: Sequence[Constraint], motion: Motion, body: Body) -> Sight:
     """Return what some constraints look at in a motion."""
-    joints = frozenset().union(*(each.looked_at() for each in constraints))
-    return sight_of(motion, joints, body.masses if any(each.weighs for each in constraints) else None)
+    masses = body.masses if any(each.weighs for each in constraints) else None
+    return sight_of(motion, lambda: frozenset().union(*(each.looked_at() for each in constraints)), masses)
 
 
 def groups_of(asked: Asked) -> tuple[Group, ...]:
@@ -277,6 +277,8 @@ def _among(columns: Columns, every: _Told) -> _Told:
     """Return what is told of joints, by their `places`, of those that are columns alone, and by theirs."""
     places = columns.places[every.places]
     kept = places >= 0
+    if kept.all():
+        return replace(every, places=places)
     told = {each.name: getattr(every, each.name)[kept] for each in fields(every)}
     return type(every)(**{**told, "places": places[kept]})
 

@@ -5,7 +5,6 @@ All frames iterate together; those that have converged leave.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -33,7 +32,7 @@ from motionedit.core.priorities.homing import Memory, accelerated, attraction
 from motionedit.core.priorities.layers import Descent, descend
 from motionedit.core.priorities.one_sided import Evaluated, Rows, Sides
 from motionedit.core.priorities.problem import Reference
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

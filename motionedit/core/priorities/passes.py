@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from motionedit.core.priorities.calming import calmed
@@ -20,7 +19,7 @@ from motionedit.core.priorities.giving_way import within_reach
 from motionedit.core.priorities.recruiting import Recruits
 from motionedit.core.priorities.settings import PaperFilter, Passes
 from motionedit.core.priorities.straight import bent_where_missed
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import IntArray

@@ -6,21 +6,25 @@ would begin with a jump of some millimetres, so in the last pass ramps are led t
 
 from __future__ import annotations
 
-from dataclasses import replace
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.arrays import frozen
 from motionedit.core.priorities.continuity import NO_DISPLACEMENT
 from motionedit.core.priorities.groups import Ramp, seen_by
 from motionedit.core.priorities.kinds.constraint import Targets, moved
+from motionedit.core.trace import BLOCK_FRAMES
+from motionedit.dataclass import replace
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
-    from motionedit.core.arrays import BoolArray
+    from motionedit.core.arrays import BoolArray, FloatArray
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.groups import Asked
+    from motionedit.core.priorities.kinds.constraint import Constraint
     from motionedit.core.priorities.sight import Sight
 
 # Where each ramp of each constraint ends.
@@ -32,17 +36,27 @@ def ramps_of(asked: Asked, i: int) -> tuple[Ramp, ...]:
     constraint, targets, count = asked.constraints[i], asked.targets[i], len(asked.motion)
     if not constraint.points:
         return ()
-    frames = np.arange(count)
-    left = ((targets.first <= frames) & (frames <= targets.last)) * (1.0 - constraint.share(count))
-    sides = (
-        (frames < constraint.points[0].start, targets.first - 1),
-        (frames > constraint.points[-1].stop, targets.last + 1),
-    )
+    find = _sides_again if count <= BLOCK_FRAMES else _sides
     return tuple(
-        Ramp(left * side, outside, task_at(asked, i, asked.motion, outside))
-        for side, outside in sides
-        if asked.body.first <= outside < count and (left * side).any()
+        Ramp(left, outside, task_at(asked, i, asked.motion, outside))
+        for left, outside in find(constraint, targets.first, targets.last, count)
+        if asked.body.first <= outside < count
     )
+
+
+def _sides(constraint: Constraint, first: int, last: int, count: int) -> tuple[tuple[FloatArray, int], ...]:
+    """Return how much of a constraint is left at every frame of its ramps, (F,), and the frame outside of each."""
+    frames = np.arange(count)
+    left = ((first <= frames) & (frames <= last)) * (1.0 - constraint.share(count))
+    sides = (
+        (left * (frames < constraint.points[0].start), first - 1),
+        (left * (frames > constraint.points[-1].stop), last + 1),
+    )
+    return tuple((frozen(side), outside) for side, outside in sides if side.any())
+
+
+# The clips of a folder that share a skeleton mostly share their constraints, too.
+_sides_again = lru_cache(maxsize=32)(_sides)
 
 
 def task_at(asked: Asked, i: int, motion: Motion, frame: int) -> Targets:

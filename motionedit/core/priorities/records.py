@@ -7,6 +7,7 @@ is kept here.
 from __future__ import annotations
 
 from functools import cache, lru_cache
+from itertools import accumulate
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -17,6 +18,7 @@ from motionedit.core.arrays import frozen
 from motionedit.core.compiled import compiled
 from motionedit.core.priorities import constants
 from motionedit.core.priorities.points import places_of
+from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -24,14 +26,17 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from motionedit.core.arrays import FloatArray, IntArray
-    from motionedit.core.priorities.points import Columns
+    from motionedit.core.kinematics import Effector
+    from motionedit.core.measure import Measure
+    from motionedit.core.priorities.points import Columns, Recruited
     from motionedit.core.priorities.problem import CompiledTask, HingeColumns, LimitColumns, Problem, WeightedTask
 
 _NOWHERE = (0.0, 0.0, 0.0)
 _CONSTANTS = {"METRES_PER_RADIAN": units.METRES_PER_RADIAN, **vars(constants)}
 
 
-class Row(NamedTuple):
+@dataclass(frozen=True)
+class Row:
     """What of a task is the same for all clips that share a skeleton: its record, by plain values.
 
     `joint` and `base` are -1 where there is none; `recruited` is a flag for each column.
@@ -66,46 +71,89 @@ def rows_of(problem: Problem, kinds: Sequence[str]) -> list[tuple[Row, CompiledT
             compiled_tasks = each.task.compiled()
             if compiled_tasks is None or any(task.row_kind not in kinds for task in compiled_tasks):
                 return None
-            found += [(_row(task, layer, each, kinds), task) for task in compiled_tasks]
+            found += [(_row_of(task, layer, each, kinds), task) for task in compiled_tasks]
     return found
 
 
-def _row(task: CompiledTask, layer: int, weighted: WeightedTask, kinds: Sequence[str]) -> Row:
-    point, base = task.point, task.base
-    return Row(
-        kind=kinds.index(task.row_kind),
-        layer=layer,
+def _row_of(task: CompiledTask, layer: int, weighted: WeightedTask, kinds: Sequence[str]) -> Row:
+    point, base, axis = task.point, task.base, task.axis
+    row = _row_again(
+        kinds.index(task.row_kind),
+        layer,
         one_sided=weighted.one_sided,
         weight=weighted.weight * task.sign,
-        counted=task.measure.counted,
-        measure=tuple(map(tuple, task.measure.rows.tolist())),
+        measure=task.measure,
         width=task.targets.shape[1],
+        recruited=task.recruited,
+        effector=None if point is None else point.effector,
         root=task.recruited.root if point is None else point.moves_with_root,
-        joint=-1 if point is None else point.effector.joint,
-        offset=_NOWHERE if point is None else tuple(point.effector.offset.tolist()),
-        base_root=base is not None and base.moves_with_root,
-        base=-1 if base is None else base.effector.joint,
-        base_offset=_NOWHERE if base is None else tuple(base.effector.offset.tolist()),
-        axis=_NOWHERE if task.axis is None else tuple(task.axis.tolist()),
-        recruited=task.recruited.joints.tobytes(),
     )
+    if base is not None:
+        offset = tuple(base.effector.offset.tolist())
+        row = replace(row, base_root=base.moves_with_root, base=base.effector.joint, base_offset=offset)
+    return row if axis is None else replace(row, axis=tuple(axis.tolist()))
+
+
+@lru_cache(maxsize=64)
+def _row_again(  # noqa: PLR0913  all that a row is made of
+    kind: int,
+    layer: int,
+    *,
+    one_sided: bool,
+    weight: float,
+    measure: Measure,
+    width: int,
+    recruited: Recruited,
+    effector: Effector | None,
+    root: bool,
+) -> Row:
+    """Return the row of a task without a base and an axis: those of the clips of a folder are mostly the same."""
+    return Row(
+        kind=kind,
+        layer=layer,
+        one_sided=one_sided,
+        weight=weight,
+        counted=measure.counted,
+        measure=tuple(map(tuple, measure.rows.tolist())),
+        width=width,
+        root=root,
+        joint=-1 if effector is None else effector.joint,
+        offset=_NOWHERE if effector is None else tuple(effector.offset.tolist()),
+        base_root=False,
+        base=-1,
+        base_offset=_NOWHERE,
+        axis=_NOWHERE,
+        recruited=recruited.joints.tobytes(),
+    )
+
+
+class Structure(NamedTuple):
+    """The records of nodes, the columns' nodes, the records of tasks, and what these recruit.
+
+    `root` is the root's node, -1 where it has no translation.
+    """
+
+    nodes: NDArray[Any]
+    column_nodes: IntArray
+    tasks: NDArray[Any]
+    recruited: NDArray[np.uint8]
+    root: int
 
 
 @lru_cache(maxsize=32)
 def structure_of(
-    columns: Columns, rows: tuple[Row, ...], weights: Weights | None
-) -> tuple[NDArray[Any], IntArray, NDArray[Any], NDArray[np.uint8]]:
-    """Return the records of nodes, the columns' nodes, the records of tasks, and what these recruit.
-
-    Where targets begin is not yet in them.
-    """
+    columns: Columns, rows: tuple[Row, ...], weights: Weights | None, *, counts: tuple[int, ...]
+) -> Structure:
+    """Return what of a layout is the same for all clips that share a skeleton; `counts` are the numbers of targets."""
     shares = np.zeros(len(columns.skeleton)) if weights is None else np.frombuffer(weights[0])
     nodes = _nodes(columns, rows, shares)
     node_of = places_of(nodes, len(columns.skeleton))
     recruited = np.frombuffer(b"".join(row.recruited for row in rows), dtype=np.uint8)
     column_nodes = np.ascontiguousarray(node_of[columns.joints], dtype=np.int64)
     records, tasks = _node_records(columns, nodes, node_of, weights), _tasks(rows, node_of)
-    return frozen(records), frozen(column_nodes), frozen(tasks), recruited
+    tasks["targets"] = [0, *accumulate(counts)][:-1]
+    root = int(node_of[columns.root]) if len(columns.skeleton.translated) else -1
+    return Structure(frozen(records), frozen(column_nodes), frozen(tasks), recruited, root)
 
 
 @cache
@@ -123,26 +171,30 @@ def _records(structure: str, count: int, values: Mapping[str, Any]) -> NDArray[A
     return records
 
 
-def settings_of(problem: Problem, nodes: NDArray[Any], tasks: NDArray[Any], *, targets: int) -> NDArray[Any]:
+def settings_of(problem: Problem, structure: Structure, *, rows: int, targets: int) -> NDArray[Any]:
     """Return how many there are of what, and how frames are solved; `targets` is the length of all targets."""
     columns, skeleton = problem.columns, problem.columns.skeleton
-    values = {
-        "nodes": len(nodes),
-        "columns": len(columns.joints),
-        "tasks": len(tasks),
-        "hinges": len(problem.hinges.places),
-        "limits": len(problem.limits.places),
-        "layers": len(problem.layers),
-        "joints": len(skeleton),
-        "translated": len(skeleton.translated),
-        "rows": int(tasks["rows"].sum()),
-        "targets": targets,
-        "root": int(np.searchsorted(nodes["joint"], columns.root)) if len(skeleton.translated) else -1,
-        "moves_root": problem.moves_root,
-        "max_iterations": problem.max_iterations,
-        "attraction": problem.attraction,
-    }
-    return _records("settings", 1, values)
+    return _settings(
+        nodes=len(structure.nodes),
+        columns=len(columns.joints),
+        tasks=len(structure.tasks),
+        hinges=len(problem.hinges.places),
+        limits=len(problem.limits.places),
+        layers=len(problem.layers),
+        joints=len(skeleton),
+        translated=len(skeleton.translated),
+        rows=rows,
+        targets=targets,
+        root=structure.root,
+        moves_root=problem.moves_root,
+        max_iterations=problem.max_iterations,
+        attraction=problem.attraction,
+    )
+
+
+@lru_cache(maxsize=32)
+def _settings(**values: float) -> NDArray[Any]:
+    return frozen(_records("settings", 1, values))
 
 
 @cache

@@ -13,7 +13,7 @@ from motionedit.core.trace import BLOCK_FRAMES, frame_blocks
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Callable, Collection
 
     from motionedit.core.arrays import FloatArray
     from motionedit.core.motion import Motion
@@ -28,18 +28,20 @@ class Sight:
     center: FloatArray
 
 
-def sight_of(motion: Motion, joints: Collection[int], masses: Masses | None) -> Sight:
+def sight_of(motion: Motion, joints: Callable[[], Collection[int]], masses: Masses | None) -> Sight:
     """Return what is seen of a motion, block by block: a long motion's whole transforms are twice its file.
 
     Parameters
     ----------
+    joints : callable
+        Returns the joints; of a short motion all are seen.
     masses : Masses or None
         None where nobody asks for the center of mass.
     """
     if len(motion) <= BLOCK_FRAMES:
         return _seen_again(motion, masses) if motion.is_fixed else _seen_whole(motion, masses)
     frames, count = len(motion), len(motion.skeleton)
-    seen = np.array(sorted(joints), dtype=np.intp)
+    seen = np.array(sorted(joints()), dtype=np.intp)
     # Joint by joint: what is never written takes no memory.
     positions = np.zeros((count, frames, 3)).transpose(1, 0, 2)
     rotations = np.zeros((count, frames, 4)).transpose(1, 0, 2)

@@ -85,6 +85,21 @@ def solve_layers(
         np.zeros((len(frames), len(problem.layers)), dtype=np.int64),
         np.zeros((len(frames), len(problem.layers))),
     )
+    solve_into(solution, prepared, reference, frames, in_order=in_order, threads=threads)
+    return solution
+
+
+def solve_into(
+    solution: LayeredSolution,
+    prepared: Prepared,
+    reference: Reference,
+    frames: IntArray,
+    *,
+    in_order: bool = False,
+    threads: int = 1,
+) -> None:
+    """Do what `solve_layers` does, of a solution whose arrays are zeros: frames that are converged stay as they are."""
+    problem = prepared.problem
     if prepared.layout is None or compiled() is None:
         from motionedit.core.priorities import numpy_solver
 
@@ -99,4 +114,3 @@ def solve_layers(
             in_order=in_order,
             threads=threads,
         )
-    return solution

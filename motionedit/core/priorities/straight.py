@@ -7,7 +7,6 @@ degree: a body that shall go down is missed, though the feet that hold it up are
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,6 +14,7 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.motion import Motion
 from motionedit.core.priorities.frames import Known, Solved, solve_frames
+from motionedit.dataclass import replace
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray

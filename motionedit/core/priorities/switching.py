@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -14,6 +13,7 @@ from motionedit.core.priorities.kinds.constraint import moved
 from motionedit.core.priorities.passes import solve_in_passes
 from motionedit.core.priorities.ramps import ramps_of, task_at
 from motionedit.core.priorities.targets import errors_of, reached
+from motionedit.dataclass import replace
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray

@@ -150,7 +150,7 @@ def position_targets(
     velocity = np.zeros_like(path)
     for part in (slice(0, since), slice(since, len(path))):
         if len(path[part]) > 1:
-            velocity[part] = np.gradient(path[part], axis=0)
+            _write_slope(path[part], velocity[part])
     absolute = any(point.position is not None for point in points)
     # What is splined is the path where a point gives a position, else the displacement from it.
     base, slope = (np.zeros_like(path), np.zeros_like(path)) if absolute else (path, velocity)
@@ -162,6 +162,14 @@ def position_targets(
     for point in points:
         targets[point.span] = _places(point, path)
     return first, targets[first : last + 1]
+
+
+def _write_slope(path: FloatArray, out: FloatArray) -> None:
+    """Write the slope per frame of a path, shape (F, 3), F above 1: as `numpy.gradient`, which takes twice as long."""
+    np.subtract(path[2:], path[:-2], out=out[1:-1])
+    out[1:-1] /= 2.0
+    np.subtract(path[1], path[0], out=out[0])
+    np.subtract(path[-1], path[-2], out=out[-1])
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,12 +9,13 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.body.quality import STILL, squared_jerks
+from motionedit.core.compiled import compiled
 from motionedit.core.kinematics import forward
 from motionedit.core.trace import BLOCK_FRAMES, frame_blocks
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from motionedit.core.arrays import FloatArray
+    from motionedit.core.arrays import BoolArray, FloatArray
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.frames import Run
 
@@ -71,17 +72,30 @@ def steps_at(run: Run, after: Motion, *, within: FloatArray | None = None) -> Fl
     start, stop = (int(looked[0]), int(looked[-1]) + 1) if len(looked) else (0, 0)
     for block in frame_blocks(stop - start):
         frames = slice(start + block.start, min(start + block.stop + 1, stop))
-        # All joints: to pick some would cost more than what is known of the others.
-        change = rot.between(before.rotations[frames], after.rotations[frames])
-        # A cosine of half the step costs less than the step, and nearly all are let off by it.
-        far = rot.half_cosines(change[:-1], change[1:]) < np.cos(0.5 * limit)
-        for joint in np.flatnonzero(far.any(axis=0)):
-            steps = rot.angle_between(change[:-1, joint], change[1:, joint])
+        one, other = before.rotations[frames], after.rotations[frames]
+        for joint in np.flatnonzero(_may_step(one, other, float(np.cos(0.5 * limit)))):
+            change = rot.between(one[:, joint], other[:, joint])
+            steps = rot.angle_between(change[:-1], change[1:])
             q = before.rotations[first:, joint]
             steps[steps <= max(limit, float(rot.angle_between(q[:-1], q[1:]).max()))] = 0.0
             for side in (slice(frames.start, frames.stop - 1), slice(frames.start + 1, frames.stop)):
                 found[side] = np.maximum(found[side], steps)
     return found
+
+
+def _may_step(before: FloatArray, after: FloatArray, cosine: float) -> BoolArray:
+    """Return the joints whose change, before^-1 after, steps so that the cosine of half the step is below one, (J,).
+
+    That costs less than the step, and nearly all are let off by it.
+    """
+    kernel, (frames, joints) = compiled(), before.shape[:2]
+    if kernel is None:
+        # All joints: to pick some would cost more than what is known of the others.
+        change = rot.between(before, after)
+        return np.asarray((rot.half_cosines(change[:-1], change[1:]) < cosine).any(axis=0))
+    far = np.empty(joints, dtype=np.bool_)
+    kernel.stepping(np.ascontiguousarray(before), np.ascontiguousarray(after), frames, joints, cosine, far)
+    return far
 
 
 def jerks_of(run: Run, after: Motion) -> tuple[FloatArray, float]:

@@ -17,13 +17,15 @@ except ImportError:  # Windows, where a file that a run has open cannot be remov
 from motionedit.interrupts import clean_up_first
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
     from pathlib import Path
 
 _PARTIAL = ".motionedit-partial"
 # Windows replaces no file that another program has open; virus scanners and indexers let go in less than this.
 _SECONDS_TO_REPLACE = 2.0
 _SECONDS_BETWEEN_TRIES = 0.05
+# Bytes; where none are given the system is asked whether the new file is a terminal.
+_BUFFER = 1 << 16
 
 
 def atomic_write(path: Path, data: bytes | Iterable[bytes | memoryview]) -> None:
@@ -38,17 +40,20 @@ def atomic_write(path: Path, data: bytes | Iterable[bytes | memoryview]) -> None
         The folder cannot be made or written, or the disk is full.
     """
     clean_up_first()
-    path.parent.mkdir(parents=True, exist_ok=True)
-    pieces = (data,) if isinstance(data, bytes) else data
-    if path.exists() and not path.is_file():
+    pieces, old = (data,) if isinstance(data, bytes) else data, _mode_of(path)
+    if old is not None and not stat.S_ISREG(old):
         _write_through(path, pieces)
         return
-    temporary, stream = _held_temporary(path)
+    try:
+        temporary, stream = _held_temporary(path)
+    except (FileNotFoundError, NotADirectoryError):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        temporary, stream = _held_temporary(path)
     try:
         with stream:
             stream.writelines(pieces)
             stream.flush()
-            _take_mode(path, temporary)
+            _take_mode(old, temporary)
             if fcntl is not None:  # renamed while it is held, so that no other run takes it for a leftover
                 temporary.replace(path)
         if fcntl is None:
@@ -72,12 +77,16 @@ def clean_leftovers(folders: Iterable[Path]) -> None:
 
 def identity(path: Path) -> tuple[int, int] | str:
     """Return what is equal for two spellings of one file, through links too; the file need not exist."""
+    return _identity(path, place)
+
+
+def _identity(path: Path, place_of: Callable[[Path], str]) -> tuple[int, int] | str:
     try:
         status = path.stat()
     except OSError:
-        return place(path)
+        return place_of(path)
     # Some file systems of Windows number no files: every one of theirs would be the same.
-    return (status.st_dev, status.st_ino) if status.st_ino else place(path)
+    return (status.st_dev, status.st_ino) if status.st_ino else place_of(path)
 
 
 def place(path: Path) -> str:
@@ -85,8 +94,32 @@ def place(path: Path) -> str:
 
     Of a Mac it is not known whether it does: the usual ones make none, and one file in place of two would be lost.
     """
-    real = os.path.realpath(path)
+    return _as_one_case(os.path.realpath(path))
+
+
+def _as_one_case(real: str) -> str:
     return real.casefold() if sys.platform in ("win32", "darwin") else real
+
+
+class Places:
+    """`place` of many files, for as long as no folder on the way is moved: each folder is looked up once."""
+
+    def __init__(self) -> None:
+        self._folders: dict[str, str] = {}
+
+    def of(self, path: Path) -> str:
+        """Return the place of a file that need not exist."""
+        folder, name = os.path.split(path)
+        if folder not in self._folders:
+            self._folders[folder] = os.path.realpath(folder)
+        real = os.path.join(self._folders[folder], name)  # noqa: PTH118  as above
+        # Windows has names that lead elsewhere and are no links.
+        is_plain = os.name == "posix" and name not in ("", ".", "..") and not os.path.islink(real)  # noqa: PTH114
+        return _as_one_case(real) if is_plain else place(path)
+
+    def identity(self, path: Path) -> tuple[int, int] | str:
+        """Return `identity` of a file."""
+        return _identity(path, self.of)
 
 
 def _write_through(path: Path, pieces: Iterable[bytes | memoryview]) -> None:
@@ -105,7 +138,7 @@ def _held_temporary(path: Path) -> tuple[Path, BinaryIO]:
     while True:
         # Not `tempfile`: its files are closed to the group, and the rename would keep them so.
         temporary = path.with_name(f".{start}.{os.urandom(4).hex()}{_PARTIAL}")
-        stream = temporary.open("xb")
+        stream = temporary.open("xb", buffering=_BUFFER)
         if _held(stream, temporary):
             return temporary, stream
         stream.close()
@@ -153,11 +186,21 @@ def _held(stream: BinaryIO, path: Path) -> bool:
         return False
 
 
-def _take_mode(old: Path, new: Path) -> None:
+def _mode_of(path: Path) -> int | None:
+    """Return the type and mode of what a name stands for; None where it stands for nothing."""
+    try:
+        return os.stat(path).st_mode  # noqa: PTH116  of a Path it takes twice as long
+    except OSError:  # whoever writes there says so
+        return None
+
+
+def _take_mode(old: int | None, new: Path) -> None:
     """Give a file the mode of the one that it will replace, where there is one."""
+    if old is None:
+        return
     # Where the old one is another user's the mode may not be ours to give; the content is.
     with contextlib.suppress(OSError):
-        new.chmod(stat.S_IMODE(old.stat().st_mode))
+        new.chmod(stat.S_IMODE(old))
 
 
 def bytes_of(paths: Iterable[Path | None]) -> int:

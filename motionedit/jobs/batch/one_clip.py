@@ -5,10 +5,10 @@ from __future__ import annotations
 import hashlib
 import sys
 import time
-from dataclasses import field, replace
+from dataclasses import field
 from typing import TYPE_CHECKING, Any, Protocol
 
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 from motionedit.errors import ClipError, MotionEditError
 from motionedit.jobs.batch.files import atomic_write
 from motionedit.report.record import without_frames

@@ -6,7 +6,7 @@ import os
 from typing import TYPE_CHECKING
 
 from motionedit.errors import UsageError
-from motionedit.jobs.batch.files import identity, place
+from motionedit.jobs.batch.files import Places
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -30,20 +30,21 @@ def refuse_clashes(outputs: Iterable[tuple[str, Path | None]], inputs: Iterable[
         All files that are read; None is standard input.
     """
     files = [(what, path) for what, path in outputs if path is not None and str(path) != "-"]
-    taken = {identity(path) for path in inputs if path is not None}
+    places = Places()
+    taken = {places.identity(path) for path in inputs if path is not None}
     refuse_paths(
-        [path for _, path in files if identity(path) in taken],
+        [path for _, path in files if places.identity(path) in taken],
         "is an input of this run, and an input is never overwritten; write to another file or folder",
     )
     first: dict[str, tuple[str, Path]] = {}
     for what, path in files:
         if path.exists() and not path.is_file():
             continue  # a device takes any number of outputs; a folder is refused where it is written
-        other, _ = first.setdefault(place(path), (what, path))
+        other, _ = first.setdefault(places.of(path), (what, path))
         if other is not what:
             raise UsageError(f"{other} and {what} would both be written to {path}")
     folders = {one for folder in {path.parent for _, path in files} for one in (folder, *folder.parents)}
-    both = [first[one][1] for one in map(place, sorted(folders)) if one in first]
+    both = [first[one][1] for one in map(places.of, sorted(folders)) if one in first]
     refuse_paths(both, "would be a file and the folder of other outputs; write to another file or folder")
 
 

@@ -5,11 +5,10 @@ from __future__ import annotations
 import contextlib
 import os
 import re
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 from motionedit.errors import UsageError
 from motionedit.jobs.batch.current import nothing_is_newer, stamp_of
 from motionedit.jobs.batch.files import identity

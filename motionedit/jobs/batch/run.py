@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import os
 from contextlib import closing, suppress
-from dataclasses import field, replace
+from dataclasses import field
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 from motionedit.errors import (
     EXIT_CLIP_FAILED,
     EXIT_DONE,

@@ -10,12 +10,13 @@ import contextlib
 import hashlib
 import json
 import os
+from io import FileIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import TYPE_CHECKING, Any
 
 from motionedit.core.plain_values import items, json_of, mapping, text
 from motionedit.dataclass import dataclass
-from motionedit.jobs.batch.files import atomic_write, place
+from motionedit.jobs.batch.files import Places, atomic_write, place
 from motionedit.regular_files import read_file
 from motionedit.report.record import plain, without_frames
 from motionedit.version import __version__
@@ -84,11 +85,12 @@ class Verdicts:
     """The verdicts on the outputs in a folder and below it; `key` says what the run makes of them (`run_key`)."""
 
     def __init__(self, folder: Path, key: str) -> None:
-        self._root = place(folder)
+        self._root, self._places = place(folder), Places()
         self.path = folder / NAME
         self._key = key
         self._known: dict[str, bytes] | None = None
         self._added = 0
+        self._end = 0  # of the last line of this run: where no other wrote, it is whole
 
     def recall(
         self, output: Path, *, stamp: tuple[int, int] | None, frames: bool | None, verify: bool
@@ -127,9 +129,10 @@ class Verdicts:
         line = json.dumps(said).encode() + b"\n"
         # Without its verdict a clip is made again: that is all that a full disk does here.
         with contextlib.suppress(OSError), self._opened() as stream:
-            if stream.tell() and stream.seek(-1, os.SEEK_END) and stream.read(1) != b"\n":
-                stream.write(b"\n")  # a killed run wrote but half a line
-            stream.write(line)
+            at = stream.seek(0, os.SEEK_END)
+            if at not in (0, self._end) and stream.seek(-1, os.SEEK_END) and stream.read(1) != b"\n":
+                at += stream.write(b"\n")  # a killed run wrote but half a line
+            self._end = at + stream.write(line)
             self._added += len(line)
 
     def close(self) -> None:
@@ -142,13 +145,13 @@ class Verdicts:
                 atomic_write(self.path, [line + b"\n" for _, line in last])
 
     def _name(self, output: Path) -> str:
-        return place(output).removeprefix(self._root)
+        return self._places.of(output).removeprefix(self._root)
 
     @contextlib.contextmanager
-    def _opened(self) -> Iterator[BinaryIO]:
+    def _opened(self) -> Iterator[FileIO]:
         """Give the file to add to, held against other runs; one of them may have put another in its place meanwhile."""
         while True:
-            with self.path.open("a+b") as stream:
+            with FileIO(self.path, "a+") as stream:
                 if fcntl is not None:
                     fcntl.flock(stream, fcntl.LOCK_EX)  # let go as it is closed
                 if self.path.stat().st_ino == os.fstat(stream.fileno()).st_ino:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cached_property
 from itertools import chain
 from typing import TYPE_CHECKING, Literal
@@ -19,7 +18,7 @@ from motionedit.core.body.steps import own_steps
 from motionedit.core.body.up import find_up
 from motionedit.core.feet.phases import LegPath, find_phases, leg_paths
 from motionedit.core.trace import BLOCK_FRAMES, frame_blocks
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 from motionedit.errors import ClipError
 
 if TYPE_CHECKING:

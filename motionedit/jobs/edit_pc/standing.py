@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +11,7 @@ from motionedit.core import rotations as rot
 from motionedit.core.body.contacts import foot_plants
 from motionedit.core.feet.put_back import put_back, standing_feet
 from motionedit.core.units import STANDARD_LEG
+from motionedit.dataclass import replace
 from motionedit.jobs.edit_pc.goals import seen
 
 if TYPE_CHECKING:

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motionedit.core.arrays import frozen
 from motionedit.core.body.bends import find_bends
-from motionedit.core.body.center_of_mass import Masses, find_masses
+from motionedit.core.body.center_of_mass import Masses, find_masses, scaled_masses
 from motionedit.core.body.hinges import OFF_AXIS_ENERGY, Hinge, channel_hinges, find_hinges, hinge_of, with_limits_of
 from motionedit.core.body.limits import Limit, Range, given_limits, human_limits
 from motionedit.core.body.stiffness import TRAVEL, human_mobility
 from motionedit.core.motion import Motion, scaled
 from motionedit.core.priorities.settings import Body
 from motionedit.core.units import STANDARD_LEG
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 from motionedit.errors import ClipError
 from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.faults import Faults
@@ -78,7 +76,7 @@ def sized_clip(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults
         warnings.append(f"a leg is {leg:.3g} m long where the unit is {spec.unit.name}: is that the clip's unit?")
     masses = _masses(loaded, facts, faults)
     motion = scaled(clip.motion, scale)
-    sized = replace(masses, skeleton=motion.skeleton, points=frozen(masses.points * scale))
+    sized = scaled_masses(masses, motion.skeleton, scale)
     mobility, root_mobility = _mobility(loaded, facts, faults)
     bends, hinges, limits = _ranges(loaded, facts, faults, warnings)
     body = Body(sized, hinges, facts.travel, facts.first, bends, mobility, root_mobility, limits)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from motionedit.core.again import LastFew, Same
 from motionedit.core.body.bones import below
 from motionedit.core.kinematics import Effector
 from motionedit.core.measure import Level
@@ -25,7 +26,7 @@ from motionedit.spec.faults import listed
 from motionedit.spec.plants import PLANTS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Hashable, Mapping, Sequence
 
     from motionedit.core.priorities.kinds.constraint import Constraint
     from motionedit.jobs.clip.facts import ClipFacts
@@ -83,12 +84,18 @@ def clip_constraints(
     relative : str
         What files call the clip: its path below the given folder, or its name.
     """
+    key = _what_tells(loaded, facts, events, scale=scale)
+    known = None if key is None else _KNOWN.get(key)
+    if known is not None:
+        return [*known]
     found: list[ClipConstraint] = []
+    is_whole = True
     for spec in loaded.model.constraints:
         own = Faults()
         constraints = _Resolver(loaded, facts, events, scale, own, relative).constraints(spec)
         for error in own.errors:
             faults.add(error)
+        is_whole = is_whole and not own.errors
         met = spec.met_within
         found += [
             ClipConstraint(
@@ -100,7 +107,40 @@ def clip_constraints(
             )
             for constraint in constraints
         ]
+    if key is not None and is_whole:
+        _KNOWN.keep(key, tuple(found))
     return found
+
+
+# The clips of a folder mostly share their skeleton: of those the same is asked.
+_KNOWN: LastFew[tuple[ClipConstraint, ...]] = LastFew(4)
+
+
+def _what_tells(
+    loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, events: Mapping[str, float], *, scale: float
+) -> tuple[Hashable, ...] | None:
+    """Return all that makes a clip's constraints what they are; None where it is the clip itself.
+
+    That is a heading, and plants that a table gives by the names of clips.
+    """
+    same = Same(loaded)
+    if _by_the_clip(same, loaded):
+        return None
+    motion, given = facts.clip.motion, (facts.travel, facts.first, facts.up.tobytes(), facts.anatomy)
+    return (same, motion.skeleton, len(motion), motion.frame_time, scale, *given, *events.items())
+
+
+def _by_the_clip(same: Same, loaded: LoadedSpec[EditPrioritizedSpec]) -> bool:
+    known = _BY_THE_CLIP.get(same)
+    if known is not None:
+        return known
+    values = [own for spec in loaded.model.constraints for own in spec.own_values()]
+    headed = any(own.key == "frame" and own.value == "heading" for own in values)
+    listed_by_clip = any(own.kind is PLANTS and own.value is not None and own.value.rows is not None for own in values)
+    return _BY_THE_CLIP.keep(same, headed or listed_by_clip)
+
+
+_BY_THE_CLIP: LastFew[bool] = LastFew(4)
 
 
 @dataclass(frozen=True, eq=False)

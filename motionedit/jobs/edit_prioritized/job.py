@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,7 +13,7 @@ from motionedit.core.priorities.edit import PrioritizedEdit, RecruitingError, ed
 from motionedit.core.priorities.settings import LayeredSettings, PaperFilter, Passes
 from motionedit.core.priorities.targets import Follows
 from motionedit.core.trace import BLOCK_FRAMES, blocks_of, forward_blocks, frame_blocks
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 from motionedit.jobs.batch.one_clip import Outcome
 from motionedit.jobs.batch.plan import plan
 from motionedit.jobs.batch.pool import threads_within
@@ -84,7 +83,7 @@ def edit(
     """Edit the clips of tasks, and write those that have an output; what becomes of them `verdicts` are told."""
     others = tuple(task.relative for task in tasks)
     threads = threads_within(sum(not task.elsewhere for task in tasks), options)
-    work = EditByPriorities(loaded, others, threads, options.verify)
+    work = EditByPriorities(loaded, others, threads, verify=options.verify, tells_plan=options.dry_run)
     return run_batch(tasks, with_page(work, loaded.data, options), options, verdicts=verdicts)
 
 
@@ -94,12 +93,13 @@ _LONG = 1 << 25
 
 @dataclass(frozen=True)
 class EditByPriorities:
-    """The work on one clip."""
+    """The work on one clip; `tells_plan` asks for its details."""
 
     loaded: LoadedSpec[EditPrioritizedSpec]
     others: tuple[str, ...]
     threads: int = 1
     verify: bool = False
+    tells_plan: bool = False
 
     def __call__(self, clip: Clip, task: ClipTask) -> Outcome:
         """Return the edited clip, and how near each constraint came."""
@@ -236,7 +236,9 @@ class EditByPriorities:
             result.status,
             (*sized.warnings, *immovable, *breaches, *loose, *result.warnings),
             motion=_in_clip_units(edit, sized, slice(None)) if changed and self.verify else None,
-            details=(*layer_lines(asked, edit.recruits, sized.body.hinges, facts), *breaches),
+            details=(*layer_lines(asked, edit.recruits, sized.body.hinges, facts), *breaches)
+            if self.tells_plan
+            else (),
         )
 
     def _about(self, sized: SizedClip, before: Trace, after: Trace, steps: Steps) -> dict[str, Any]:

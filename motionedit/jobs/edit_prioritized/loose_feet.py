@@ -37,7 +37,10 @@ def loose_feet(sized: SizedClip, constraints: Sequence[Constraint], before: Trac
     if down is None:
         return []
     ways = rot.length(down.of(after.tracks) - down.of(before.tracks))
-    lines = []
+    lines: list[str] = []
+    # Most edits move no planted foot at all.
+    if ways.max() * sized.scale <= _LOOSE:
+        return lines
     for foot, leg in zip(("left", "right"), facts.anatomy.legs or (), strict=False):
         own = np.array([point.foot == foot for point in facts.anatomy.sole_points])[down.points]
         loose = np.where(own & ~_placed(sized, constraints, leg)[down.frames], ways, 0.0)

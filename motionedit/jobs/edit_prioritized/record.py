@@ -91,7 +91,7 @@ def _record(one: Measured, found: Verdict) -> dict[str, Any]:
         "type": each.constraint.type,
         "priority": each.constraint.priority,
         "error_max": None if lengths is None else float(lengths.max()),
-        "error_rms": None if lengths is None else float(np.sqrt(np.mean(lengths**2))),
+        "error_rms": None if lengths is None else float(np.sqrt((lengths**2).mean())),
         "error_angle_max": None if angles is None else float(angles.max()),
         "frame": one.worst,
         "tolerance": each.tolerance if limits and lengths is not None else None,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from motionedit.core.body.bones import below
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from motionedit.core.body.hinges import Hinge
     from motionedit.core.priorities.kinds.constraint import Constraint
     from motionedit.core.priorities.recruiting import Breach
+    from motionedit.core.skeleton import Skeleton
     from motionedit.errors import MotionEditError
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.spec.edit_prioritized import EditPrioritizedSpec
@@ -59,7 +61,14 @@ def breach_warnings(
 
 def immovable_warnings(constraints: Sequence[Constraint], recruits: Sequence[Recruits], facts: ClipFacts) -> list[str]:
     """Return a line for each thing that constraints ask to move and the clip's channels do not let move."""
-    skeleton, travel = facts.clip.motion.skeleton, facts.travel
+    given = tuple(constraints), tuple(recruits), facts.clip.motion.skeleton, facts.travel
+    # As where they recruit: goals of feet are a clip's own.
+    return [*(_immovable if any(each.stands for each in constraints) else _immovable_again)(*given)]
+
+
+def _immovable(
+    constraints: tuple[Constraint, ...], recruits: tuple[Recruits, ...], skeleton: Skeleton, travel: int
+) -> list[str]:
     names, carried = skeleton.names, below(skeleton, travel)
     lines: list[str] = []
     wants_root = False
@@ -83,6 +92,9 @@ def immovable_warnings(constraints: Sequence[Constraint], recruits: Sequence[Rec
         axes = " and ".join("xyz"[axis] for axis in has)
         lines.append(f"{names[travel]} has position channels for {axes} alone: the body is shifted along those")
     return list(dict.fromkeys(lines))
+
+
+_immovable_again = lru_cache(maxsize=4)(_immovable)
 
 
 def layer_lines(

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from motionedit.core.skeleton import same_skeleton
+from motionedit.dataclass import replace
 from motionedit.errors import ClipError, UsageError
 from motionedit.jobs.batch.one_clip import read_task
 from motionedit.jobs.batch.plan import ClipTask, folder_clips

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +17,7 @@ from motionedit.core.kinematics import forward
 from motionedit.core.motion import scaled
 from motionedit.core.priorities.kinds.constraint import Scene, Targets
 from motionedit.core.priorities.sight import sight_of
+from motionedit.dataclass import replace
 from motionedit.jobs.clip.facts import Poses
 from motionedit.jobs.edit_prioritized.body import body_again
 
@@ -139,7 +139,7 @@ def _stances(
 def _new_path(sized: SizedClip, constraints: Sequence[ClipConstraint], curve: Curve) -> NewPath:
     """Return where positions asked of the joint that carries the travel take the body, clip units."""
     shift, travel = np.zeros((len(sized.motion), 3)), sized.facts.travel
-    before = sight_of(sized.motion, [travel], None)
+    before = sight_of(sized.motion, lambda: [travel], None)
     for each in constraints:
         ask = each.constraint
         if ask.stands or ask.at is None or ask.at.joint != travel or np.any(ask.at.offset) or ask.waits_for_others:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -46,12 +47,12 @@ class Measured:
         """Its last frame."""
         return self.first + len(self.excess) - 1
 
-    @property
+    @cached_property
     def worst(self) -> int:
         """The frame at which it is furthest off."""
         return self.first + first_worst(self.excess)
 
-    @property
+    @cached_property
     def missed(self) -> bool:
         """Whether it is missed at any frame."""
         return bool(self.excess.max() > 1.0)
@@ -76,7 +77,7 @@ def measured(each: ClipConstraint, errors: ConstraintErrors, scale: float) -> Me
         if values is not None
     ]
     places = None if errors.places is None else errors.places / scale
-    return Measured(each, errors.first, lengths, angles, np.max(over, axis=0), places)
+    return Measured(each, errors.first, lengths, angles, over[0] if len(over) == 1 else np.max(over, axis=0), places)
 
 
 def first_worst(excess: FloatArray) -> int:

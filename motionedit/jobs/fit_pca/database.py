@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import PurePath
 from typing import TYPE_CHECKING
 
@@ -10,7 +9,7 @@ from motionedit.core.body.anatomy import anatomy_of
 from motionedit.core.pca.database import DatabaseMotion
 from motionedit.core.pca.model import DatabaseClip
 from motionedit.core.skeleton_match import match_joints
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 from motionedit.errors import ClipError, ModelError, MotionEditError, UsageError, together
 from motionedit.jobs.batch.files import bytes_of, place
 from motionedit.jobs.batch.one_clip import read_task

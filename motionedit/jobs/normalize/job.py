@@ -5,11 +5,10 @@ Two phases: every clip is measured, the means are taken, then every clip is resa
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 from motionedit.errors import EXIT_CLIP_FAILED, EXIT_USAGE, MotionEditError, UsageError
 from motionedit.jobs.batch.files import bytes_of
 from motionedit.jobs.batch.one_clip import write_file

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-from dataclasses import replace
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
+from motionedit.dataclass import replace
 from motionedit.errors import MotionEditError, UsageError, together
 from motionedit.jobs.batch.files import clean_leftovers
 from motionedit.jobs.batch.one_clip import read_task, write_file

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,7 +10,7 @@ from motionedit.core.body.center_of_mass import center_of_mass, find_masses
 from motionedit.core.kinematics import Effector, effector_positions
 from motionedit.core.plain_values import number
 from motionedit.core.priorities.kinds import KINDS
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 from motionedit.errors import UsageError
 from motionedit.jobs.preview.bodies import upright
 from motionedit.report.preview.marks import Curve, Edit, Mark, Span

@@ -69,6 +69,23 @@ def test_it_goes_through_a_pickle():
     assert pickle.loads(pickle.dumps(Sent("a"))) == Sent("a")  # noqa: S301  its own
 
 
+def test_a_hash_is_kept_and_sent_to_no_other_process():
+    sent = Sent("a")
+    before = pickle.dumps(sent)
+    assert hash(sent) == hash(sent) == hash(Sent("a"))
+    assert pickle.dumps(sent) == before
+
+
+def test_a_copy_with_other_fields_keeps_nothing_that_was_found_of_the_first():
+    point = made(quick.dataclass)(1, (2,), "a")
+    assert (point.double, hash(point)) == (2, hash(point))
+    copy = quick.replace(point, x=3)
+    assert (copy.x, copy.y, copy.note, copy.double) == (3, (2,), "a", 6)
+    assert hash(copy) != hash(point)
+    assert type(copy) is type(point)
+    assert point.x == 1
+
+
 ASKED_FIRST = {
     "made": lambda cls: cls([1]).y,
     "fields": fields,

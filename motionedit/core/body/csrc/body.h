@@ -68,6 +68,23 @@ void carry(const Poses *poses, const int64_t *joints, const double *points, int6
 void largest_steps(const double *before, const double *after, int64_t frames, int64_t joints, int64_t first,
     double *angles, int64_t *into);
 
+/* How n limbs bend, each a top, a joint, an end and the joint's parent, (n, 4): upper x lower of their unit bones has
+   the `sines` (F, n); what it is in the parent's frame is summed to the `axes` (n, 3) over frames from `first` on in
+   which the sine is above `bent`. Whether there are any is `shown` (n,). */
+void bent_sides(const Poses *poses, int64_t first, const int64_t *limbs, double bent, int64_t count, double *sines,
+    double *axes, uint8_t *shown);
+
+/* Let those frames be the `same` (F,) that were, and whose numbers (F, width) are equal in both. */
+void same_frames(const double *one, const double *other, int64_t frames, int64_t width, uint8_t *same);
+
+/* Which of n rotations (n, 4) are `turned` (n,) from those before by more than `least`: a part of the turn's vector. */
+void turned_otherwise(const double *before, const double *after, int64_t count, double least, uint8_t *turned);
+
+/* Which joints' changes, before^-1 after of rotations (F, J, 4), are `far` (J,) from those of the frame before: the cosine of half the angle
+   is below one. */
+void stepping_joints(
+    const double *before, const double *after, int64_t frames, int64_t joints, double cosine, uint8_t *far);
+
 /* Of positions (F, J, 3) the square of each frame's third difference, summed over joints, (F - 3,). Returns the largest
    of any joint, and at which frame and joint. */
 double squared_jerks(

@@ -192,12 +192,42 @@ static PyObject *steps(PyObject *self, PyObject *arguments)
     Py_RETURN_NONE;
 }
 
+static PyObject *bends(PyObject *self, PyObject *arguments)
+{
+    Held held = {.count = 0};
+    PyObject *positions, *rotations, *limbs, *results[3];
+    long long frames, joints, first, count;
+    double bent;
+    Poses poses;
+    int fits = 0;
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "OOLLLOLdOOO", &positions, &rotations, &frames, &joints, &first, &limbs, &count,
+            &bent, results, results + 1, results + 2))
+        return NULL;
+    if (poses_of(&held, positions, rotations, frames, joints, &poses)) {
+        const int64_t *which = joints_of(&held, limbs, 4 * count, &poses);
+        double *sines = which == NULL ? NULL : items_of(&held, results[0], frames * count, sizeof *sines, 1, "sines");
+        double *axes = sines == NULL ? NULL : items_of(&held, results[1], 3 * count, sizeof *axes, 1, "axes");
+        uint8_t *shown = axes == NULL ? NULL : items_of(&held, results[2], count, 1, 1, "limbs");
+        fits = shown != NULL && poses.positions != NULL && poses.rotations != NULL;
+        if (fits)
+            bent_sides(&poses, first, which, bent, count, sines, axes, shown);
+        else if (!PyErr_Occurred())
+            PyErr_SetString(PyExc_ValueError, "no positions or rotations");
+    }
+    let_go(&held);
+    if (!fits)
+        return NULL;
+    Py_RETURN_NONE;
+}
+
 PyMethodDef body_methods[] = {
     {"ways", ways, METH_VARARGS, "Write sums of ways between joints, seen from others."},
     {"products", products, METH_VARARGS, "Write sums of products of joints' rotations."},
     {"widest", widest, METH_VARARGS, "Write how far joints swing and twist about their centers."},
     {"carried", carried, METH_VARARGS, "Write where points in joints' frames are at each frame."},
     {"steps", steps, METH_VARARGS, "Write the largest step of each joint, and the frames into which these lead."},
+    {"bends", bends, METH_VARARGS, "Write how much limbs are bent at each frame, and about which axes."},
     {"jerks", jerks, METH_VARARGS, "Write squared third differences; return the largest, its frame and joint."},
     {NULL, NULL, 0, NULL},
 };

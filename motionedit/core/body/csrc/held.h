@@ -27,6 +27,20 @@ static inline void *items_of(Held *held, PyObject *given, int64_t count, size_t 
     return NULL;
 }
 
+/* Where as many numbers are as are given, and how many; NULL, and an error, where they are no doubles. */
+static inline const double *some_of(Held *held, PyObject *given, int64_t *count, const char *name)
+{
+    Py_buffer *buffer = held->held + held->count;
+    if (PyObject_GetBuffer(given, buffer, PyBUF_SIMPLE) < 0)
+        return NULL;
+    held->count++;
+    *count = buffer->len / (Py_ssize_t)sizeof(double);
+    if (buffer->len % (Py_ssize_t)sizeof(double) == 0)
+        return buffer->buf;
+    PyErr_Format(PyExc_ValueError, "%s: %zd bytes do not fit", name, buffer->len);
+    return NULL;
+}
+
 static inline void let_go(Held *held)
 {
     for (int i = 0; i < held->count; i++)

@@ -2,6 +2,7 @@
 
 #include "body.h"
 
+#include <float.h>
 #include <string.h>
 
 #define ONE_LANE
@@ -131,6 +132,69 @@ void largest_steps(const double *before, const double *after, int64_t frames, in
         }
         if (!differ)
             angles[j] = 0.0, into[j] = first + 1;
+    }
+}
+
+void bent_sides(const Poses *poses, int64_t first, const int64_t *limbs, double bent, int64_t count, double *sines,
+    double *axes, uint8_t *shown)
+{
+    memset(axes, 0, 3 * sizeof *axes * (size_t)count);
+    memset(shown, 0, (size_t)count);
+    for (int64_t f = 0; f < poses->frames; f++)
+        for (int64_t i = 0; i < count; i++, sines++) {
+            const double *top = place_of(poses, f, limbs[4 * i]), *joint = place_of(poses, f, limbs[4 * i + 1]);
+            const double *end = place_of(poses, f, limbs[4 * i + 2]);
+            const double upper[3] = {joint[0] - top[0], joint[1] - top[1], joint[2] - top[2]};
+            const double lower[3] = {end[0] - joint[0], end[1] - joint[1], end[2] - joint[2]};
+            const double both = sqrt(dot(upper, upper)) * sqrt(dot(lower, lower));
+            const double lengths = both > DBL_MIN ? both : DBL_MIN;
+            double side[3], inverse[4], own[3];
+            cross(upper, lower, side);
+            for (int a = 0; a < 3; a++)
+                side[a] /= lengths;
+            *sines = sqrt(dot(side, side));
+            if (f < first || !(*sines > bent))
+                continue;
+            shown[i] = 1;
+            q_conjugate(turn_of(poses, f, limbs[4 * i + 3]), inverse);
+            q_turn(inverse, side, own);
+            add(axes + 3 * i, own);
+        }
+}
+
+void same_frames(const double *one, const double *other, int64_t frames, int64_t width, uint8_t *same)
+{
+    for (int64_t f = 0; f < frames; f++, one += width, other += width)
+        for (int64_t i = 0; i < width && same[f]; i++)
+            same[f] = one[i] == other[i];
+}
+
+void turned_otherwise(const double *before, const double *after, int64_t count, double least, uint8_t *turned)
+{
+    for (int64_t i = 0; i < count; i++, before += 4, after += 4) {
+        double inverse[4], turn[4];
+        q_conjugate(before, inverse);
+        q_multiply(inverse, after, turn);
+        turned[i] = 2.0 * fabs(turn[1]) > least || 2.0 * fabs(turn[2]) > least || 2.0 * fabs(turn[3]) > least;
+    }
+}
+
+void stepping_joints(
+    const double *before, const double *after, int64_t frames, int64_t joints, double cosine, uint8_t *far)
+{
+    memset(far, 0, (size_t)joints);
+    for (int64_t j = 0; j < joints; j++) {
+        double last[4] = {0.0};
+        for (int64_t f = 0; f < frames && !far[j]; f++) {
+            const int64_t at = 4 * (f * joints + j);
+            double inverse[4], change[4];
+            q_conjugate(before + at, inverse);
+            q_multiply(inverse, after + at, change);
+            if (f > 0)
+                far[j] = fabs(last[0] * change[0] + last[1] * change[1] + last[2] * change[2] + last[3] * change[3]) <
+                         cosine;
+            memcpy(last, change, sizeof last);
+        }
     }
 }
 

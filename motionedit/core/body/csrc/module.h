@@ -7,6 +7,6 @@
 #define Py_LIMITED_API 0x030B0000
 #include <Python.h>
 
-extern PyMethodDef body_methods[], feet_methods[];
+extern PyMethodDef body_methods[], change_methods[], feet_methods[];
 
 #endif

@@ -812,7 +812,8 @@ static int add_tables(PyObject *module)
     for (int i = 0; fits && i < MOST_SOLVERS; i++)
         fits = !has_solver(i) || appends(solvers, SOLVERS[i].name);
     fits = fits && PyModule_AddFunctions(module, body_methods) == 0 &&
-           PyModule_AddFunctions(module, feet_methods) == 0 && PyModule_AddObjectRef(module, "records", records) == 0 &&
+           PyModule_AddFunctions(module, change_methods) == 0 && PyModule_AddFunctions(module, feet_methods) == 0 &&
+           PyModule_AddObjectRef(module, "records", records) == 0 &&
            PyModule_AddObjectRef(module, "row_kinds", kinds) == 0 &&
            PyModule_AddObjectRef(module, "solvers", solvers) == 0;
     Py_XDECREF(records);

@@ -96,15 +96,13 @@ class Targets:
 
     def positions_at(self, frames: IntArray) -> FloatArray:
         """Return the positions at frames of the clip, shape (N, 3)."""
-        at: FloatArray = self.all_positions[frames - self.first]
-        return at
+        return _at(self.all_positions, frames, self.first)
 
     def rotations_at(self, frames: IntArray) -> FloatArray:
         """Return the rotations at frames of the clip, shape (N, 4)."""
         if self.rotations is None:
             raise ValueError("these targets have no rotations")
-        at: FloatArray = self.rotations[frames - self.first]
-        return at
+        return _at(self.rotations, frames, self.first)
 
     @property
     def all_lengths(self) -> FloatArray:
@@ -115,8 +113,16 @@ class Targets:
 
     def lengths_at(self, frames: IntArray) -> FloatArray:
         """Return the lengths at frames of the clip, shape (N,)."""
-        at: FloatArray = self.all_lengths[frames - self.first]
-        return at
+        return _at(self.all_lengths, frames, self.first)
+
+
+def _at(values: FloatArray, frames: IntArray, first: int) -> FloatArray:
+    """Return values, those of frames from `first` on, at growing frames; those that follow each other are a view."""
+    start, count = int(frames[0]) - first, len(frames)
+    if int(frames[-1]) - first == start + count - 1:
+        return values[start : start + count]
+    at: FloatArray = values[frames - first]
+    return at
 
 
 def between(one: Targets, other: Targets, share: FloatArray) -> Targets:

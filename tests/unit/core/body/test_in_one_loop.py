@@ -46,7 +46,7 @@ def read(motion, first):
     beyond = beyond_range(motion, other, regions_of(SKELETON, BODY, travel=0), **touched)
     back = bent_back(motion, other, BODY, bends, **touched)
     return [
-        *(each for bend in bends for each in (bend.axis, bend.upper, bend.lower, bend.angles)),
+        *(each for bend in bends for each in (bend.axis, bend.straight, bend.upper, bend.lower, bend.angles)),
         *(np.array([*limit.center, *limit.along, limit.swing, limit.twist]) for limit in limits),
         *(center_of_mass(poses, find_masses(SKELETON, BODY)), squares, np.array(worst)),
         np.array([(each.joint, each.frame, each.degrees) for each in (*beyond, *back)]),
@@ -64,6 +64,19 @@ def test_what_is_compiled_is_that_of_numpy(reach, first, monkeypatch):
     monkeypatch.setenv("MOTIONEDIT_SOLVER", "numpy")
     for one, other in zip(found, read(motion, first), strict=True):
         np.testing.assert_allclose(one, other, rtol=1e-12, atol=1e-12)
+
+
+@pytest.mark.compiled
+def test_a_limb_that_is_never_bent_is_found_beside_one_that_is(monkeypatch):
+    motion = standing(SKELETON, frames=5)
+    rotations = motion.rotations.copy()
+    rotations[:, BODY.legs[0].knee] = rot.exp(np.array([0.5, 0.0, 0.0]))
+    poses = forward(replace(motion, rotations=rotations))
+    found = find_bends(SKELETON, poses, BODY, first=0)
+    monkeypatch.setenv("MOTIONEDIT_SOLVER", "numpy")
+    other = find_bends(SKELETON, poses, BODY, first=0)
+    assert [bend.joint for bend in found] == [bend.joint for bend in other]
+    np.testing.assert_array_equal([bend.axis for bend in found], [bend.axis for bend in other])
 
 
 @pytest.mark.parametrize("frames", range(4))
@@ -91,6 +104,21 @@ def test_joints_and_arrays_that_are_none_are_an_error_and_no_crash():
         compiled().jerks(places, 2, 2, np.zeros(0))
     with pytest.raises(ValueError, match="results: 8 bytes do not fit"):
         compiled().jerks(places, 5, 2, np.zeros(1))
+    limbs, out = np.zeros((1, 4), int), (np.zeros(5), np.zeros(3), np.zeros(1, bool))
+    with pytest.raises(ValueError, match="no positions or rotations"):
+        compiled().bends(places, None, 5, 2, 0, limbs, 1, 0.1, *out)
+    with pytest.raises(ValueError, match="sines: 8 bytes do not fit"):
+        compiled().bends(places, turns, 5, 2, 0, limbs, 1, 0.1, np.zeros(1), *out[1:])
+    with pytest.raises(ValueError, match="no joint 2"):
+        compiled().bends(places, turns, 5, 2, 0, limbs + 2, 1, 0.1, *out)
+    with pytest.raises(ValueError, match="numbers of other frames"):
+        compiled().same(turns, turns[:4], places, places, 5, np.zeros(5, bool))
+    with pytest.raises(ValueError, match="frames: 4 bytes do not fit"):
+        compiled().same(turns, turns, places, places, 5, np.zeros(4, bool))
+    with pytest.raises(ValueError, match="rotations: 320 bytes do not fit"):
+        compiled().turned(turns, turns, 5, 0.1, np.zeros(5, bool))
+    with pytest.raises(ValueError, match="rotations: 320 bytes do not fit"):
+        compiled().stepping(turns, turns, 4, 2, 0.9, np.zeros(2, bool))
     with pytest.raises(ValueError, match="no rotations"):
         compiled().steps(turns, None, 5, 2, 0, np.zeros(2), np.zeros(2, int))
     with pytest.raises(ValueError, match="frames: 8 bytes do not fit"):
