@@ -16,6 +16,7 @@ from motionedit.core.compiled import CHOICE, solver_name
 from motionedit.core.motion import Motion
 from motionedit.core.priorities import numpy_solver
 from motionedit.core.priorities.edit import PrioritizedEdit, edit_by_priorities, prepare
+from motionedit.core.priorities.frames import solve_from_input
 from motionedit.core.priorities.passes import solve_in_passes
 from motionedit.core.priorities.settings import Body, LayeredSettings, Passes
 from motionedit.jobs.batch.plan import ClipTask
@@ -52,8 +53,13 @@ class Case:
     def _passes(self, count: int) -> Passes:
         return Passes(count, self.settings.smoothing.sigma if isinstance(self.settings.smoothing, Passes) else 0.0)
 
-    def solve(self, passes: int = 0) -> Callable[[], object]:
-        """Return a function that solves every frame, and again after each pass: targets and layout are made before."""
+    def first_solve(self) -> Callable[[], object]:
+        """Return a function that solves every frame once, from the input: targets and layout are made before."""
+        run, _ = prepare(self.motion, self.constraints, self.body, self.settings)
+        return lambda: solve_from_input(run)
+
+    def solve(self, passes: int) -> Callable[[], object]:
+        """Return a function that also lets give way what is missed, and solves again after each pass."""
         run, _ = prepare(self.motion, self.constraints, self.body, self.settings)
         return lambda: solve_in_passes(run, self._passes(passes))
 
@@ -106,7 +112,7 @@ def only_numpy() -> AbstractContextManager[None]:
 def _reaching_rows(walk: Case) -> list[Row]:
     frames = len(walk.motion)
     with only_numpy():
-        plain = walk.solve()
+        plain = walk.first_solve()
 
     def by_numpy() -> object:
         with only_numpy():
@@ -121,7 +127,7 @@ def _reaching_rows(walk: Case) -> list[Row]:
 
     contenders: dict[str, Callable[[], object]] = {"numpy": by_numpy, "one by one": one_by_one}
     if solver_name() == "compiled":
-        contenders |= {"solve": walk.solve(), "passes": walk.solve(3), "whole": lambda: walk.edit(3)}
+        contenders |= {"solve": walk.first_solve(), "passes": walk.solve(3), "whole": lambda: walk.edit(3)}
     rate = {name: frames / seconds for name, seconds in best_of(contenders, rounds=4).items()}
     numpy_row = Row(
         "reaching, numpy alone: first solve, all frames together",
@@ -172,7 +178,7 @@ def _growth_rows(walk: Case, scratch: Path) -> list[Row]:
         cases[f"{count} layers"] = case(WALK, {"constraints": chosen}, scratch)
     found = []
     for name, each in cases.items():
-        solve = each.solve()
+        solve = each.first_solve()
         seconds = best_of({"solve": solve}, rounds=2)["solve"]
         edit = each.edit(0)
         microseconds = 1e6 * seconds / max(int(edit.iterations.sum()), 1)
@@ -197,8 +203,8 @@ def _real_rows(clips: Path, scratch: Path) -> list[Row]:
     far = [*foot_plants(walk), *reach(walk)]
     far[-2] = {**far[-2], "points": [{"shift": [0.0, 60.0, 0.0], "hold": [10, 500]}]}
     cases["far"] = case(walk, {"constraints": far}, scratch)
-    solves = {name: each.solve() for name, each in cases.items()}
-    passes = {f"{name}, passes": each.solve(3) for name, each in cases.items() if name != "far"}
+    solves = {name: each.first_solve() for name, each in cases.items()}
+    passes = {f"{name}, passes": each.solve(3) for name, each in cases.items()}
     best = best_of({**solves, **passes}, rounds=3)
     rate = {name: len(cases[name.partition(",")[0]].motion) / seconds for name, seconds in best.items()}
     share, lost = rate["big"] / rate["walk"], _above_the_unmet(cases["far"].edit(3))
@@ -215,6 +221,7 @@ def _real_rows(clips: Path, scratch: Path) -> list[Row]:
         ),
         Row("CMU 07_04: three passes", f"{rate['big, passes']:,.0f} frames/s"),
         _at_least("CMU 12_01, the hand out of reach: first solve", rate["far"], 5_000.0),
+        _at_least("the same, which gives way, in three passes", rate["far, passes"], 1_600.0),
         Row(
             "the layers above it have left at most",
             f"{1000.0 * lost:.4f} mm",

@@ -24,6 +24,13 @@ def compiled() -> Any:  # noqa: ANN401  as above
     return None if module is None or module.is_set(CHOICE, "numpy") else module
 
 
+def room(count: int) -> bytes:
+    """Return so many bytes, for a stream that alone has them and writes them: what they are is not told."""
+    module = compiled()
+    found: bytes = bytes(count) if module is None else module.room(count)
+    return found
+
+
 def solver_name() -> str:
     """Return which solver runs: ``compiled`` or ``numpy``."""
     return "numpy" if compiled() is None else "compiled"

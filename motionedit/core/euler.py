@@ -15,7 +15,7 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.compiled import compiled
-from motionedit.core.motion import position_columns, slice_or_all
+from motionedit.core.motion import position_columns
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -24,7 +24,8 @@ if TYPE_CHECKING:
     from motionedit.core.motion import Motion
 
 TURN = 2.0 * np.pi
-_DEGREES = 180.0 / np.pi
+# As `np.degrees` has it.
+DEGREES = 180.0 / np.pi
 _MOST_WOUND = 1e8  # degrees: six of the digits after the point are left
 # Within this angle (rad, 1e-4 degrees) of gimbal lock the last angle is kept. The rebuilt rotation is off by no more
 # than that; a wider band would cost more than the 2e-4 degrees that are promised.
@@ -55,22 +56,17 @@ def joint_angles(motion: Motion, *, start: FloatArray) -> FloatArray:
     for p, joint in enumerate(skeleton.translated.tolist()):
         for axis, column in position_columns(skeleton, joint):
             values[:, column] = motion.translations[:, p, axis]
+    room = room_together(len(motion), len(skeleton))
     for group in skeleton.rotation_groups:
         for joints, columns in joints_together(group.joints, group.columns, frames=len(motion)):
-            solved = solved_tracks(motion.rotations, joints, group.axes)
+            solved = solved_tracks(motion.rotations, joints, group.axes, room=room)
             seeds = radians(start[columns])
             locked = np.flatnonzero(gimbal_locked(solved).any(axis=-1)).tolist()
             whole = [(k, 0, len(motion)) for k in range(len(joints))]
             angles = nearest_in_runs(solved, np.array(whole, dtype=np.int64), seeds, use_up=not locked)
             for k in locked:
                 angles[k] = near(motion.rotations[:, joints[k]], group.axes, solved[:, k], seeds[k]).T
-            own = slice_or_all(columns.reshape(-1))
-            if isinstance(own, slice):
-                # As `np.degrees` has it, and laid out as rows at once.
-                rows = values[:, own].reshape(-1, *columns.shape)
-                np.multiply(angles.transpose(2, 0, 1), _DEGREES, out=rows)
-            else:
-                values[:, own] = np.degrees(angles).transpose(2, 0, 1).reshape(len(motion), -1)
+            rows_of_tracks(angles, columns, factor=DEGREES, out=values)
     return values
 
 
@@ -81,25 +77,46 @@ def joints_together(joints: IntArray, columns: IntArray, *, frames: int) -> Iter
         yield joints[first : first + step], columns[first : first + step]
 
 
+def room_together(frames: int, joints: int) -> FloatArray:
+    """Return memory for the angles of as many of so many joints as `joints_together` yields at a time."""
+    return np.empty(3 * min(max(_HELD, frames), frames * joints))
+
+
+def rows_of_tracks(tracks: FloatArray, columns: IntArray, *, factor: float, out: FloatArray) -> None:
+    """Write tracks, shape (G, A, F), times a factor into columns (G, A) of rows `out`, shape (F, C)."""
+    kernel = compiled()
+    if kernel is None:
+        out[:, columns.reshape(-1)] = (tracks * factor).reshape(-1, tracks.shape[2]).T
+        return
+    places = np.ascontiguousarray(columns, dtype=np.int64)
+    kernel.rows_of_tracks(np.ascontiguousarray(tracks), places, tracks.shape[2], factor, out)
+
+
 def solved_tracks(
-    rotations: FloatArray, joints: IntArray, axes: tuple[int, ...], *, out: FloatArray | None = None
+    rotations: FloatArray, joints: IntArray, axes: tuple[int, ...], *, room: FloatArray | None = None
 ) -> FloatArray:
     """Return one solution of the Euler angles (rad) of some joints at all frames, shape (A, G, F).
 
     `rotations`, shape (F, J, 4), are those of all joints: block by block, for to pick joint after joint out of a
-    long clip takes longer than to solve them. `out`, shape (G, A, F), is the result's memory, if it is given.
+    long clip takes longer than to solve them. `room`, at least as many numbers as there are angles, is the result's
+    memory, if it is given: a system gives memory slowly.
     """
     # Joint by joint in memory, as they are made continuous.
-    solved = (np.empty((len(joints), len(axes), len(rotations))) if out is None else out).swapaxes(0, 1)
+    count = len(joints) * len(axes) * len(rotations)
+    whole = np.empty(count) if room is None else room[:count]
+    solved = whole.reshape(len(joints), len(axes), len(rotations)).swapaxes(0, 1)
     kernel = compiled() if len(axes) == 3 else None
     rotations = np.ascontiguousarray(rotations, dtype=np.float64)
     places = np.ascontiguousarray(joints, dtype=np.int64)
-    for block in _blocks(len(rotations), len(joints)):
+    blocks = list(_blocks(len(rotations), len(joints)))
+    scratch = np.empty(6 * len(joints) * max((block.stop for block in blocks[:1]), default=0))
+    for block in blocks:
         if kernel is None:
             q = np.ascontiguousarray(rotations[block, joints].transpose(2, 1, 0))
             solved[:, :, block] = solve_angles(q, axes)
         else:
-            sums = np.empty((6, len(joints), block.stop - block.start))
+            shape = 6, len(joints), block.stop - block.start
+            sums = scratch[: 6 * shape[1] * shape[2]].reshape(shape)
             kernel.euler_sums(rotations[block], rotations.shape[1], places, *axes, sums)
             solved[:, :, block] = _angles_of_sums(sums, axes)
     return solved

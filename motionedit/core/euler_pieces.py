@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.euler import (
+    DEGREES,
     TURN,
     angles_near,
     gimbal_locked,
@@ -16,12 +17,14 @@ from motionedit.core.euler import (
     near,
     nearest_in_runs,
     radians,
+    room_together,
+    rows_of_tracks,
     solved_tracks,
 )
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.motion import Motion
@@ -42,11 +45,28 @@ class Piece:
     angles: FloatArray | None
 
 
+def touched_angles(motion: Motion, touched: BoolArray, *, given: GivenRows, columns: IntArray, out: FloatArray) -> None:
+    """Write the angles of the touched frames of each joint, degrees, as `touched_pieces` has them, all at once.
+
+    Parameters
+    ----------
+    touched, given
+        As of `touched_pieces`.
+    columns : shape (C,)
+        Where each channel goes in the rows of the result.
+    out : shape (F, K)
+        Receives them. Of a joint that is touched anywhere, frames that are not get any angles.
+    """
+    for solved in _solved(motion, touched, _Given(given, whole=True, frames=len(motion))):
+        rows_of_tracks(solved.angles, columns[solved.columns], factor=DEGREES, out=out)
+
+
 def touched_pieces(motion: Motion, touched: BoolArray, *, given: GivenRows, size: int) -> dict[int, list[Piece]]:
     """Return the touched frames of each joint in pieces that can be solved by themselves, for `piece_angles`.
 
     Each run of touched frames starts from the input's angles at the frame before it, or at frame 0, and meets the
-    frame after it without a turn that the input has not.
+    frame after it without a turn that the input has not. They are solved again piece by piece, which costs time but
+    hardly any memory.
 
     Parameters
     ----------
@@ -55,35 +75,47 @@ def touched_pieces(motion: Motion, touched: BoolArray, *, given: GivenRows, size
     given : callable
         given(start, stop) are the input's channel values of those frames, shape (stop - start, C).
     size : int
-        No piece reaches over a multiple of this many frames. Clips of no more frames keep their angles, longer ones
-        solve them again piece by piece, which costs time but hardly any memory.
+        No piece reaches over a multiple of this many frames.
     """
-    values = _Given(given, whole=len(motion) <= size, frames=len(motion))
-    turned = np.asarray(touched.any(axis=0))
     pieces: dict[int, list[Piece]] = {}
+    for solved in _solved(motion, touched, _Given(given, whole=False, frames=len(motion))):
+        angles = solved.angles
+        degrees = angles if solved.plain.all() else np.degrees(angles)
+        for i, (k, start, stop) in enumerate(solved.runs.tolist()):
+            keep, seed = not solved.plain[i], solved.seeds[i]
+            for one, other in pairwise((start, *range((start // size + 1) * size, stop, size), stop)):
+                piece = Piece(one, other, seed, degrees[k, :, one:other].T if keep else None)
+                pieces.setdefault(int(solved.joints[k]), []).append(piece)
+                seed = angles[k, :, other - 1].copy()
+    return pieces
+
+
+@dataclass(frozen=True, eq=False)
+class _Solved:
+    """G joints that were solved together: their `columns` (G, A), their R `runs`, and what `_angles_of` returns."""
+
+    joints: IntArray
+    columns: IntArray
+    runs: IntArray
+    angles: FloatArray
+    seeds: FloatArray
+    plain: BoolArray
+
+
+def _solved(motion: Motion, touched: BoolArray, values: _Given) -> Iterator[_Solved]:
+    """Yield the touched joints, some at a time, with their angles in their runs of touched frames.
+
+    The angles' memory serves the next ones, too.
+    """
+    room = room_together(len(motion), len(motion.skeleton))
+    everywhere = bool(touched.all())
+    turned = np.asarray(touched.any(axis=0))
     for group in motion.skeleton.rotation_groups:
         places = np.flatnonzero(turned[group.joints])
-        # What is held is one array: memory is had faster in large pieces.
-        held = np.empty((len(places), len(group.axes), len(motion))) if len(motion) <= size else None
-        done = 0
         for joints, columns in joints_together(group.joints[places], group.columns[places], frames=len(motion)):
-            runs = _runs_of(touched[:, joints].T)
-            out = None if held is None else held[done : done + len(joints)]
-            done += len(joints)
+            runs = _whole(len(joints), len(motion)) if everywhere else _runs_of(touched[:, joints].T)
             tracks = _Tracks(motion.rotations, joints, group.axes)
-            angles, seeds, plain = _angles_of(tracks, columns, runs, values, out=out)
-            if len(motion) <= size:
-                # In place: no piece is followed by another that begins from its end.
-                degrees, plain = np.degrees(angles, out=angles), np.zeros_like(plain)
-            else:
-                degrees = angles if plain.all() else np.degrees(angles)
-            for i, (k, start, stop) in enumerate(runs.tolist()):
-                keep, seed = not plain[i], seeds[i]
-                for one, other in pairwise((start, *range((start // size + 1) * size, stop, size), stop)):
-                    piece = Piece(one, other, seed, degrees[k, :, one:other].T if keep else None)
-                    pieces.setdefault(int(joints[k]), []).append(piece)
-                    seed = angles[k, :, other - 1].copy()
-    return pieces
+            yield _Solved(joints, columns, runs, *_angles_of(tracks, columns, runs, values, room))
 
 
 class _Given:
@@ -127,7 +159,7 @@ class _Tracks:
 
 
 def _angles_of(
-    tracks: _Tracks, columns: IntArray, runs: IntArray, given: _Given, *, out: FloatArray | None
+    tracks: _Tracks, columns: IntArray, runs: IntArray, given: _Given, room: FloatArray
 ) -> tuple[FloatArray, FloatArray, BoolArray]:
     """Return the angles (rad) of joints in their runs of touched frames, the runs' seeds, and which are plain.
 
@@ -137,8 +169,8 @@ def _angles_of(
         The columns of the joints' channels.
     runs : shape (R, 3)
         By `_runs_of`.
-    out : shape (G, A, F), optional
-        Memory for the angles.
+    room : FloatArray
+        Memory for the angles, as of `solved_tracks`.
 
     Returns
     -------
@@ -151,7 +183,7 @@ def _angles_of(
     """
     of, starts, stops = runs.T
     axes, frames = tracks.axes, len(tracks.rotations)
-    solved = solved_tracks(tracks.rotations, tracks.joints, axes, out=out)
+    solved = solved_tracks(tracks.rotations, tracks.joints, axes, room=room)
     seeds = given.at(np.maximum(starts - 1, 0), columns[of])
     locked, inner = np.flatnonzero(gimbal_locked(solved).any(axis=-1)).tolist(), np.flatnonzero(stops < frames)
     angles = nearest_in_runs(solved, runs, seeds, use_up=not (locked or len(inner)))
@@ -207,6 +239,11 @@ def _runs_of(masks: BoolArray) -> IntArray:
     padded[:, 1:-1] = masks
     of, edges = np.nonzero(padded[:, 1:] != padded[:, :-1])
     return np.column_stack((of[::2], edges[::2], edges[1::2]))
+
+
+def _whole(joints: int, frames: int) -> IntArray:
+    """Return the runs of so many joints that are touched at all frames, as `_runs_of`."""
+    return np.column_stack((np.arange(joints), np.zeros(joints, np.intp), np.full(joints, frames)))
 
 
 def _turns(extra: FloatArray) -> IntArray:

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.body.anatomy import Anatomy, Part
     from motionedit.core.kinematics import WorldPoses
-    from motionedit.core.motion import Motion
 
 # Lengths and speeds for a leg of `STANDARD_LEG`; a clip's own unit is scaled to it.
 _WHILE = 0.04  # s, over which speed is measured: 2 mm of noise at 240 Hz is 0.5 m/s from frame to frame
@@ -153,7 +152,7 @@ class FootPlant:
     phases: tuple[Plant, ...]
 
 
-def find_plants(motion: Motion, poses: WorldPoses, anatomy: Anatomy, *, up: FloatArray, first: int) -> list[Plant]:
+def plants_of(tracks: FloatArray, anatomy: Anatomy, *, up: FloatArray, first: int, frame_time: float) -> list[Plant]:
     """Return the plants of heels and toes, each point by itself, in the order of their first frames.
 
     A point is planted while its speed over 40 ms is below 0.45 m/s, if it gets below 0.3, and it is no more than 5 cm
@@ -163,23 +162,13 @@ def find_plants(motion: Motion, poses: WorldPoses, anatomy: Anatomy, *, up: Floa
 
     Parameters
     ----------
+    tracks : shape (F, P, 3)
+        Those of `sole_tracks`.
     up : shape (3,)
         Signed unit axis.
     first : int
         The first frame after a rest pose; earlier ones are never planted.
     """
-    return plants_of(sole_tracks(poses, anatomy), anatomy, up=up, first=first, frame_time=motion.frame_time)
-
-
-def sole_tracks(poses: WorldPoses, anatomy: Anatomy) -> FloatArray:
-    """Return the paths of `Anatomy.sole_points` in the world, shape (F, P, 3), clip units."""
-    points = anatomy.sole_points
-    joints, offsets = np.array([point.joint for point in points], np.intp), np.array([point.offset for point in points])
-    return carried(poses, joints, offsets.reshape(-1, 3))
-
-
-def plants_of(tracks: FloatArray, anatomy: Anatomy, *, up: FloatArray, first: int, frame_time: float) -> list[Plant]:
-    """Return the plants as `find_plants`; `tracks` (F, P, 3) are those of `sole_tracks`."""
     points = anatomy.sole_points
     if not points or len(tracks) - first < 2 or anatomy.leg_length <= 0.0:
         return []
@@ -189,6 +178,13 @@ def plants_of(tracks: FloatArray, anatomy: Anatomy, *, up: FloatArray, first: in
         for p, start, stop, height in found
     ]
     return sorted(plants, key=lambda plant: (plant.start, plant.foot, plant.point))
+
+
+def sole_tracks(poses: WorldPoses, anatomy: Anatomy) -> FloatArray:
+    """Return the paths of `Anatomy.sole_points` in the world, shape (F, P, 3), clip units."""
+    points = anatomy.sole_points
+    joints, offsets = np.array([point.joint for point in points], np.intp), np.array([point.offset for point in points])
+    return carried(poses, joints, offsets.reshape(-1, 3))
 
 
 def _stands_of_all(

@@ -14,6 +14,7 @@ from motionedit.core.bvh.header import read_header
 from motionedit.core.bvh.rows import read_rows, row_capacity
 from motionedit.core.bvh.scan import LARGEST_LENGTH, refusal
 from motionedit.core.bvh.text import BvhText
+from motionedit.core.compiled import room
 from motionedit.core.motion import Motion, write_poses
 from motionedit.dataclass import dataclass
 from motionedit.errors import BvhError
@@ -136,7 +137,7 @@ def read_clip(path: Path, *, label: str | None = None, lenient: bool = False) ->
     """
     name = str(path) if label is None else label
     try:
-        data = read_file(path)
+        data = read_file(path, room=room)
     except NotAFileError as error:
         raise BvhError(f"{error.strerror}; a pipe is given as '-'", file=name) from error
     except OSError as error:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from io import BytesIO
+from itertools import chain
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,9 +10,9 @@ import numpy as np
 from motionedit.core.bvh.format import format_fixed, place
 from motionedit.core.bvh.rows import BLOCK_BYTES
 from motionedit.core.bvh.scan import words_between
-from motionedit.core.bvh.write import LONGEST_WHOLE, check_finite, decimals_of_edits, head_bytes, rows_text
+from motionedit.core.bvh.write import LONGEST_WHOLE, check_finite, decimals_of_edits, head_bytes, joined, rows_text
 from motionedit.core.compiled import compiled
-from motionedit.core.euler_pieces import piece_angles, runs, touched_pieces
+from motionedit.core.euler_pieces import piece_angles, runs, touched_angles, touched_pieces
 from motionedit.core.motion import position_columns
 from motionedit.dataclass import dataclass
 
@@ -50,13 +50,9 @@ def edited_bytes(clip: Written, motion: Motion, *, touched: BoolArray, moved: Bo
     BvhError
         Where a value to be written is not finite.
     """
-    # A stream grows in place, where joining pieces would hold the file twice.
-    stream = BytesIO()
-    for piece in edited_pieces(clip, motion, touched=touched, moved=moved):
-        if piece is clip.text.data:
-            return clip.text.data
-        stream.write(piece)
-    return stream.getvalue()
+    pieces = edited_pieces(clip, motion, touched=touched, moved=moved)
+    first = next(pieces)
+    return clip.text.data if first is clip.text.data else joined(chain((first,), pieces), about=len(clip.text.file))
 
 
 def edited_pieces(
@@ -79,9 +75,10 @@ def edited_pieces(
 
 @dataclass(frozen=True, eq=False)
 class _Plan:
-    """Which `columns` (K,) an edit touches, and each touched joint's frames in pieces."""
+    """Which `columns` (K,) an edit touches, and their `values` (F, K), or of a long clip each joint's pieces."""
 
     columns: IntArray
+    values: FloatArray | None
     pieces: dict[int, list[Piece]]
 
 
@@ -95,35 +92,65 @@ class _Edit:
 
 
 def _plan(clip: Written, motion: Motion, touched: BoolArray, moved: BoolArray | None) -> _Plan:
-    skeleton = clip.text.motion.skeleton
-    pieces = touched_pieces(motion, touched, given=clip.text.values_between, size=SEGMENT)
-    columns = [column for joint in pieces for column in skeleton.columns(joint, "rotation")]
-    for p, joint in enumerate(skeleton.translated.tolist()):
-        if moved is not None and moved[:, p].any():
-            columns += skeleton.columns(joint, "position")
-    return _Plan(np.array(sorted(columns), dtype=np.intp), pieces)
+    skeleton, given = clip.text.motion.skeleton, clip.text.values_between
+    columns = [
+        *(
+            column
+            for joint in np.flatnonzero(touched.any(axis=0)).tolist()
+            for column in skeleton.columns(joint, "rotation")
+        ),
+        *(column for _, _, column in _moved_columns(motion, moved)),
+    ]
+    every = np.array(sorted(columns), dtype=np.intp)
+    if len(motion) > SEGMENT:
+        return _Plan(every, None, touched_pieces(motion, touched, given=given, size=SEGMENT))
+    values = np.empty((len(motion), len(every)))
+    places = np.zeros(skeleton.channel_count, dtype=np.intp)
+    places[every] = np.arange(len(every))
+    touched_angles(motion, touched, given=given, columns=places, out=values)
+    for p, axis, column in _moved_columns(motion, moved):
+        values[:, places[column]] = motion.translations[:, p, axis]
+    return _Plan(every, values, {})
+
+
+def _moved_columns(motion: Motion, moved: BoolArray | None) -> list[tuple[int, int, int]]:
+    """Return the place of each joint that is moved anywhere, an axis along which it is, and the column of that."""
+    if moved is None:
+        return []
+    skeleton, joints = motion.skeleton, motion.skeleton.translated.tolist()
+    return [
+        (p, axis, column)
+        for p, joint in enumerate(joints)
+        if moved[:, p].any()
+        for axis, column in position_columns(skeleton, joint)
+    ]
 
 
 def _edit(plan: _Plan, motion: Motion, touched: BoolArray, moved: BoolArray | None, rows: slice) -> _Edit:
     """Return the new values of a segment of rows; the columns that nothing touches take no memory."""
     skeleton = motion.skeleton
     place = {column: k for k, column in enumerate(plan.columns.tolist())}
-    values = np.empty((rows.stop - rows.start, len(place)))
-    cells = np.zeros(values.shape, dtype=np.bool_)
-    for joint, pieces in plan.pieces.items():
-        columns = [place[column] for column in skeleton.columns(joint, "rotation")]
-        for piece in pieces:
-            first, last = max(piece.start, rows.start), min(piece.stop, rows.stop)
-            if first < last:
-                angles = piece_angles(motion, joint, piece=piece)[first - piece.start : last - piece.start]
-                for column, angle in zip(columns, angles.T, strict=True):
-                    values[first - rows.start : last - rows.start, column] = angle
+    positions = _moved_columns(motion, moved)
+    if plan.values is not None:
+        values = plan.values[rows]
+    else:
+        values = np.empty((rows.stop - rows.start, len(place)))
+        for joint, pieces in plan.pieces.items():
+            columns = [place[column] for column in skeleton.columns(joint, "rotation")]
+            for piece in pieces:
+                first, last = max(piece.start, rows.start), min(piece.stop, rows.stop)
+                if first < last:
+                    angles = piece_angles(motion, joint, piece=piece)[first - piece.start : last - piece.start]
+                    for column, angle in zip(columns, angles.T, strict=True):
+                        values[first - rows.start : last - rows.start, column] = angle
+        for p, axis, column in positions:
+            values[:, place[column]] = motion.translations[rows, p, axis]
+    cells = np.ones(values.shape, dtype=np.bool_)
+    for joint in np.flatnonzero(~touched[rows].all(axis=0)).tolist():
+        columns = [place[column] for column in skeleton.columns(joint, "rotation") if column in place]
         cells[:, columns] = touched[rows, joint, None]
-    for p, joint in enumerate(skeleton.translated.tolist()):
-        for axis, column in position_columns(skeleton, joint):
-            if moved is not None and column in place:
-                values[:, place[column]] = motion.translations[rows, p, axis]
-                cells[:, place[column]] = moved[rows, p]
+    for p, _, column in positions:
+        cells[:, place[column]] = True if moved is None else moved[rows, p]
     return _Edit(plan.columns, values, cells)
 
 

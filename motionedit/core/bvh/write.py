@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from io import SEEK_END, BytesIO
+from io import BytesIO
+from itertools import chain
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from motionedit.core.bvh.format import format_fixed, place
 from motionedit.core.bvh.rows import BLOCK_BYTES
-from motionedit.core.compiled import compiled
+from motionedit.core.compiled import compiled, room
 from motionedit.core.euler import joint_angles
 from motionedit.errors import BvhError
 
@@ -26,6 +27,8 @@ FEWEST_DECIMALS = 6
 LONGEST_WHOLE = 19
 # A double below 10 carries no more.
 MOST_DECIMALS = 17
+# Of a file whose length is foretold, so much is left free, one part of so many.
+_SPARE = 32
 
 
 def unedited_bytes(clip: Written) -> bytes:
@@ -44,7 +47,7 @@ def resampled_bytes(clip: Written, motion: Motion) -> bytes:
     data, header = clip.text.data, clip.text.header
     head = head_bytes(clip, frames=len(values), frame_time=motion.frame_time)
     ending = _line_ending(data, header.rows_start)
-    return _joined(head + ending, rows_pieces(values, decimals=decimals_of_edits(clip), ending=ending))
+    return _with_rows(head + ending, values, decimals=decimals_of_edits(clip), ending=ending)
 
 
 def new_bytes(motion: Motion, *, decimals: int = FEWEST_DECIMALS) -> bytes:
@@ -60,7 +63,7 @@ def new_bytes(motion: Motion, *, decimals: int = FEWEST_DECIMALS) -> bytes:
     lines = [*hierarchy_lines(skeleton, decimals), "MOTION", f"Frames: {len(values)}"]
     lines.append(f"Frame Time: {plain_number(motion.frame_time)}")
     head = "".join(f"{line}\n" for line in lines).encode()
-    return _joined(head, rows_pieces(values, decimals=decimals, ending=b"\n"))
+    return _with_rows(head, values, decimals=decimals, ending=b"\n")
 
 
 def plain_number(value: float) -> str:
@@ -96,20 +99,35 @@ def head_bytes(clip: Written, *, frames: int, frame_time: float | None = None) -
     return data[:start] + count + data[stop:time_start] + time + data[time_stop : header.rows_start]
 
 
-def _joined(head: bytes, pieces: Iterable[bytes | memoryview]) -> bytes:
-    """Return a head and pieces in one: a stream grows in place, where joining them would hold the file twice."""
-    stream = BytesIO(head)
-    stream.seek(0, SEEK_END)
+def joined(pieces: Iterable[bytes | memoryview], *, about: int) -> bytes:
+    """Return pieces in one.
+
+    Joining them would hold the file twice, and a stream that grows may be copied again and again: so it has room for
+    about so many bytes from the start.
+    """
+    stream = BytesIO(room(about + about // _SPARE))
     stream.writelines(pieces)
+    stream.truncate()
     return stream.getvalue()
+
+
+def _with_rows(head: bytes, values: FloatArray, *, decimals: int, ending: bytes) -> bytes:
+    """Return a head with rows of values below it, as `rows_pieces` has them."""
+    pieces = rows_pieces(values, decimals=decimals, ending=ending)
+    first = next(pieces, b"")
+    return joined(chain((head, first), pieces), about=len(head) + len(first) * -(-len(values) // _rows_at_once(values)))
 
 
 def rows_pieces(values: FloatArray, *, decimals: int, ending: bytes) -> Iterator[bytes | memoryview]:
     """Yield the text of rows of values, with a blank between two and the line ending after each, block by block."""
-    # A value that moves takes about ten characters.
-    step = max(BLOCK_BYTES // (10 * values.shape[1]), 1)
+    step = _rows_at_once(values)
     for start in range(0, len(values), step):
         yield rows_text(values[start : start + step], decimals=decimals, ending=ending)
+
+
+def _rows_at_once(values: FloatArray) -> int:
+    # A value that moves takes about ten characters.
+    return max(BLOCK_BYTES // (10 * int(values.shape[1])), 1)
 
 
 def rows_text(values: FloatArray, *, decimals: int, ending: bytes) -> memoryview:

@@ -63,7 +63,7 @@ def keep_feet(
     anatomy : Anatomy
         In the motions' unit, as all lengths.
     plants : sequence of Plant
-        When heels and toes stand, as `find_plants` of the reference.
+        When heels and toes stand, as `plants_of` of the reference.
     up : shape (3,)
         Signed unit axis.
     travel : int

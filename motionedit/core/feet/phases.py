@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from motionedit.core.body.contacts import sole_tracks
 from motionedit.core.compiled import compiled
 from motionedit.core.feet.reach import ROUNDING, reach_of, released
 from motionedit.core.feet.settled import settled
-from motionedit.core.feet.stance import feet_of, foot_path, spans_of, stance_of
+from motionedit.core.feet.stance import FootPath, feet_of, foot_path, spans_of, stance_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -19,7 +18,6 @@ if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
     from motionedit.core.body.anatomy import Anatomy
     from motionedit.core.body.contacts import Plant
-    from motionedit.core.feet.stance import FootPath
     from motionedit.core.kinematics import WorldPoses
 
 _ROUNDS = 6
@@ -27,20 +25,53 @@ _SHORTEST = 0.05  # s: what is left of a heel's plant, with its toe down for a p
 
 
 def find_phases(
-    poses: WorldPoses, anatomy: Anatomy, plants: Sequence[Plant], *, up: FloatArray, frame_time: float
+    tracks: FloatArray,
+    legs: Sequence[LegPath],
+    anatomy: Anatomy,
+    plants: Sequence[Plant],
+    *,
+    up: FloatArray,
+    frame_time: float,
 ) -> list[Plant]:
-    """Return plants as they can be held in one place, in the order of their first frames: `settled`, then `kept`."""
-    calm = settled(plants, sole_tracks(poses, anatomy), anatomy, up=up, frame_time=frame_time)
-    return sorted(kept(calm, poses, anatomy, frame_time), key=lambda plant: (plant.start, plant.foot, plant.point))
+    """Return plants as they can be held in one place, in the order of their first frames: `settled`, then `kept`.
+
+    Parameters
+    ----------
+    tracks : shape (F, P, 3)
+        Those of `sole_tracks`.
+    legs : sequence of LegPath
+        Of the feet in the order of `feet_of`, by `leg_paths`.
+    """
+    calm = settled(plants, tracks, anatomy, up=up, frame_time=frame_time)
+    return sorted(kept(calm, legs, anatomy, frame_time), key=lambda plant: (plant.start, plant.foot, plant.point))
 
 
-def kept(plants: Sequence[Plant], poses: WorldPoses, anatomy: Anatomy, frame_time: float) -> list[Plant]:
+class LegPath(NamedTuple):
+    """How a leg goes: ankle (F, 3), its turn (F, 4), the toe in its frame (F, 3), hip (F, 3), and `reach_of` (F,)."""
+
+    ankle: FloatArray
+    turn: FloatArray
+    toe: FloatArray
+    hip: FloatArray
+    reach: FloatArray
+
+
+def leg_paths(poses: WorldPoses, anatomy: Anatomy) -> list[LegPath]:
+    """Return how the legs of the feet go in a motion, in the order of `feet_of`."""
+    found = []
+    for foot in feet_of(anatomy):
+        path, hip = foot_path(poses, foot), poses.positions[:, foot.leg.thigh]
+        found.append(LegPath(path.ankle, path.turn, path.toe, hip, reach_of(poses, foot)))
+    return found
+
+
+def kept(plants: Sequence[Plant], legs: Sequence[LegPath], anatomy: Anatomy, frame_time: float) -> list[Plant]:
     """Return plants whose heels come up once the leg cannot hold them in one place any more (`released`)."""
     found: list[Plant] = []
     shortest, kernel = max(2, round(_SHORTEST / frame_time)), compiled()
-    for foot in feet_of(anatomy):
+    for foot, leg in zip(feet_of(anatomy), legs, strict=True):
         own = [plant for plant in plants if plant.foot == foot.side]
-        path, hip, reach = foot_path(poses, foot), poses.positions[:, foot.leg.thigh], reach_of(poses, foot)
+        path, hip, reach = FootPath(leg.ankle, leg.turn, leg.toe), leg.hip, leg.reach
         if kernel is not None:
             found += _kept_at_once(kernel.kept, own, path, shortest, hip=hip, reach=reach)
         else:

@@ -1,4 +1,4 @@
-"""When a frame's iterations come to their end: the pull and the lower layers' steps are then halved each time.
+"""When a frame's iterations come to their end: the pull and the lower layers' steps are then quartered each time.
 
 That is so over the last iterations there are, and earlier where what is missed stays missed: once steps are steady, the
 error of the most important layer that shall be met, and is far from it, no longer changes. The first layer, which is
@@ -42,6 +42,13 @@ class Annealing:
         softness : shape (N, L)
             Not 0 where a layer gives way: it need not be met.
         """
+        if iteration >= HASTY_ITERATIONS - 1:
+            self._watch(frames, errors, softness, iteration)
+        factors: FloatArray = 0.25 ** np.maximum(0, iteration + 1 - self._from[frames])
+        return factors
+
+    def _watch(self, frames: IntArray, errors: FloatArray, softness: FloatArray, iteration: int) -> None:
+        """Count the iterations in which what is missed stays so: the first is held against the last hasty one."""
         far, before = errors > MET_WITHOUT_LIMITS, self._errors[frames]
         missed, soft = far & (softness == 0.0), far & (softness > 0.0)
         differs = (errors < SAME_ERROR * before) | (before < SAME_ERROR * errors)
@@ -57,8 +64,6 @@ class Annealing:
         self._stale[frames] = np.where(stays, self._stale[frames] + 1, 0)
         early = self._stale[frames] >= STALE_ITERATIONS
         self._from[frames] = np.where(early, np.minimum(self._from[frames], iteration), self._from[frames])
-        factors: FloatArray = 0.5 ** np.maximum(0, iteration + 1 - self._from[frames])
-        return factors
 
     def are_over(self, frames: IntArray, softness: FloatArray, iteration: int) -> BoolArray:
         """Return which frames have had all their iterations, shape (N,): what gives way is not waited for."""

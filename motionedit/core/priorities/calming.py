@@ -113,7 +113,9 @@ def _calmest(layers: _Layers, members: list[int], before: FloatArray, smoothing:
         yielding = {k: _yielding(layers.asked, k, new) for k in members}
         if further is None or not any(frames.any() for frames in yielding.values()):
             break
-        layers = _smooth(*given_way(layers.asked, yielding, smoothing, further=further), smoothing)
+        layers = _smooth(
+            *given_way(layers.asked, yielding, smoothing, further=further, start=layers.state.motion), smoothing
+        )
     return calmest
 
 

@@ -17,8 +17,8 @@ FULL_GAIN_ITERATIONS = 8
 GAIN_DECAY = 0.85
 # After so many iterations what is left may be out of reach, and steps are kept from swinging.
 HASTY_ITERATIONS = 8
-# Over so many last iterations the lower layers' largest error and the gain are halved each time.
-ANNEALED_ITERATIONS = 10
+# Over so many last iterations the lower layers' largest error and the gain are quartered each time.
+ANNEALED_ITERATIONS = 5
 # That begins earlier where in so many steady iterations the length of an error, metres or radians at least, was this
 # share of what it had been.
 STALE_ITERATIONS, FAR_ERROR, SAME_ERROR = 3, 0.05, 0.98

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motionedit.core.priorities.frames import Known, run_of, solve_from_input
+from motionedit.core.priorities.frames import Known, run_of, solve_frames, solve_from_input
 from motionedit.core.priorities.ramps import ending_in
 from motionedit.core.priorities.shares import shares_of
 from motionedit.core.priorities.smoothing import in_passes
@@ -79,8 +79,12 @@ def within_reach(run: Run, state: Solved, smoothing: Passes) -> Reached:
         above, along[level] = given_way(above, dict(zip(members, missed, strict=True)), smoothing)
         asked = with_paths(asked, above, here)
         run = run_of(asked)
-        goes_on = smoothing.count and level == asked.levels[-1]
-        state = along.pop(level) if goes_on else bent_where_missed(run, solve_from_input(run))
+        if smoothing.count and level == asked.levels[-1]:
+            state = along.pop(level)
+        else:
+            start = along[level].motion
+            state = solve_frames(run, start, reference=run.motion, pull_root=False)
+            state = bent_where_missed(run, state)
     return Reached(run, in_passes(run, state, smoothing), along)
 
 
@@ -101,7 +105,12 @@ def _missed(asked: Asked, which: list[int], motion: Motion) -> BoolArray:
 
 
 def given_way(
-    above: Asked, missed: Mapping[int, BoolArray], smoothing: Passes, *, further: float = 1.0
+    above: Asked,
+    missed: Mapping[int, BoolArray],
+    smoothing: Passes,
+    *,
+    further: float = 1.0,
+    start: Motion | None = None,
 ) -> tuple[Asked, Solved]:
     """Return what is asked of a motion with paths that can be reached for constraints that are missed at frames (F,).
 
@@ -121,7 +130,7 @@ def given_way(
         return run.aimed_at(toward(soft, original, shares, smooth))
 
     run = run_of(soft)
-    state = solve_from_input(run)
+    state = solve_from_input(run) if start is None else solve_frames(run, start, reference=motion, pull_root=False)
     state = in_passes(run, state, replace(smoothing, sigma=_SMOOTHER * further * smoothing.sigma), aimed=aimed)
     everywhere = {k: np.ceil(share) for k, share in shares.items()}
     led = ending_in(above, state.ends, shares)

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 # A change that steps gets more passes, this many at most, around its frames, blended in over so many seconds,
 _MORE_PASSES, _RAMP = 8, 0.6
+# this many where what is solved is a way to a path alone: more of them lead it astray,
+_MORE_ON_THE_WAY = 3
 # and no more once so many of them have hardly helped.
 _PATIENCE, _PROGRESS = 3, 0.95
 # lambda^2 of a goal that is half eased in them, (m/rad)^2.
@@ -56,11 +58,12 @@ def in_passes(run: Run, state: Solved, smoothing: Passes, *, aimed: Callable[[Mo
         state = _solved(now, smooth, known) if left else _led(now, smooth, known)
         del smooth
     found, share = [np.inf] * _PATIENCE, np.ones(len(motion))
-    for more in range(_MORE_PASSES + 1 if smoothing.count else 0):
+    most = _MORE_PASSES if aimed is None else _MORE_ON_THE_WAY
+    for more in range(most + 1 if smoothing.count else 0):
         steps = steps_at(run, state.motion, within=share)
         state.steps = None if more else steps  # of all frames
         largest = float(steps.max(initial=0.0))
-        if largest == 0.0 or more == _MORE_PASSES or largest > _PROGRESS * found[-_PATIENCE]:
+        if largest == 0.0 or more == most or largest > _PROGRESS * found[-_PATIENCE]:
             break
         found.append(largest)
         share = shares_of(steps > 0.0, max(1, round(_RAMP / motion.frame_time)))

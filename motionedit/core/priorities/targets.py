@@ -11,7 +11,8 @@ import numpy as np
 from motionedit.core.priorities.far_turns import arcs_of
 from motionedit.core.priorities.frames import run_of, solve_from_input
 from motionedit.core.priorities.groups import Asked, seen_by
-from motionedit.core.priorities.kinds.constraint import Scene, Targets, between
+from motionedit.core.priorities.kinds.constraint import Scene, Targets, between, joined
+from motionedit.core.trace import frame_blocks
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -75,11 +76,19 @@ def with_targets(
 
 def errors_of(asked: Asked, motion: Motion) -> tuple[ConstraintErrors, ...]:
     """Return what an edited motion leaves of every constraint, by forward kinematics."""
-    after = seen_by(asked.constraints, motion, asked.body)
-    return tuple(
-        each.errors(targets, after, reference=asked.motion)
-        for each, targets in zip(asked.constraints, asked.targets, strict=True)
-    )
+    parts: list[list[ConstraintErrors]] = [[] for _ in asked.constraints]
+    # Block by block: what is seen of a long motion takes a third of its file.
+    for block in frame_blocks(len(motion)):
+        here = motion, asked.motion
+        if len(motion) > block.stop - block.start:
+            here = motion.at(block), asked.motion.at(block)
+        after = seen_by(asked.constraints, here[0], asked.body)
+        for each, targets, found in zip(asked.constraints, asked.targets, parts, strict=True):
+            first, stop = max(targets.first, block.start), min(targets.last + 1, block.stop)
+            if first < stop:
+                part = targets.within(slice(first, stop)).since(block.start)
+                found.append(each.errors(part, after, reference=here[1]))
+    return tuple(joined(found, targets.first) for found, targets in zip(parts, asked.targets, strict=True))
 
 
 def lefts_of(asked: Asked, motion: Motion) -> list[FloatArray]:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 Record = dict[str, Any]
 
-_IN_MEMORY = 1 << 24  # bytes: some thousand clips
+_IN_MEMORY = 1 << 20  # bytes: some hundred clips
 
 
 class Records(Sequence[Record]):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from itertools import chain
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -11,15 +12,18 @@ from motionedit.core import kinematics
 from motionedit.core.body import ground
 from motionedit.core.body.anatomy import NOTHING_GIVEN, Anatomy, GivenBody, find_anatomy
 from motionedit.core.body.bones import find_bones, travel_joint
-from motionedit.core.body.contacts import find_plants, plants_of, sole_tracks
+from motionedit.core.body.contacts import plants_of, sole_tracks
 from motionedit.core.body.rest_pose import rest_pose_frames
 from motionedit.core.body.steps import own_steps
 from motionedit.core.body.up import find_up
-from motionedit.core.feet.phases import find_phases
+from motionedit.core.feet.phases import LegPath, find_phases, leg_paths
+from motionedit.core.trace import BLOCK_FRAMES, frame_blocks
 from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
     from motionedit.core.arrays import FloatArray
     from motionedit.core.body.contacts import Plant
     from motionedit.core.body.steps import Steps
@@ -55,6 +59,21 @@ class Poses:
             self._made = kinematics.forward(self._motion)
         return self._made
 
+    def gathered(self, read: Callable[[WorldPoses], Sequence[FloatArray]]) -> list[FloatArray]:
+        """Return arrays that are read off the world transforms frame by frame, shapes (F, ...).
+
+        Block by block where the transforms of a long motion are not held; they are not afterwards, either.
+        """
+        if self._made is not None or len(self._motion) <= BLOCK_FRAMES:
+            return list(read(self.get()))
+        whole: list[FloatArray] = []
+        for block in frame_blocks(len(self._motion)):
+            parts = read(kinematics.forward(self._motion.at(block)))
+            whole = whole or [np.empty((len(self._motion), *part.shape[1:])) for part in parts]
+            for array, part in zip(whole, parts, strict=True):
+                array[block] = part
+        return whole
+
     def forget(self) -> None:
         """Give back their memory: for a long clip twice that of its file."""
         self._made = None
@@ -89,15 +108,22 @@ class ClipFacts:
 
     @cached_property
     def plants(self) -> tuple[Plant, ...]:
-        """When heels and toes stand, as `find_plants`."""
-        motion = self.clip.motion
-        return tuple(find_plants(motion, self.poses, self.anatomy, up=self.up, first=self.first))
+        """When heels and toes stand, as `plants_of`."""
+        (tracks,) = self.world.gathered(lambda poses: [sole_tracks(poses, self.anatomy)])
+        frame_time = self.clip.motion.frame_time
+        return tuple(plants_of(tracks, self.anatomy, up=self.up, first=self.first, frame_time=frame_time))
 
     @cached_property
     def phases(self) -> tuple[Plant, ...]:
         """The plants cut to what a foot can be held for in one place, as `find_phases`."""
-        frame_time = self.clip.motion.frame_time
-        return tuple(find_phases(self.poses, self.anatomy, self.plants, up=self.up, frame_time=frame_time))
+        anatomy, frame_time = self.anatomy, self.clip.motion.frame_time
+
+        def read(poses: WorldPoses) -> list[FloatArray]:
+            return [sole_tracks(poses, anatomy), *chain.from_iterable(leg_paths(poses, anatomy))]
+
+        plants, (tracks, *arrays) = self.plants, self.world.gathered(read)
+        legs = [LegPath(*arrays[i : i + 5]) for i in range(0, len(arrays), 5)]
+        return tuple(find_phases(tracks, legs, anatomy, plants, up=self.up, frame_time=frame_time))
 
     @cached_property
     def steps(self) -> Steps:

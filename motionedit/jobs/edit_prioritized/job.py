@@ -13,7 +13,7 @@ from motionedit.core.motion import Motion, scaled
 from motionedit.core.priorities.edit import PrioritizedEdit, RecruitingError, edit_by_priorities
 from motionedit.core.priorities.settings import LayeredSettings, PaperFilter, Passes
 from motionedit.core.priorities.targets import Follows
-from motionedit.core.trace import blocks_of, forward_blocks, frame_blocks
+from motionedit.core.trace import BLOCK_FRAMES, blocks_of, forward_blocks, frame_blocks
 from motionedit.dataclass import dataclass
 from motionedit.jobs.batch.one_clip import Outcome
 from motionedit.jobs.batch.plan import plan
@@ -116,6 +116,8 @@ class EditByPriorities:
         refuse_floors_out_of_reach(self.loaded, sized, [c.constraint for c in constraints], curve=settings.curve)
         before = feet_of(sized.facts, blocks_of(sized.facts.poses), masses=sized.masses)
         # What is read off the input has been read, its phases with it: an edit of a long clip needs the room.
+        if len(sized.motion) > BLOCK_FRAMES:
+            sized.facts.forget_poses()
         _ = sized.facts.phases
         sized.facts.forget_poses()
         try:
@@ -217,23 +219,22 @@ class EditByPriorities:
             traces=(before, after),
             bends=sized.body.bends,
         )
+        asked = [each.constraint for each in constraints]
+        # Of both traces, then of every constraint: of a long clip they take the room one after the other.
+        about = self._about(sized, before, after, steps)
+        loose = loose_feet(sized, asked, before, after)
+        del before, after
         result = edit_record(
             edit, constraints, facts, scale=sized.scale, settings=settings, rough=(*sized.let_go, *rough)
         )
-        about = {
-            **self._about(sized, before, after, steps),
-            "solver": edit.solver,
-            **result.record,
-            "passes": spec.smoothing.pass_count,
-        }
-        asked = [each.constraint for each in constraints]
+        record = {**about, "solver": edit.solver, **result.record, "passes": spec.smoothing.pass_count}
         breaches = breach_warnings(edit.breaches, asked, facts, rule=spec.recruiting_rule)
         immovable = immovable_warnings(asked, edit.recruits, facts)
         return Outcome(
             _content(clip, edit, sized) if changed else unedited_bytes(clip),
-            {"message": result.message, **about},
+            {"message": result.message, **record},
             result.status,
-            (*sized.warnings, *immovable, *breaches, *loose_feet(sized, asked, before, after), *result.warnings),
+            (*sized.warnings, *immovable, *breaches, *loose, *result.warnings),
             motion=_in_clip_units(edit, sized, slice(None)) if changed and self.verify else None,
             details=(*layer_lines(asked, edit.recruits, sized.body.hinges, facts), *breaches),
         )

@@ -9,14 +9,16 @@ from scipy.spatial.transform import Rotation
 from motionedit.core import rotations as rot
 from motionedit.core.compiled import compiled, solver_name
 from motionedit.core.euler import (
+    DEGREES,
     GIMBAL_BAND,
     angles_near,
     joint_angles,
     other_solution,
+    rows_of_tracks,
     solve_angles,
     solved_tracks,
 )
-from motionedit.core.euler_pieces import piece_angles, runs, touched_pieces
+from motionedit.core.euler_pieces import piece_angles, runs, touched_angles, touched_pieces
 from motionedit.core.motion import Motion
 from motionedit.core.skeleton import Skeleton
 
@@ -85,6 +87,27 @@ def test_tracks_in_blocks_are_those_of_numpy_to_the_bit(axes, rng, monkeypatch):
     np.testing.assert_array_equal(solved[:, 1], solve_angles(q[:, 0].T, axes))
     monkeypatch.setenv("MOTIONEDIT_SOLVER", "numpy")
     np.testing.assert_array_equal(solved, solved_tracks(q, np.array([4, 0, 3]), axes))
+
+
+@pytest.mark.compiled
+def test_tracks_laid_out_as_rows_are_those_of_numpy_to_the_bit(rng, monkeypatch):
+    tracks, columns = rng.normal(size=(3, 2, 77)), np.array([[4, 0], [6, 1], [3, 5]])
+    compiled_rows, numpys = np.full((77, 8), 7.0), np.full((77, 8), 7.0)
+    rows_of_tracks(tracks, columns, factor=DEGREES, out=compiled_rows)
+    monkeypatch.setenv("MOTIONEDIT_SOLVER", "numpy")
+    rows_of_tracks(tracks, columns, factor=DEGREES, out=numpys)
+    np.testing.assert_array_equal(compiled_rows, numpys)
+    np.testing.assert_array_equal(compiled_rows[:, 6], np.degrees(tracks[1, 0]))
+    assert (compiled_rows[:, [2, 7]] == 7.0).all()
+
+
+@pytest.mark.skipif(solver_name() == "numpy", reason="nothing compiled here")
+@pytest.mark.parametrize("column", [-1, 4])
+def test_rows_without_such_a_column_are_an_error_and_no_crash(column):
+    with pytest.raises(ValueError, match="4 columns"):
+        compiled().rows_of_tracks(np.zeros((2, 9)), np.array([0, column]), 9, 1.0, np.empty((9, 4)))
+    with pytest.raises(ValueError, match="tracks"):
+        compiled().rows_of_tracks(np.zeros((1, 9)), np.array([0, 1]), 9, 1.0, np.empty((9, 4)))
 
 
 @pytest.mark.skipif(solver_name() == "numpy", reason="nothing compiled here")
@@ -187,10 +210,15 @@ AXES = (2, 0, 1)
 SKELETON = Skeleton(("j",), np.array([-1]), np.zeros((1, 3)), (("Zrotation", "Xrotation", "Yrotation"),))
 
 
-def solved(values, q, touched, *, size=10_000):
-    """Return the channel values with the touched frames solved anew from rotations q."""
+def solved(values, q, touched, *, size=None):
+    """Return the channel values with the touched frames solved anew from rotations q, all at once or in pieces."""
     motion = Motion(SKELETON, q[:, None], np.empty((len(q), 0, 3)), 0.01)
     result = values.copy()
+    if size is None:
+        rows = np.empty((len(q), 3))
+        touched_angles(motion, touched[:, None], given=lambda a, b: values[a:b], columns=np.arange(3), out=rows)
+        result[touched] = rows[touched]
+        return result
     pieces = touched_pieces(motion, touched[:, None], given=lambda a, b: values[a:b], size=size)
     for piece in pieces[0]:
         result[piece.start : piece.stop] = piece_angles(motion, 0, piece=piece)
@@ -236,7 +264,7 @@ def test_a_run_in_which_the_input_wraps_meets_the_next_frame_by_wrapping_with_it
     assert np.abs(np.diff(result[20:], axis=0)).max() < 6.0
 
 
-@pytest.mark.parametrize("size", [10_000, 16])
+@pytest.mark.parametrize("size", [None, 16])
 def test_an_edit_that_winds_the_other_way_round_meets_the_next_frame_all_the_same(size):
     values = np.zeros((120, 3))
     values[:, 0] = 30.0

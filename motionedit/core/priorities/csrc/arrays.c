@@ -8,6 +8,12 @@
 
 #define PI 3.14159265358979323846
 #define TURN (2.0 * PI)
+/* Rad: steps of three angles that are no longer together, less than half a turn by more than rounding, need neither
+   whole turns nor the other solution. */
+#define SHORT_STEP 3.0
+
+/* Frames whose rotations and angles stay near the processor. */
+enum { TILE = 32 };
 
 void multiply_all(
     const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out, int64_t apart)
@@ -142,21 +148,44 @@ void slerp_all(const Arcs *arcs, double *out)
     }
 }
 
+/* The lengths of pairs of numbers: apart from what else is done to them, so that several are taken at once. */
+static void lengths_of(const double *one, const double *other, int64_t count, double *out)
+{
+    for (int64_t i = 0; i < count; i++)
+        out[i] = sqrt(one[i] * one[i] + other[i] * other[i]);
+}
+
 void euler_sums(const double *rotations, int64_t step, const int64_t *joints, int64_t count, int64_t frames,
     const int *axes, double *out)
 {
     const int i = 1 + axes[0], j = 1 + axes[1], k = 1 + axes[2];
     const double sign = (axes[1] - axes[0] + 3) % 3 == 1 ? 1.0 : -1.0;
     const int64_t all = count * frames;
-    for (int64_t n = 0; n < count; n++) {
-        const double *q = rotations + 4 * joints[n];
-        for (int64_t f = 0; f < frames; f++, q += step, out++) {
-            const double z = sign * q[k], sine = q[i] + z, cosine = q[0] + q[j], other = q[i] - z, last = q[0] - q[j];
-            out[0] = sine, out[all] = cosine, out[2 * all] = other, out[3 * all] = last;
-            out[4 * all] = sqrt(sine * sine + cosine * cosine);
-            out[5 * all] = sqrt(other * other + last * last);
+    /* A few frames at a time: they stay near the processor for all joints. */
+    for (int64_t start = 0; start < frames; start += TILE)
+        for (int64_t n = 0; n < count; n++) {
+            const int64_t many = frames - start < TILE ? frames - start : TILE;
+            const double *q = rotations + start * step + 4 * joints[n];
+            double *sums = out + n * frames + start;
+            for (int64_t f = 0; f < many; f++, q += step) {
+                const double z = sign * q[k];
+                sums[f] = q[i] + z, sums[all + f] = q[0] + q[j];
+                sums[2 * all + f] = q[i] - z, sums[3 * all + f] = q[0] - q[j];
+            }
+            lengths_of(sums, sums + all, many, sums + 4 * all);
+            lengths_of(sums + 2 * all, sums + 3 * all, many, sums + 5 * all);
         }
-    }
+}
+
+void rows_of_tracks(const double *tracks, const int64_t *columns, int64_t count, int64_t frames, double factor,
+    double *rows, int64_t width)
+{
+    for (int64_t start = 0; start < frames; start += TILE)
+        for (int64_t n = 0; n < count; n++) {
+            double *column = rows + start * width + columns[n];
+            for (int64_t f = start; f < frames && f < start + TILE; f++, column += width)
+                *column = factor * tracks[n * frames + f];
+        }
 }
 
 /* The sum of the steps between two triples of angles, each by whole turns the shortest. */
@@ -170,14 +199,31 @@ static double distance_of(const double *from, const double *to)
     return sum;
 }
 
+/* The first frame from `frame` on that is a long step of three angles from the one before. */
+static int64_t until_long_step(const double *angles, int64_t step, int64_t frame, int64_t frames)
+{
+    const double *a = angles, *b = angles + step, *c = b + step;
+    while (frame < frames &&
+           fabs(a[frame] - a[frame - 1]) + fabs(b[frame] - b[frame - 1]) + fabs(c[frame] - c[frame - 1]) < SHORT_STEP)
+        frame++;
+    return frame;
+}
+
 void nearest_angles(double *angles, int64_t axes, int64_t step, int64_t frames, const double *seed)
 {
     double solved[3], taken[3], turns[3] = {0.0};
-    int is_other = 0; /* whether the other solutions are taken */
+    int is_other = 0, is_plain = axes == 3; /* whether the other solutions are taken, and whether nothing is changed */
     for (int64_t axis = 0; axis < axes; axis++)
         solved[axis] = taken[axis] = seed[axis];
     for (int64_t f = 0; f < frames; f++) {
         double one[3], other[3];
+        if (is_plain && f > 0) {
+            f = until_long_step(angles, step, f, frames);
+            for (int axis = 0; axis < 3; axis++)
+                solved[axis] = taken[axis] = angles[axis * step + f - 1];
+            if (f == frames)
+                break;
+        }
         for (int64_t axis = 0; axis < axes; axis++)
             one[axis] = angles[axis * step + f];
         if (axes == 3) {
@@ -193,5 +239,6 @@ void nearest_angles(double *angles, int64_t axes, int64_t step, int64_t frames, 
             angles[axis * step + f] = angle - TURN * turns[axis];
             solved[axis] = one[axis], taken[axis] = angle;
         }
+        is_plain = axes == 3 && !is_other && turns[0] == 0.0 && turns[1] == 0.0 && turns[2] == 0.0;
     }
 }

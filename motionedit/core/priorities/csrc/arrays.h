@@ -48,6 +48,10 @@ void slerp_all(const Arcs *arcs, double *out);
 void euler_sums(const double *rotations, int64_t step, const int64_t *joints, int64_t count, int64_t frames,
     const int *axes, double *out);
 
+/* Write `count` tracks, shape (count, frames), times a factor as columns of rows that are so many numbers wide. */
+void rows_of_tracks(const double *tracks, const int64_t *columns, int64_t count, int64_t frames, double factor,
+    double *rows, int64_t width);
+
 /* Make a track of Euler angles, rad, `step` numbers from axis to axis, continuous: each frame by whole turns, and with three axes by
    the other solution of its rotation, nearest the frame before, the first one nearest `seed`, shape (axes,). */
 void nearest_angles(double *angles, int64_t axes, int64_t step, int64_t frames, const double *seed);

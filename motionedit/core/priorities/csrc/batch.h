@@ -76,6 +76,7 @@ typedef struct {
     V *local, *reference, *offsets; /* quaternions of nodes and columns; where nodes are in their parents */
     V reference_root[3], *targets;  /* shape (T, 4) */
     V *positions, *rotations;       /* world, shapes (nodes, 3), (nodes, 9) */
+    V identity[9];                  /* the rotation of what is above all nodes */
     V *mass_moments, center[3];     /* of subtrees, shape (nodes, 3), and of the whole body */
     double *mass_shares;            /* of subtrees, shape (nodes,) */
     int weighs, unknowns, rows;     /* n; R, those that are none of joints that are held */

@@ -52,12 +52,16 @@ static void store(const Batch *batch, int lane)
     }
 }
 
-static const V IDENTITY[9] = {ONES, ZEROS, ZEROS, ZEROS, ONES, ZEROS, ZEROS, ZEROS, ONES};
-
 static const V *parent_rotation(const Batch *batch, int64_t node)
 {
     const int64_t parent = batch->problem->node[node].parent;
-    return parent < 0 ? IDENTITY : batch->rotations + 9 * parent;
+    return parent < 0 ? batch->identity : batch->rotations + 9 * parent;
+}
+
+static void set_identity(Batch *batch)
+{
+    for (int i = 0; i < 9; i++)
+        batch->identity[i] = all(i % 4 == 0 ? 1.0 : 0.0);
 }
 
 /* The shares of subtrees in the body's mass. */

@@ -7,41 +7,26 @@
 #include <math.h>
 #include <stdint.h>
 
-/* V: a number a lane. Mask: -1 or 0 a lane. ONE_LANE asks for plain numbers, FOUR_LANES for wider vectors than every
-   processor has. */
-#if defined(FOUR_LANES)
-enum { LANES = 4 };
-typedef double V __attribute__((vector_size(32)));
-typedef int64_t Mask __attribute__((vector_size(32)));
-#define VECTORS
-#elif defined(__GNUC__) && !defined(ONE_LANE)
-enum { LANES = 2 };
-typedef double V __attribute__((vector_size(16)));
-typedef int64_t Mask __attribute__((vector_size(16)));
-#define VECTORS
+/* V: a number a lane. Mask: -1 or 0 a lane. ONE_LANE asks for plain numbers, WIDTH for more lanes than every processor
+   has side by side. */
+#if !defined(WIDTH) && defined(__GNUC__) && !defined(ONE_LANE)
+#define WIDTH 2
+#endif
+#ifdef WIDTH
+enum { LANES = WIDTH };
+typedef double V __attribute__((vector_size(8 * WIDTH)));
+typedef int64_t Mask __attribute__((vector_size(8 * WIDTH)));
 #else
 enum { LANES = 1 };
 typedef double V;
 typedef int64_t Mask;
 #endif
 
-/* As initializers. */
-#if !defined(VECTORS)
-#define ZEROS 0.0
-#define ONES 1.0
-#elif defined(FOUR_LANES)
-#define ZEROS {0.0, 0.0, 0.0, 0.0}
-#define ONES {1.0, 1.0, 1.0, 1.0}
-#else
-#define ZEROS {0.0, 0.0}
-#define ONES {1.0, 1.0}
-#endif
-
 /* One lane of a V or a Mask, to read or to write. */
 #define LANE(v, lane) (((double *)&(v))[lane])
 #define MASK_LANE(m, lane) (((int64_t *)&(m))[lane])
 
-#ifdef VECTORS
+#ifdef WIDTH
 static inline V all(double x)
 {
     return x - (V){0.0};

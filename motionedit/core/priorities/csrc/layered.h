@@ -118,11 +118,13 @@ const RowKind *row_kind(int64_t kind);
 const char *settings_fault(const Settings *of);
 const char *problem_fault(const Problem *problem);
 
-/* Solve frames begin to end - 1; 0, or -1 where memory ran out. Both do the same, to the bit: the second for
-   processors with AVX2. */
+/* Solve frames begin to end - 1; 0, or -1 where memory ran out. All do the same, to the bit: the others are for
+   processors that have wider vectors, and only where WIDE is (wide.h). */
 int solve_frames(const Problem *problem, int64_t begin, int64_t end);
 int has_avx2(void);
 int solve_frames_avx2(const Problem *problem, int64_t begin, int64_t end);
+int has_avx512(void);
+int solve_frames_avx512(const Problem *problem, int64_t begin, int64_t end);
 
 /* motion.c: whole motions */
 void world_poses(const int64_t *parents, const int64_t *places, const double *offsets, int64_t frames, int64_t joints,

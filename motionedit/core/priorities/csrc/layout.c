@@ -4,7 +4,7 @@
 static void *take(char **memory, size_t *needed, size_t bytes)
 {
     void *place = *memory == NULL ? NULL : *memory + *needed;
-    *needed += (bytes + 31) / 32 * 32;
+    *needed += (bytes + sizeof(V) - 1) / sizeof(V) * sizeof(V);
     return place;
 }
 

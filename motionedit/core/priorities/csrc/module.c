@@ -11,10 +11,14 @@
 #include "../../bvh/csrc/text.h"
 #include "arrays.h"
 #include "layered.h"
+#include "wide.h"
 
 #include <math.h>
 #ifdef __GLIBC__
 #include <malloc.h>
+#endif
+#ifdef __linux__
+#include <sys/mman.h>
 #endif
 #include <stddef.h>
 #include <stdlib.h>
@@ -159,13 +163,49 @@ static int read_problem(Problem *problem, Buffers *buffers)
     return problem_fault(problem) == NULL;
 }
 
-static PyObject *solve_with(int (*solver)(const Problem *, int64_t, int64_t), PyObject *arguments)
+typedef int (*Solver)(const Problem *, int64_t, int64_t);
+
+/* The narrowest first. */
+static const struct {
+    const char *name;
+    int (*is_there)(void); /* NULL: on every processor */
+    Solver solve;
+} SOLVERS[] = {
+    {"plain", NULL, solve_frames},
+#ifdef WIDE
+    {"avx2", has_avx2, solve_frames_avx2},
+    {"avx512", has_avx512, solve_frames_avx512},
+#endif
+};
+enum { MOST_SOLVERS = sizeof SOLVERS / sizeof *SOLVERS };
+
+static int has_solver(int i)
+{
+    return SOLVERS[i].is_there == NULL || SOLVERS[i].is_there();
+}
+
+/* The widest that the processor has, or the one of a name; NULL, with what is said of it, where there is none. */
+static Solver solver_of(const char *name)
+{
+    for (int i = MOST_SOLVERS - 1; i >= 0; i--)
+        if ((name == NULL || strcmp(name, SOLVERS[i].name) == 0) && has_solver(i))
+            return SOLVERS[i].solve;
+    PyErr_Format(PyExc_ValueError, "this processor has no solver '%s'", name);
+    return NULL;
+}
+
+static PyObject *solve(PyObject *self, PyObject *arguments)
 {
     Buffers buffers = {0};
     Problem problem = {0};
     long long begin, end;
+    const char *name = NULL;
     int status = -2;
-    if (!PyArg_ParseTuple(arguments, "OLLp", &buffers.given, &begin, &end, &problem.in_order))
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "OLLp|z", &buffers.given, &begin, &end, &problem.in_order, &name))
+        return NULL;
+    const Solver solver = solver_of(name);
+    if (solver == NULL)
         return NULL;
     if (!PyDict_Check(buffers.given))
         PyErr_SetString(PyExc_TypeError, "buffers come in a dictionary");
@@ -181,18 +221,6 @@ static PyObject *solve_with(int (*solver)(const Problem *, int64_t, int64_t), Py
     if (status < 0)
         return NULL;
     Py_RETURN_NONE;
-}
-
-static PyObject *solve(PyObject *self, PyObject *arguments)
-{
-    (void)self;
-    return solve_with(has_avx2() ? solve_frames_avx2 : solve_frames, arguments);
-}
-
-static PyObject *solve_narrow(PyObject *self, PyObject *arguments)
-{
-    (void)self;
-    return solve_with(solve_frames, arguments);
 }
 
 /* Whether parents come before their children, and every place is a row of the translations, or -1. */
@@ -558,6 +586,35 @@ static PyObject *sums_of_euler(PyObject *self, PyObject *arguments)
     Py_RETURN_NONE;
 }
 
+static PyObject *lay_rows(PyObject *self, PyObject *arguments)
+{
+    enum { TRACKS, COLUMNS, OUT, COUNT };
+    Py_buffer b[COUNT] = {{0}};
+    long long frames;
+    double factor;
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "y*y*Ldw*", b, b + 1, &frames, &factor, b + 2))
+        return NULL;
+    const int64_t count = b[COLUMNS].len / (Py_ssize_t)sizeof(int64_t), *columns = b[COLUMNS].buf;
+    const int64_t width = frames > 0 ? b[OUT].len / (Py_ssize_t)sizeof(double) / frames : 0;
+    int fits = has_size(b + TRACKS, count * frames, sizeof(double), "tracks") &&
+               has_size(b + OUT, width * frames, sizeof(double), "rows");
+    for (int64_t i = 0; fits && i < count; i++)
+        if (columns[i] < 0 || columns[i] >= width) {
+            PyErr_Format(PyExc_ValueError, "rows have %lld columns", (long long)width);
+            fits = 0;
+        }
+    if (fits) {
+        Py_BEGIN_ALLOW_THREADS rows_of_tracks(b[TRACKS].buf, columns, count, frames, factor, b[OUT].buf, width);
+        Py_END_ALLOW_THREADS
+    }
+    for (int i = 0; i < COUNT; i++)
+        PyBuffer_Release(b + i);
+    if (!fits)
+        return NULL;
+    Py_RETURN_NONE;
+}
+
 /* Whether each run is of a joint that there is, and of frames that it has. */
 static int are_runs(const int64_t *runs, int64_t count, int64_t joints, int64_t frames)
 {
@@ -713,6 +770,26 @@ static PyObject *keep_memory(PyObject *self, PyObject *arguments)
     Py_RETURN_NONE;
 }
 
+/* Bytes that are not yet written, for a stream. Of many the system is asked for large pages, as numpy does for its arrays:
+   to be given small ones, one by one, takes longer than to read or to write a file. */
+static PyObject *room(PyObject *self, PyObject *arguments)
+{
+    Py_ssize_t count;
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "n", &count))
+        return NULL;
+    PyObject *bytes = PyBytes_FromStringAndSize(NULL, count);
+#ifdef MADV_HUGEPAGE
+    enum { PAGE = 1 << 12, MANY = 1 << 22 };
+    if (bytes != NULL && count >= MANY) {
+        char *const start = PyBytes_AsString(bytes);
+        const size_t before = (size_t)(PAGE - (uintptr_t)start % PAGE);
+        (void)madvise(start + before, (size_t)count - before, MADV_HUGEPAGE);
+    }
+#endif
+    return bytes;
+}
+
 /* To ask `os.environ` takes fifteen times as long, and whoever changes that changes this. */
 static PyObject *is_set(PyObject *self, PyObject *arguments)
 {
@@ -726,12 +803,13 @@ static PyObject *is_set(PyObject *self, PyObject *arguments)
 
 static PyMethodDef methods[] = {
     {"solve", solve, METH_VARARGS,
-        "Solve frames begin to end - 1 in place, perhaps in order, given buffers by their names."},
-    {"solve_narrow", solve_narrow, METH_VARARGS, "As solve, with what every processor has: the same to the bit."},
+        "Solve frames begin to end - 1 in place, perhaps in order, given buffers by their names; perhaps by one of "
+        "`solvers`, which are the same to the bit."},
     {"forward", forward_frames, METH_VARARGS, "Write the world transforms of all joints at all frames."},
     {"smooth", smooth, METH_VARARGS, "Write rotations plus their low-passed displacement."},
     {"low_pass", low_pass_rows, METH_VARARGS, "Write rows smoothed over frames."},
     {"keep_memory", keep_memory, METH_VARARGS, "Keep memory that was let go of, but for large arrays (glibc alone)."},
+    {"room", room, METH_VARARGS, "Return so many bytes that are not yet written, for a stream."},
     {"is_set", is_set, METH_VARARGS, "Return whether a variable of the environment has a value."},
     {"multiply", multiply, METH_VARARGS,
         "Write the products of quaternions; False where they lie otherwise in memory."},
@@ -750,6 +828,7 @@ static PyMethodDef methods[] = {
     {"arc_cosines", cosines_of_arcs, METH_VARARGS,
         "Write the cosines between rotations of frames and of the ones after."},
     {"slerp", slerp, METH_VARARGS, "Write rotations at fractions of the ways from frames to the ones after."},
+    {"rows_of_tracks", lay_rows, METH_VARARGS, "Write tracks, times a factor, as columns of rows."},
     {"nearest_angles", make_continuous, METH_VARARGS, "Make runs of Euler angles continuous, in place."},
     {"rows_from_text", rows_from_text, METH_VARARGS,
         "Read rows of numbers; return how many and the most decimals, or None where it is no such text."},
@@ -784,26 +863,36 @@ static PyObject *record_of(const Field *fields, size_t bytes)
     return record;
 }
 
-/* Add to the module what measures bodies, `records`, how its structures lie, by their buffers' names, and `row_kinds`, the rows that it knows. */
+static int appends(PyObject *list, const char *name)
+{
+    PyObject *word = PyUnicode_FromString(name);
+    const int fits = word != NULL && PyList_Append(list, word) == 0;
+    Py_XDECREF(word);
+    return fits;
+}
+
+/* Add to the module what measures bodies, `records`, how its structures lie, by their buffers' names, `row_kinds`, the
+   rows that it knows, and `solvers`, those that the processor has, the narrowest first. */
 static int add_tables(PyObject *module)
 {
-    PyObject *records = PyDict_New(), *kinds = PyList_New(0);
-    int fits = records != NULL && kinds != NULL;
+    PyObject *records = PyDict_New(), *kinds = PyList_New(0), *solvers = PyList_New(0);
+    int fits = records != NULL && kinds != NULL && solvers != NULL;
     for (size_t i = 0; fits && i < sizeof RECORDS / sizeof *RECORDS; i++) {
         PyObject *record = record_of(RECORDS[i].fields, RECORDS[i].bytes);
         fits = record != NULL && PyDict_SetItemString(records, RECORDS[i].name, record) == 0;
         Py_XDECREF(record);
     }
-    for (int i = 0; fits && row_kind(i) != NULL; i++) {
-        PyObject *name = PyUnicode_FromString(row_kind(i)->name);
-        fits = name != NULL && PyList_Append(kinds, name) == 0;
-        Py_XDECREF(name);
-    }
+    for (int i = 0; fits && row_kind(i) != NULL; i++)
+        fits = appends(kinds, row_kind(i)->name);
+    for (int i = 0; fits && i < MOST_SOLVERS; i++)
+        fits = !has_solver(i) || appends(solvers, SOLVERS[i].name);
     fits = fits && PyModule_AddFunctions(module, body_methods) == 0 &&
            PyModule_AddFunctions(module, feet_methods) == 0 && PyModule_AddObjectRef(module, "records", records) == 0 &&
-           PyModule_AddObjectRef(module, "row_kinds", kinds) == 0;
+           PyModule_AddObjectRef(module, "row_kinds", kinds) == 0 &&
+           PyModule_AddObjectRef(module, "solvers", solvers) == 0;
     Py_XDECREF(records);
     Py_XDECREF(kinds);
+    Py_XDECREF(solvers);
     return fits ? 0 : -1;
 }
 

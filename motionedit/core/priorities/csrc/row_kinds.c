@@ -33,7 +33,7 @@ static void levers_to(const Batch *batch, Part *part, const V *point)
 static void evaluate_position(const Batch *batch, const Task *task, Pull *pull, const V *target, V *e)
 {
     V point[3], seen[3];
-    const V *base = task->base >= 0 ? batch->rotations + 9 * task->base : IDENTITY;
+    const V *base = task->base >= 0 ? batch->rotations + 9 * task->base : batch->identity;
     turned_plain(batch->rotations + 9 * task->node, task->offset, point);
     add(point, batch->positions + 3 * task->node);
     memcpy(seen, point, sizeof seen);
@@ -59,7 +59,7 @@ static void evaluate_center_of_mass(const Batch *batch, const Task *task, Pull *
     for (int64_t r = 0; r < task->rows; r++)
         e[r] = task->weight * (target[task->axes[r]] - along(task->measure[r], batch->center));
     if (!part->plain)
-        turned_axes(task, IDENTITY, part->force);
+        turned_axes(task, batch->identity, part->force);
     for (int i = 0; i < part->count; i++) {
         const int64_t node = batch->problem->column_node[part->columns[i]];
         const double mobility = batch->problem->mobility[part->columns[i]];
@@ -72,7 +72,7 @@ static void evaluate_center_of_mass(const Batch *batch, const Task *task, Pull *
 /* e = log(q_target q^-1), in the base's frame where there is one. */
 static void evaluate_orientation(const Batch *batch, const Task *task, Pull *pull, const V *target, V *e)
 {
-    const V *base = task->base >= 0 ? batch->rotations + 9 * task->base : IDENTITY;
+    const V *base = task->base >= 0 ? batch->rotations + 9 * task->base : batch->identity;
     const double scale = task->weight * batch->problem->constants.metres_per_radian;
     V q[4], turn[3];
     world_quaternion(batch, task->node, q);
@@ -175,7 +175,6 @@ static void point_of(const Batch *batch, int64_t node, const double *offset, V *
 /* e = d - |p - q|, u (dp - dq); where two points meet, any u will do to part them: x. */
 static void evaluate_distance(const Batch *batch, const Task *task, Pull *pull, const V *target, V *e)
 {
-    static const V X[3] = {ONES, ZEROS, ZEROS};
     const double none = batch->problem->constants.no_direction;
     V point[3], to[3], way[3];
     point_of(batch, task->node, task->offset, point);
@@ -185,7 +184,8 @@ static void evaluate_distance(const Batch *batch, const Task *task, Pull *pull, 
     const V distance = root_of(dot(way, way)), size = larger(distance, all(none));
     e[0] = task->weight * (target[0] - distance);
     for (int a = 0; a < 3; a++)
-        pull->part[0].force[0][a] = task->weight * choose(less(distance, all(none)), X[a], way[a] / size);
+        pull->part[0].force[0][a] =
+            task->weight * choose(less(distance, all(none)), all(a == 0 ? 1.0 : 0.0), way[a] / size);
     negated(pull->part[0].force, pull->part[1].force);
     levers_to(batch, pull->part, point);
     levers_to(batch, pull->part + 1, to);

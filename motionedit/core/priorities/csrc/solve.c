@@ -138,9 +138,13 @@ static void end_frame(Batch *batch, int lane, int converged)
     store(batch, lane);
 }
 
-/* Count the iterations in which what is missed stays so: annealing.py. */
-static void watch_errors(Batch *batch)
+/* Count the iterations in which what is missed stays so, in lanes that are watched: annealing.py. */
+static void watch_errors(Batch *batch, Mask watched)
 {
+    if (!any(watched)) {
+        batch->stale = all(0.0);
+        return;
+    }
     const Constants *constants = &batch->problem->constants;
     const double same = constants->same_error;
     const V *left = left_errors(batch);
@@ -153,7 +157,7 @@ static void watch_errors(Batch *batch)
         const Mask here = far & ~gives_way & ~decided, here_soft = far & gives_way;
         const Mask differs = less(size, same * layer->error) | less(layer->error, same * size);
         const Mask changed = here & (differs | less(size, all(constants->far_error)));
-        layer->error = choose(changed | (here_soft & differs), size, layer->error);
+        layer->error = choose(watched & (changed | (here_soft & differs)), size, layer->error);
         missed |= here, soft |= here_soft, soft_changes |= here_soft & differs;
         decided |= l == 0 ? here & ~changed : here, changes |= l == 0 ? ~everywhere() : changed;
     }
@@ -166,17 +170,19 @@ static void set_pace(Batch *batch)
 {
     const Constants *constants = &batch->problem->constants;
     const Problem *problem = batch->problem;
+    Mask watched = ~everywhere();
     for (int lane = 0; lane < LANES; lane++) {
-        const int64_t iteration = batch->iteration[lane];
-        MASK_LANE(batch->steady, lane) = iteration >= constants->hasty_iterations ? -1 : 0;
+        const int64_t hasty = constants->hasty_iterations - batch->iteration[lane];
+        MASK_LANE(batch->steady, lane) = hasty <= 0 ? -1 : 0;
+        MASK_LANE(watched, lane) = hasty <= 1 ? -1 : 0;
     }
-    watch_errors(batch);
+    watch_errors(batch, watched);
     for (int lane = 0; lane < LANES; lane++) {
         const int64_t iteration = batch->iteration[lane];
         if (LANE(batch->stale, lane) >= (double)constants->stale_iterations && iteration < batch->annealed_from[lane])
             batch->annealed_from[lane] = iteration;
         const int64_t left_over = batch->annealed_from[lane] - iteration - 1;
-        LANE(batch->anneal, lane) = left_over < 0 ? ldexp(1.0, (int)left_over) : 1.0;
+        LANE(batch->anneal, lane) = left_over < 0 ? ldexp(1.0, 2 * (int)left_over) : 1.0;
         LANE(batch->gain, lane) = problem->of.attraction * LANE(batch->anneal, lane);
         for (int64_t i = constants->full_gain_iterations; i < iteration + 1; i++)
             LANE(batch->gain, lane) *= constants->gain_decay;
@@ -315,6 +321,7 @@ int solve_frames(const Problem *problem, int64_t begin, int64_t end)
     if (memory == NULL)
         return -1;
     lay_out(&batch, memory + sizeof(V) - (uintptr_t)memory % sizeof(V));
+    set_identity(&batch);
     share_masses(&batch);
     for (int lane = 0; lane < LANES; lane++) {
         load(&batch, lane, begin); /* so that a lane without a frame has numbers, too */

@@ -1,4 +1,4 @@
-/* The layered solver in one piece, compiled for what every processor has, and in solver_avx2.c for wider vectors. */
+/* The layered solver in one piece, compiled for what every processor has, and in solver_avx2.c and solver_avx512.c for wider vectors. */
 
 #include "batch.h"
 #include "rotations.h"

@@ -19,7 +19,7 @@ from motionedit.core.priorities.trajectories import active_interval, share_of
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping, Sequence
     from typing import Self
 
     from motionedit.core.arrays import FloatArray, IntArray
@@ -157,6 +157,16 @@ class ConstraintErrors:
     positions: FloatArray | None
     angles: FloatArray | None
     places: FloatArray | None = None
+
+
+def joined(parts: Sequence[ConstraintErrors], first: int) -> ConstraintErrors:
+    """Return what is left of a constraint from frame `first` on, of parts that follow one another."""
+
+    def whole(name: str) -> FloatArray | None:
+        arrays = [array for array in (getattr(part, name) for part in parts) if array is not None]
+        return np.concatenate(arrays) if len(arrays) > 1 else arrays[0] if arrays else None
+
+    return ConstraintErrors(first, whole("positions"), whole("angles"), whole("places"))
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from takes import clock, foot_path, footfalls, smooth, within
 
 from motionedit.core.body.anatomy import find_anatomy
-from motionedit.core.body.contacts import Plant, find_plants, foot_plants, plants_of, sole_tracks
+from motionedit.core.body.contacts import Plant, foot_plants, plants_of, sole_tracks
 from motionedit.core.body.ground import axis_vector
 from motionedit.core.compiled import compiled, solver_name
 from motionedit.core.kinematics import WorldPoses, forward
@@ -17,7 +17,7 @@ from motionedit.core.motion import Motion
 UP = axis_vector("y")
 RATE = 100.0
 BODY = find_anatomy(skeleton_of())
-# As the docstring of find_plants has them, m/s.
+# As the docstring of plants_of has them, m/s.
 ENTERS, LEAVES = 0.3, 0.45
 
 
@@ -56,7 +56,12 @@ def carried(height, *, frame_time=0.01, scale=1.0):
 
 
 def found_in(motion, first=0):
-    return find_plants(motion, forward(motion), find_anatomy(motion.skeleton), up=UP, first=first)
+    return plants_among(motion, forward(motion), first)
+
+
+def plants_among(motion, poses, first=0):
+    anatomy = find_anatomy(motion.skeleton)
+    return plants_of(sole_tracks(poses, anatomy), anatomy, up=UP, first=first, frame_time=motion.frame_time)
 
 
 def test_feet_that_stand_are_planted_from_the_first_frame_to_the_last():
@@ -228,7 +233,7 @@ def test_ankle_and_toe_are_planted_by_themselves_and_make_one_stand_of_the_foot(
     ankle, toe = (motion.skeleton.names.index(name) for name in ("LeftFoot", "LeftToeBase"))
     places[30:, ankle, 1] += 0.008 * np.arange(30)
     places[:15, toe, 1] += 0.008 * np.arange(15)[::-1]
-    plants = find_plants(motion, WorldPoses(places, poses.rotations), find_anatomy(motion.skeleton), up=UP, first=0)
+    plants = plants_among(motion, WorldPoses(places, poses.rotations))
     left = {plant.part: (plant.start, plant.stop) for plant in plants if plant.foot == "left"}
     assert left["heel"] == (0, pytest.approx(30, abs=3))
     assert left["toe"] == (pytest.approx(14, abs=3), 59)

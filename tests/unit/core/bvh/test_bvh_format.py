@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from motionedit.core.bvh.format import format_fixed, place
+from motionedit.core.bvh.write import joined
 
 
 def texts(values, **options):
@@ -44,3 +45,8 @@ def test_words_are_placed_one_after_the_other():
     out = np.zeros(margin + stops[-1], np.uint8)
     place(words.chars, stops, out=out, margin=margin)
     assert out[margin:].tobytes() == b"1.0 -200.0 3.0 "
+
+
+@pytest.mark.parametrize("about", [0, 5, 9, 100, 1 << 23])
+def test_pieces_are_joined_whatever_was_foretold_of_their_length(about):
+    assert joined([b"one", memoryview(b"two"), b"", b"six"], about=about) == b"onetwosix"

@@ -9,7 +9,7 @@ from motionedit.core import kinematics
 from motionedit.core import rotations as rot
 from motionedit.core.body.anatomy import anatomy_of
 from motionedit.core.body.bends import find_bends
-from motionedit.core.body.contacts import find_plants, foot_plants
+from motionedit.core.body.contacts import foot_plants, plants_of, sole_tracks
 from motionedit.core.bvh import read_clip
 from motionedit.core.feet.knees import knee_of
 from motionedit.core.feet.put_back import put_back, standing_feet
@@ -23,7 +23,8 @@ UP = np.array([0.0, 1.0, 0.0])
 def walk():
     motion = read_clip(WALK).motion
     anatomy = anatomy_of(motion)
-    plants = foot_plants(find_plants(motion, kinematics.forward(motion), anatomy, up=UP, first=0))
+    tracks = sole_tracks(kinematics.forward(motion), anatomy)
+    plants = foot_plants(plants_of(tracks, anatomy, up=UP, first=0, frame_time=motion.frame_time))
     return motion, anatomy, plants
 
 

@@ -10,6 +10,7 @@ from motionedit.core.compiled import CHOICE, compiled
 from motionedit.core.kinematics import Effector, effector_positions, forward
 from motionedit.core.measure import Level
 from motionedit.core.motion import Motion
+from motionedit.core.priorities import compiled_solver
 from motionedit.core.priorities.kinds import CenterOfMass, Distance, Floor, Orientation, Position, Posture
 from motionedit.core.priorities.lengths import LengthPoint
 from motionedit.core.priorities.settings import Body
@@ -29,11 +30,25 @@ def by_numpy(monkeypatch, function):
         return function()
 
 
-class Narrow:
-    """The compiled part with the solver that every processor has."""
+def others_are_same(monkeypatch, function, edit):
+    """Hold an edit, made by the widest solver that the processor has, to a function's by each of the others."""
+    for name in compiled().solvers[:-1]:
+        with monkeypatch.context() as patch:
+            patch.setattr(compiled_solver, "compiled", lambda name=name: Other(name))
+            same_bits(function(), edit)
+
+
+class Other:
+    """The compiled part with another one of its solvers."""
+
+    def __init__(self, solver):
+        self.solver = solver
+
+    def solve(self, *arguments):
+        compiled().solve(*arguments, self.solver)
 
     def __getattr__(self, name):
-        return getattr(compiled(), "solve_narrow" if name == "solve" else name)
+        return getattr(compiled(), name)
 
 
 def same_bits(one, other):

@@ -22,7 +22,7 @@ def first_annealed(errors, softness=(0.0, 0.0), *, top=0.0, limited=False):
     soft, frame = np.array([[0.0, *softness]]), np.array([0])
     factors = [annealing.factors(frame, np.array([[top**i, *errors(i)]]), soft, i)[0] for i in range(MOST)]
     first = next(i for i, each in enumerate(factors) if each < 1.0)
-    np.testing.assert_array_equal(factors[first : first + 4], [0.5, 0.25, 0.125, 0.0625])
+    np.testing.assert_array_equal(factors[first : first + 4], [4.0**-1, 4.0**-2, 4.0**-3, 4.0**-4])
     return first
 
 

@@ -9,7 +9,8 @@ import pytest
 from arms import arms_of
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from random_bodies import FEASIBLE, FRAMES, INFEASIBLE, Narrow, by_numpy, difference, same_bits
+from person import edited, end, held_feet, swaying
+from random_bodies import FEASIBLE, FRAMES, INFEASIBLE, by_numpy, difference, others_are_same, same_bits
 
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
@@ -23,7 +24,7 @@ from motionedit.core.motion import Motion
 from motionedit.core.priorities import compiled_solver
 from motionedit.core.priorities.continuity import smoothed_displacement
 from motionedit.core.priorities.edit import edit_by_priorities
-from motionedit.core.priorities.kinds import KINDS, Position
+from motionedit.core.priorities.kinds import KINDS, CenterOfMass, Position
 from motionedit.core.priorities.kinds.position import PositionTask
 from motionedit.core.priorities.problem import Reference
 from motionedit.core.priorities.recruiting import RecruitRule
@@ -147,12 +148,25 @@ def test_neither_the_width_of_vectors_nor_the_neighbours_change_a_bit(patch, see
     motion, constraints, body = problem_of(seed, joints, count, 0.1)
     setting = LayeredSettings(smoothing=Passes(0), max_iterations=12)
     wide = edit_by_priorities(motion, constraints, body, setting)
-    with patch.context() as narrowed:
-        narrowed.setattr(compiled_solver, "compiled", Narrow)
-        same_bits(edit_by_priorities(motion, constraints, body, setting), wide)
+    others_are_same(patch, lambda: edit_by_priorities(motion, constraints, body, setting), wide)
     with patch.context() as parted:
         parted.setattr(compiled_solver, "_LEAST_SHARE", 1)
         same_bits(edit_by_priorities(motion, constraints, body, replace(setting, threads=FRAMES)), wide)
+
+
+def test_frames_that_take_a_lane_after_each_other_change_no_bit(patch):
+    motion = swaying(30)
+    points = (ControlPoint("hold", 14, 15, shift=np.array([0.2, 0.6, 0.5])),)
+    hand = Position(name="hand", effector=end("RightHand"), points=points, ease_in=12, ease_out=12, priority=2)
+    asked = [*held_feet(30), hand, CenterOfMass(name="com")]
+    edit = edited(motion, asked, LayeredSettings())
+    assert len(set(edit.iterations.tolist())) > 5
+    others_are_same(patch, lambda: edited(motion, asked, LayeredSettings()), edit)
+
+
+def test_a_solver_that_the_processor_does_not_have_is_refused():
+    with pytest.raises(ValueError, match="no solver 'avx1024'"):
+        compiled().solve({}, 0, 0, False, "avx1024")
 
 
 def solved(problem, motion, frames, **how):

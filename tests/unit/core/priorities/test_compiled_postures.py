@@ -11,13 +11,13 @@ from random_bodies import (
     FEASIBLE,
     FRAMES,
     INFEASIBLE,
-    Narrow,
     body_of,
     by_numpy,
     constraints_of,
     difference,
     is_met,
     motion_of,
+    others_are_same,
     same_bits,
 )
 
@@ -32,7 +32,7 @@ pytestmark = pytest.mark.skipif(solver_name() == "numpy", reason="no compiled so
 
 # And where a direction is no freedom for either: what they leave out is askew by as much as the tolerance of the rank.
 IN_DOUBT = 1e-5
-SETTING = LayeredSettings(smoothing=Passes(0), max_iterations=12)
+SETTING = LayeredSettings(smoothing=Passes(0), max_iterations=9)
 SEEDS = {"seed": st.integers(0, 2**32 - 1), "joints": st.integers(10, 18), "count": st.integers(0, 3)}
 PATIENT = {"deadline": None, "suppress_health_check": [HealthCheck.function_scoped_fixture]}
 
@@ -73,9 +73,7 @@ def test_both_solvers_hold_joints_alike(patch, seed, joints, count):
 @settings(max_examples=40, **PATIENT)
 def test_no_lane_knows_what_its_neighbours_hold(patch, seed, joints, count):
     wide = edit_of(seed, joints, count)
-    with patch.context() as narrowed:
-        narrowed.setattr(compiled_solver, "compiled", Narrow)
-        same_bits(edit_of(seed, joints, count), wide)
+    others_are_same(patch, lambda: edit_of(seed, joints, count), wide)
     with patch.context() as parted:
         parted.setattr(compiled_solver, "_LEAST_SHARE", 1)
         same_bits(edit_of(seed, joints, count, threads=FRAMES), wide)
@@ -104,9 +102,7 @@ def test_a_posture_below_what_hardly_sees_the_other_joints_is_held_alike(patch, 
     theirs = by_numpy(patch, lambda: edited(motion, asked, SETTING, body))
     np.testing.assert_array_equal(mine.ranks, theirs.ranks)
     assert difference(mine, theirs) < IN_DOUBT
-    with patch.context() as narrowed:
-        narrowed.setattr(compiled_solver, "compiled", Narrow)
-        same_bits(edited(motion, asked, SETTING, body), mine)
+    others_are_same(patch, lambda: edited(motion, asked, SETTING, body), mine)
 
 
 def test_what_lies_below_a_posture_of_all_joints_moves_the_root_alone():

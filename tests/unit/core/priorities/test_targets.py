@@ -11,6 +11,7 @@ from person import BODY, FEET, SKELETON, end, joint, swaying
 from motionedit.core import rotations as rot
 from motionedit.core.measure import Measure
 from motionedit.core.motion import Motion
+from motionedit.core.priorities import targets as of_all
 from motionedit.core.priorities.edit import prepare
 from motionedit.core.priorities.kinds import Aim, CenterOfMass, Distance, Floor, Orientation, Pose, Position, Posture
 from motionedit.core.priorities.kinds.constraint import Targets, between, moved
@@ -84,6 +85,20 @@ def test_nothing_is_left_of_a_constraint_whose_targets_are_where_a_motion_has_it
     assert errors(asked, there, motion).max() < 1e-7
     for name in ("positions", "rotations", "lengths"):
         assert (getattr(there, name) is None) == (getattr(targets, name) is None)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_is_left_of_a_constraint_is_the_same_block_by_block(kind, monkeypatch):
+    asked, motion = asked_of(KINDS[kind]), other_motion(2)
+    (whole,) = errors_of(asked, motion)
+    blocks = [slice(0, 5), slice(5, 10), slice(10, FRAMES)]
+    monkeypatch.setattr(of_all, "frame_blocks", lambda _: blocks)
+    (found,) = errors_of(asked, motion)
+    assert found.first == whole.first == 1
+    for name in ("positions", "angles", "places"):
+        one, other = getattr(found, name), getattr(whole, name)
+        assert (one is None) == (other is None)
+        assert one is None or np.allclose(one, other, rtol=0.0, atol=1e-12)
 
 
 @pytest.mark.parametrize(

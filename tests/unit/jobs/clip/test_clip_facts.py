@@ -14,6 +14,7 @@ sys.path.append(str(Path(__file__).parents[2] / "core"))
 from human import skeleton_of, standing, with_rotation
 
 from motionedit.core.bvh import new_bytes, parse_clip
+from motionedit.core.trace import BLOCK_FRAMES
 from motionedit.errors import ClipError
 from motionedit.jobs.clip import facts
 
@@ -45,6 +46,16 @@ def test_world_transforms_that_were_given_back_come_anew(counted):
     assert found.poses is not before
     assert (found.poses.positions == before.positions).all()
     assert len(counted) == 2
+
+
+def test_plants_and_phases_of_a_long_motion_whose_transforms_were_given_back_are_found_block_by_block(counted):
+    clip = parse_clip(new_bytes(standing(skeleton_of(), 2 * BLOCK_FRAMES + 10)), label="person.bvh")
+    held, given_back = facts.facts_of(clip, up="y"), facts.facts_of(clip, up="y")
+    given_back.forget_poses()
+    del counted[:]
+    assert given_back.phases == held.phases != ()
+    assert given_back.plants == held.plants
+    assert max(map(len, counted)) == BLOCK_FRAMES
 
 
 def test_a_body_with_a_thousand_branches_is_looked_at_within_seconds():
