@@ -102,11 +102,13 @@ def _turned(q: FloatArray, v: FloatArray) -> FloatArray:
 def forward_of(motion: Motion, joint: int) -> tuple[FloatArray, FloatArray]:
     """Return world positions (F, 3) and rotations (F, 4) of one joint, walking its own chain alone."""
     skeleton = motion.skeleton
-    place = {int(j): p for p, j in enumerate(skeleton.translated)}
-    positions = np.zeros((len(motion), 3))
-    rotations = np.broadcast_to(rot.IDENTITY, (len(motion), 4))
-    for j in skeleton.chain(joint):
-        local = motion.translations[:, place[int(j)]] if int(j) in place else skeleton.offsets[j]
+    place = {j: p for p, j in enumerate(skeleton.translated.tolist())}
+    positions, rotations = np.zeros((len(motion), 3)), motion.rotations[:, 0]
+    for j in skeleton.chain(joint).tolist():
+        local = motion.translations[:, place[j]] if j in place else skeleton.offsets[j]
+        if j == 0:
+            positions = positions + local
+            continue
         positions = positions + rot.rotate(rotations, local)
         rotations = rot.multiply(rotations, motion.rotations[:, j])
     return positions, rotations

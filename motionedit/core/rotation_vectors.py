@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core import rotations as rot
+
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
 
@@ -21,7 +23,7 @@ _NO_DIRECTION = 1e-9
 def unwrapped(v: FloatArray) -> FloatArray:
     """Return rotation vectors v (1 + 2 pi k / |v|) with k such that each is nearest the one before, (F, K, 3)."""
     v = v.copy()
-    step = _length(np.diff(v, axis=0))
+    step = rot.length(v[1:] - v[:-1])
     # The other representative of v is a whole turn from it, so it is nearer the one before only after half a turn.
     joints = np.flatnonzero((step > np.pi).any(axis=0))
     length = _length(v[1:, joints])
@@ -57,7 +59,7 @@ def relabelled(v: FloatArray, target: FloatArray) -> tuple[FloatArray, FloatArra
     """
     k = np.zeros(v.shape[1])
     # A turn leads 2 pi away: no track that keeps within half of that of its target comes nearer by one.
-    far = np.flatnonzero((_length(v - target) > np.pi).any(axis=0))
+    far = np.flatnonzero((rot.length(v - target) > np.pi).any(axis=0))
     if not len(far):
         return v.copy(), k
     v, track = v.copy(), v[:, far]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache, lru_cache
+from math import sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -54,10 +56,16 @@ class Frame:
 
 def reference_axes(up: FloatArray) -> FloatArray:
     """Return the rows left, up, forward of heading 0: left is +x (+y where x is up), forward is left x up."""
+    return _reference_axes(*up.tolist())
+
+
+@lru_cache(maxsize=6)
+def _reference_axes(*up: float) -> FloatArray:
     left = np.array([0.0, 1.0, 0.0] if abs(up[0]) > 0.5 else [1.0, 0.0, 0.0])
-    return np.stack((left, up, rot.cross(left, up)))
+    return frozen(np.array([left, up, rot.cross(left, np.array(up))]))
 
 
+@cache
 def axis_vector(name: str) -> FloatArray:
     """Return the unit vector of an axis' name: ``y`` is (0, 1, 0), ``-z`` is (0, 0, -1)."""
     vector = np.zeros(3)
@@ -82,12 +90,11 @@ def heading_frame(poses: WorldPoses, anatomy: Anatomy, *, up: FloatArray, frame:
     for a, b in _sideways(anatomy):
         across = places[a] - places[b]
         level = across - (across @ up) * up
-        if np.linalg.norm(level) > _LEVEL_SHARE * np.linalg.norm(across):
-            left = level / np.linalg.norm(level)
+        length = sqrt(level @ level)
+        if length > _LEVEL_SHARE * sqrt(across @ across):
+            left = level / length
             break
-    axes = np.stack((left, up, rot.cross(left, up)))
-    origin = places[travel] - (places[travel] @ up) * up
-    return Frame(frozen(np.array(up)), frozen(axes), frozen(origin))
+    return _frame(left, up, under=places[travel])
 
 
 def stance_frame(poses: WorldPoses, anatomy: Anatomy, *, up: FloatArray, frame: int) -> Frame | None:
@@ -101,13 +108,16 @@ def stance_frame(poses: WorldPoses, anatomy: Anatomy, *, up: FloatArray, frame: 
     left_ankle, right_ankle = (poses.positions[frame, leg.ankle] for leg in anatomy.legs)
     across = left_ankle - right_ankle
     level = across - (across @ up) * up
-    length = float(np.linalg.norm(level))
+    length = sqrt(level @ level)
     if length < _STANCE_SHARE * anatomy.leg_length:
         return None
-    left = level / length
-    middle = 0.5 * (left_ankle + right_ankle)
-    axes = np.stack((left, up, rot.cross(left, up)))
-    return Frame(frozen(np.array(up)), frozen(axes), frozen(middle - (middle @ up) * up))
+    return _frame(level / length, up, under=0.5 * (left_ankle + right_ankle))
+
+
+def _frame(left: FloatArray, up: FloatArray, *, under: FloatArray) -> Frame:
+    """Return the frame whose origin lies on the ground under a point."""
+    axes = np.array([left, up, rot.cross(left, up)])
+    return Frame(frozen(np.array(up)), frozen(axes), frozen(under - (under @ up) * up))
 
 
 def _sideways(anatomy: Anatomy) -> list[tuple[int, int]]:

@@ -10,6 +10,7 @@ met exactly in the output. `residual="drop"` gives the paper's eq. (3) alone.
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -22,7 +23,7 @@ from motionedit.core.coefficients.goal_chains import columns_behind, columns_of,
 from motionedit.core.coefficients.goals import stacked_errors
 from motionedit.core.coefficients.likeliest import likeliest_change
 from motionedit.core.coefficients.methods import GaussNewton, Likeliest
-from motionedit.core.coefficients.prior import change_prior, interpolated
+from motionedit.core.coefficients.prior import FADE, change_prior, interpolated
 from motionedit.core.coefficients.projection import Projection, with_rows
 from motionedit.core.coefficients.solver import CoefficientSolution, solve_goals
 from motionedit.core.timeline.interpolation import low_pass, monotone_cubic, natural_spline
@@ -45,6 +46,10 @@ Residual = Literal["keep", "drop"]
 # Seconds: what the component rows are low-passed by before they are interpolated in time. On a clip finer than the
 # timeline their corners would otherwise show as jerk.
 COMPONENT_SMOOTHING = 0.040
+# Seconds: by what instead, for goals at several frames. To lead from one to the next components are stretched, and of a
+# few motions what goes faster than changes between motions fade is mostly their own. Noise that is low-passed by this
+# correlates in time as the residual does: a Gaussian with itself is one sqrt(2) times as wide.
+SMOOTHING_OF_SEVERAL = FADE / math.sqrt(2.0)
 
 # The residual has the whole pose at each goal's frame, so that what moves together stays together; with more unknowns
 # than this only what moves the goals, or a dense matrix of them all would take seconds.
@@ -150,6 +155,8 @@ def edit_by_coefficients(
         if together * model.space.size <= MOST_UNKNOWNS:
             columns = np.arange(model.space.size)
         columns = columns[~np.isin(columns, columns_of(projection, solver.still))]
+        if together > 1 and residual == "keep":
+            smoothing = SMOOTHING_OF_SEVERAL
         if frames:
             model = components_about(
                 model,

@@ -14,6 +14,8 @@ from motionedit.core.motion import Motion
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from motionedit.core.arrays import FloatArray
     from motionedit.core.body.ground import Frame
 
@@ -47,9 +49,21 @@ NO_ALIGNMENT = Alignment(rot.IDENTITY, frozen(np.zeros(3)))
 
 def align_to(frame: Frame, *, heading: bool, position: bool) -> Alignment:
     """Return the alignment that brings a heading frame to heading 0 and its origin to the file's."""
-    rotation = rot.from_matrix(reference_axes(frame.up).T @ frame.axes) if heading else rot.IDENTITY
-    origin = frame.origin - (frame.origin @ frame.up) * frame.up if position else np.zeros(3)
-    return Alignment(frozen(rotation), frozen(origin))
+    return align_each([frame], heading=heading, position=position)[0]
+
+
+def align_each(frames: Sequence[Frame], *, heading: bool, position: bool) -> list[Alignment]:
+    """Return what `align_to` does of each of some frames: their rotations in one call."""
+    rotations = np.broadcast_to(rot.IDENTITY, (len(frames), 4))
+    if heading and frames:
+        rotations = rot.from_matrix(np.array([reference_axes(frame.up).T @ frame.axes for frame in frames]))
+    return [
+        Alignment(
+            frozen(rotation),
+            frozen(frame.origin - (frame.origin @ frame.up) * frame.up if position else np.zeros(3)),
+        )
+        for frame, rotation in zip(frames, rotations, strict=True)
+    ]
 
 
 @dataclass(frozen=True, eq=False)

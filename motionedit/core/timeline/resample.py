@@ -23,7 +23,7 @@ def resample(motion: Motion, at: FloatArray, *, frame_time: float) -> Motion:
     i = np.clip(np.floor(at).astype(np.intp), 0, max(last - 1, 0))
     j = np.minimum(i + 1, last)
     t = at - i
-    rotations = rot.slerp(motion.rotations[i], motion.rotations[j], t[:, None])
+    rotations = rot.slerp_frames(motion.rotations, i, t)
     a, b = motion.translations[i], motion.translations[j]
     translations = a + t[:, None, None] * (b - a)
     return Motion(motion.skeleton, frozen(rotations), frozen(translations), frame_time)

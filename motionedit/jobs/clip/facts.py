@@ -18,7 +18,7 @@ from motionedit.core.body.steps import own_steps
 from motionedit.core.body.up import find_up
 from motionedit.core.feet.phases import LegPath, find_phases, leg_paths
 from motionedit.core.trace import BLOCK_FRAMES, frame_blocks
-from motionedit.dataclass import dataclass, replace
+from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError
 
 if TYPE_CHECKING:
@@ -137,43 +137,55 @@ class ClipFacts:
 
     def heading_frame(self, at: float | None = None) -> ground.Frame:
         """Return the heading frame at a frame or a part of one; by default the first after the rest pose."""
-        poses, frame = self._at(at)
-        return ground.heading_frame(poses, self.anatomy, up=self.up, frame=frame, travel=self.travel)
+        return self._frames(at)[0]
 
     def stands(self, at: float | None = None) -> bool:
         """Return whether both feet are planted at a frame, side by side rather than one before the other."""
-        stance = self._stance_frame(at)
+        heading, stance = self._frames(at)
         # Plants are the dearer question.
-        if stance is None or float(stance.axes[0] @ self.heading_frame(at).axes[0]) <= SIDE_BY_SIDE:
+        if stance is None or float(stance.axes[0] @ heading.axes[0]) <= SIDE_BY_SIDE:
             return False
-        when = self.first if at is None else at
-        feet = {plant.foot for plant in self._plants_around(when) if plant.start <= when <= plant.stop}
-        return feet == {"left", "right"}
+        return self._feet_planted(self.first if at is None else at) == {"left", "right"}
+
+    def line_frame(self, by: Line, at: float | None) -> ground.Frame:
+        """Return the frame by the line of hips or feet at a frame (None: the first): without feet by the hips."""
+        heading, stance = self._frames(at)
+        return heading if stance is None or by == "hips" else stance
 
     def alignment(self, by: Line, *, heading: bool, position: bool, at: float | None) -> Alignment:
         """Return the alignment of a clip on the ground at a frame (None: the first), by the line of hips or feet."""
         from motionedit.core.timeline.alignment import align_to
 
-        found = self._stance_frame(at) if by == "feet" else None
-        return align_to(found or self.heading_frame(at), heading=heading, position=position)
+        return align_to(self.line_frame(by, at), heading=heading, position=position)
 
     def refuse_one_frame(self) -> None:
         """Raise a ClipError where one frame is left after the rest pose."""
         if self.last - self.first < 1:
             raise ClipError("has one frame; a motion needs two", file=self.clip.label)
 
-    def _plants_around(self, when: float) -> list[Plant]:
-        """Return the plants near a frame: whether a point stands there depends on two seconds around it, no more."""
+    def _feet_planted(self, when: float) -> set[str]:
+        """Return the feet that are planted at a frame: that depends on two seconds around it, no more."""
         frame_time = self.clip.motion.frame_time
         near = round(_AROUND / frame_time)
         begin, end = max(int(when) - near, self.first), min(int(when) + near, self.last) + 1
         tracks = sole_tracks(self.poses.at(slice(begin, end)), self.anatomy)
         found = plants_of(tracks, self.anatomy, up=self.up, first=0, frame_time=frame_time)
-        return [replace(plant, start=plant.start + begin, stop=plant.stop + begin) for plant in found]
+        return {plant.foot for plant in found if plant.start + begin <= when <= plant.stop + begin}
 
-    def _stance_frame(self, at: float | None) -> ground.Frame | None:
-        poses, frame = self._at(at)
-        return ground.stance_frame(poses, self.anatomy, up=self.up, frame=frame)
+    def _frames(self, at: float | None) -> tuple[ground.Frame, ground.Frame | None]:
+        """Return the frames of the heading and of the feet, where these have a line; each is asked for again."""
+        known = self._known_frames.get(at)
+        if known is None:
+            poses, frame = self._at(at)
+            heading = ground.heading_frame(poses, self.anatomy, up=self.up, frame=frame, travel=self.travel)
+            known = heading, ground.stance_frame(poses, self.anatomy, up=self.up, frame=frame)
+            self._known_frames[at] = known
+        return known
+
+    @cached_property
+    def _known_frames(self) -> dict[float | None, tuple[ground.Frame, ground.Frame | None]]:
+        """Frames that were asked for."""
+        return {}
 
     def _at(self, at: float | None) -> tuple[WorldPoses, int]:
         """Return poses and a frame of them: the clip's own, or those of one resampled frame."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from motionedit.core.timeline.alignment import align_each
 from motionedit.dataclass import dataclass, replace
 from motionedit.errors import EXIT_CLIP_FAILED, EXIT_USAGE, MotionEditError, UsageError
 from motionedit.jobs.batch.files import bytes_of
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
-    from motionedit.core.timeline.warp import Timeline
+    from motionedit.core.timeline.alignment import Alignment
     from motionedit.jobs.batch.plan import ClipTask, RunOptions
     from motionedit.jobs.batch.processes import Crew
     from motionedit.jobs.batch.verdicts import Verdicts
@@ -133,23 +134,27 @@ def _both_phases(
     line: Line = "feet" if all(measure.stands for measure in measures) else "hips"
     by_label = {measure.label: measure for measure in measures}
     used = [by_label[task.label] for task in good]
-    works = [ResampleClip(measure, timeline, line, loaded.model.unit) for measure in used]
+    align = loaded.model.align
+    lines = [measure.lines[line] for measure in used]
+    alignments = align_each(lines, heading=align.heading, position=align.position)
+    works = [
+        ResampleClip(measure, timeline, alignment, loaded.model.unit)
+        for measure, alignment in zip(used, alignments, strict=True)
+    ]
     given = [replace(task, clip=task.clip or by_label[task.label].read) for task in good]
     if not options.dry_run:
         before_writing()
     result = run_each(list(zip(given, works, strict=True)), options, verdicts=verdicts, crew=crew)
     written = [record.get("clip_sha256", "") for record in result.records]
-    normalization = None if result.failures else _normalization(loaded, timeline, line, used, written)
+    normalization = None
+    if not result.failures:
+        clips = tuple(_normalized_clip(*each) for each in zip(used, alignments, written, strict=True))
+        normalization = Normalization(timeline, used[0].up, _rules(loaded, line), clips)
     return Normalized(_with_failures(result, tasks, failures, warnings), normalization)
 
 
-def _normalization(
-    loaded: LoadedSpec[NormalizeSpec],
-    timeline: Timeline,
-    line: Line,
-    measures: Sequence[ClipMeasure],
-    written: Sequence[str],
-) -> Normalization:
+def _rules(loaded: LoadedSpec[NormalizeSpec], line: Line) -> dict[str, Any]:
+    """Return what was done to the clips, as clips that come later are to be treated."""
     spec = loaded.model
     rules: dict[str, Any] = {
         "align": {
@@ -165,11 +170,10 @@ def _normalization(
         rules["crop"] = spec.crop
     if spec.body.plain:
         rules["body"] = spec.body.plain
-    clips = tuple(_normalized_clip(measure, line, digest) for measure, digest in zip(measures, written, strict=True))
-    return Normalization(timeline, measures[0].up, rules, clips)
+    return rules
 
 
-def _normalized_clip(measure: ClipMeasure, line: Line, written: str) -> NormalizedClip:
+def _normalized_clip(measure: ClipMeasure, alignment: Alignment, written: str) -> NormalizedClip:
     return NormalizedClip(
         clip=measure.clip,
         source=measure.label,
@@ -178,8 +182,8 @@ def _normalized_clip(measure: ClipMeasure, line: Line, written: str) -> Normaliz
         duration=measure.duration,
         first=measure.first,
         events=measure.events,
-        rotation=tuple(map(float, measure.alignments[line].rotation)),
-        origin=tuple(map(float, measure.alignments[line].origin)),
+        rotation=tuple(alignment.rotation.tolist()),
+        origin=tuple(alignment.origin.tolist()),
         written=written,
     )
 

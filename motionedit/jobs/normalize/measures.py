@@ -17,9 +17,9 @@ from motionedit.jobs.clip.facts import facts_of
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from motionedit.core.body.ground import Frame
     from motionedit.core.bvh import Clip
     from motionedit.core.skeleton import Skeleton
-    from motionedit.core.timeline.alignment import Alignment
     from motionedit.jobs.batch.plan import ClipTask
     from motionedit.jobs.clip.facts import ClipFacts, Line
     from motionedit.spec.load import LoadedSpec
@@ -30,9 +30,9 @@ if TYPE_CHECKING:
 class ClipMeasure:
     """What the first phase takes from a clip.
 
-    `first` and `last` are the frames that count, after a rest pose and within the spec's crop; `stands` says whether
-    both feet stand side by side where clips are aligned, `read` holds the clip where the second phase need not read it
-    again.
+    `first` and `last` are the frames that count, after a rest pose and within the spec's crop; `travel` is the joint
+    that carries the travel; `stands` says whether both feet stand side by side where clips are aligned, `lines` by what
+    they may be; `read` holds the clip where the second phase need not read it again.
     """
 
     label: str
@@ -46,8 +46,9 @@ class ClipMeasure:
     skeleton: Skeleton
     up: str
     height: float
+    travel: int
     stands: bool
-    alignments: dict[Line, Alignment]
+    lines: dict[Line, Frame]
     warnings: tuple[str, ...]
     read: Clip | None = None
 
@@ -79,12 +80,8 @@ class MeasureClip:
         events, warnings = _events(self.loaded, task, facts, self.others)
         place = resolve.Place(self.loaded, (), task.label)
         first, last = cropped(spec.crop, facts, place, events=events)
-        align = spec.align
         at = (None if first == facts.first else float(first)) if spec.align_event is None else events[spec.align_event]
-        alignments: dict[Line, Alignment] = {
-            "hips": facts.alignment("hips", heading=align.heading, position=align.position, at=at),
-            "feet": facts.alignment("feet", heading=align.heading, position=align.position, at=at),
-        }
+        lines: dict[Line, Frame] = {"hips": facts.line_frame("hips", at), "feet": facts.line_frame("feet", at)}
         return ClipMeasure(
             label=task.label,
             clip=task.relative,
@@ -97,8 +94,9 @@ class MeasureClip:
             skeleton=clip.motion.skeleton,
             up=axis_name(facts.up),
             height=facts.anatomy.height,
+            travel=facts.travel,
             stands=facts.stands(at),
-            alignments=alignments,
+            lines=lines,
             warnings=(*facts.warnings, *warnings),
             read=clip if self.keep else None,
         )

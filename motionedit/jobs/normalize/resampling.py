@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from motionedit.core.body.bones import travel_joint
 from motionedit.core.body.quality import find_defects
 from motionedit.core.bvh import resampled_bytes
 from motionedit.core.timeline.alignment import aligned
@@ -19,20 +18,20 @@ from motionedit.jobs.batch.one_clip import Outcome
 if TYPE_CHECKING:
     from motionedit.core.bvh import Clip
     from motionedit.core.motion import Motion
+    from motionedit.core.timeline.alignment import Alignment
     from motionedit.core.timeline.warp import Timeline
     from motionedit.jobs.batch.plan import ClipTask
-    from motionedit.jobs.clip.facts import Line
     from motionedit.jobs.normalize.measures import ClipMeasure
     from motionedit.spec.values import Unit
 
 
 @dataclass(frozen=True)
 class ResampleClip:
-    """The work on the clip of one measure: onto the common timeline, aligned by the line of hips or feet."""
+    """The work on the clip of one measure: onto the common timeline, and into its alignment."""
 
     measure: ClipMeasure
     timeline: Timeline
-    line: Line
+    alignment: Alignment
     unit: Unit | None
 
     def __call__(self, clip: Clip, task: ClipTask) -> Outcome:
@@ -58,7 +57,7 @@ class ResampleClip:
         warp = make_warp(timeline, first=measure.first, last=measure.last, events=measure.events, label=measure.label)
         at = warp.to_source(np.arange(timeline.frames, dtype=np.float64))
         resampled = resample(clip.motion, at, frame_time=1.0 / timeline.frame_rate)
-        return aligned(resampled, measure.alignments[self.line], travel=travel_joint(clip.motion))
+        return aligned(resampled, self.alignment, travel=measure.travel)
 
     def _record(self) -> dict[str, Any]:
         return {

@@ -4,7 +4,7 @@ from itertools import permutations, product
 
 import numpy as np
 import pytest
-from scipy.spatial.transform import Rotation
+from scipy.spatial.transform import Rotation, Slerp
 
 from motionedit.core import rotations as rot
 from motionedit.core.compiled import compiled, solver_name
@@ -110,6 +110,56 @@ def test_slerp_turns_evenly_along_the_shorter_arc(rng):
         middle = rot.slerp(a, b, np.full(30, t))
         np.testing.assert_allclose(rot.angle_between(a, middle), t * rot.angle_between(a, b), atol=1e-14)
         np.testing.assert_allclose(rot.angle_between(middle, b), (1 - t) * rot.angle_between(a, b), atol=1e-14)
+
+
+def frames_of(rng):
+    """Return rotations (F, J, 4), two of them with no way between them and one with half a turn's, and places."""
+    q = random_quaternions(rng, 40).reshape(8, 5, 4)
+    q[3, 1], q[4, 2] = q[2, 1], -q[3, 2]
+    q[6, 0] = rot.multiply(q[5, 0], rot.about_axis(1, np.array(np.pi)))
+    frames = np.array([0, 2, 2, 3, 5, 6, 7, 7])
+    return q, frames, np.array([0.0, 0.25, 0.9, 0.5, 0.5, 1.0, 0.0, 0.5])
+
+
+def test_places_between_frames_are_those_of_scipy(rng):
+    q, frames, t = frames_of(rng)
+    found = rot.slerp_frames(q, frames, t)
+    for n, (frame, part) in enumerate(zip(frames.tolist(), t.tolist(), strict=True)):
+        after = q[min(frame + 1, 7)]
+        for j in range(5):
+            if n != 4 or j != 0:  # half a turn has two ways
+                between = Slerp([0.0, 1.0], scipy_of(np.stack((q[frame, j], after[j]))))(part)
+                same_rotation(found[n, j], between.as_quat(scalar_first=True), atol=1e-14)
+    np.testing.assert_allclose(np.linalg.norm(found, axis=-1), 1.0, atol=1e-15)
+    # At a frame it is that frame, to the bit.
+    np.testing.assert_array_equal(found[t == 0.0], q[frames[t == 0.0]])
+
+
+@pytest.mark.compiled
+def test_compiled_places_between_frames_are_those_of_numpy_to_the_bit(rng, monkeypatch):
+    q, frames, t = frames_of(rng)
+    compiled = rot.slerp_frames(q, frames, t)
+    monkeypatch.setenv("MOTIONEDIT_SOLVER", "numpy")
+    np.testing.assert_array_equal(compiled, rot.slerp_frames(q, frames, t), strict=True)
+
+
+@pytest.mark.skipif(solver_name() == "numpy", reason="nothing compiled here")
+def test_frames_that_there_are_not_and_wrong_sizes_are_errors_and_no_crash():
+    q, at, cosines, out = np.zeros((2, 3, 4)), np.array([1]), np.zeros((1, 3)), np.zeros((1, 3, 4))
+    for frames, joints, results in (
+        (np.array([2]), 3, cosines),
+        (np.array([-1]), 3, cosines),
+        (at, 5, cosines),
+        (at, 3, out),
+    ):
+        with pytest.raises(ValueError, match=r"frames|rotations|cosines"):
+            compiled().arc_cosines(q, frames, joints, results)
+    good = (np.zeros(1), cosines, np.zeros((3, 1, 3)), 0.0, out)
+    for k, wrong in enumerate((np.zeros(2), np.zeros(2), cosines)):
+        with pytest.raises(ValueError, match=r"fractions|cosines|tangents"):
+            compiled().slerp(q, at, 3, *good[:k], wrong, *good[k + 1 :])
+    with pytest.raises(ValueError, match="turns"):
+        compiled().slerp(q, at, 3, *good[:4], cosines)
 
 
 def test_the_mean_is_scipys_whatever_the_signs(rng):

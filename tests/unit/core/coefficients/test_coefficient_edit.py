@@ -8,7 +8,8 @@ from motionedit.core import kinematics
 from motionedit.core import rotations as rot
 from motionedit.core.coefficients.edit import edit_by_coefficients
 from motionedit.core.coefficients.goal_chains import GoalRequest
-from motionedit.core.coefficients.methods import GaussNewton
+from motionedit.core.coefficients.methods import GaussNewton, Likeliest
+from motionedit.core.coefficients.prior import FADE
 from motionedit.core.coefficients.projection import project, project_resampled, with_rows
 from motionedit.core.kinematics import Effector
 from motionedit.core.measure import Measure
@@ -77,6 +78,27 @@ def test_the_edit_carries_no_jerk_of_its_own(model):
         for m in (motion, edit.motion)
     )
     assert after < 1.3 * before
+
+
+def test_components_between_goals_are_no_faster_than_what_fades():
+    motions, hits = database(noise=0.1)
+    noisy = model_of(motions, TIMELINE, hits)
+    motion = stroke(22, frames=121, frame_time=1 / 100)
+    projection = projected(noisy, motion, 72.0)
+
+    def times_fading(shifts):
+        """Return the third derivative of a change, rms, over that of a noise that correlates as the residual does."""
+        requests = [request_of(motion, frame, np.array(shift)) for frame, shift in shifts.items()]
+        solver = Likeliest(0.05, None, most=0.05)
+        edit = edit_by_coefficients(projection, noisy, requests, solver=solver, residual="keep", first=0)
+        for request in requests:
+            np.testing.assert_allclose(place_of(edit.motion, request), request.position, atol=1e-5)
+        change = rot.log(rot.between(motion.rotations, edit.motion.rotations))
+        third = np.diff(change, 3, axis=0) / motion.frame_time**3
+        return np.sqrt(np.mean(third**2) / np.mean(change**2)) / (np.sqrt(15.0) / FADE**3)
+
+    one, two = {72: (0.0, 0.1, 0.0)}, {57: (0.0, 0.1, 0.0), 72: (0.0, -0.1, 0.0)}
+    assert times_fading(two) < 1.0 < times_fading(one)
 
 
 def test_a_clip_that_faces_elsewhere_gets_the_same_edit_turned(model):
