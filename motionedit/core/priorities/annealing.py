@@ -3,7 +3,7 @@
 That is so over the last iterations there are, and earlier where what is missed stays missed: once steps are steady, the
 error of the most important layer that shall be met, and is far from it, no longer changes. The first layer, which is
 never annealed, is not waited for. Where all that is missed gives way, its errors no longer change. Limits of joints are
-met slowly: with them nothing ends early.
+met slowly: with them nothing ends early; nor does it as the paper has it, where what is missed does not give way.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 class Annealing:
     """Of `count` frames: from which iteration on they are annealed."""
 
-    def __init__(self, count: int, layers: int, max_iterations: int, *, limited: bool) -> None:
+    def __init__(self, count: int, layers: int, max_iterations: int, *, ends_early: bool) -> None:
         self._from = np.full(count, max_iterations - ANNEALED_ITERATIONS)
-        self._errors, self._stale, self._limited = np.zeros((count, layers)), np.zeros(count), limited
+        self._errors, self._stale, self._ends_early = np.zeros((count, layers)), np.zeros(count), ends_early
 
     def factors(self, frames: IntArray, errors: FloatArray, softness: FloatArray, iteration: int) -> FloatArray:
         """Return what the pull and the lower layers' steps are multiplied by in an iteration, shape (N,).
@@ -42,7 +42,7 @@ class Annealing:
         softness : shape (N, L)
             Not 0 where a layer gives way: it need not be met.
         """
-        if iteration >= HASTY_ITERATIONS - 1:
+        if self._ends_early and iteration >= HASTY_ITERATIONS - 1:
             self._watch(frames, errors, softness, iteration)
         factors: FloatArray = 0.25 ** np.maximum(0, iteration + 1 - self._from[frames])
         return factors
@@ -60,7 +60,7 @@ class Annealing:
         self._errors[frames] = np.where(changed | (soft & differs), errors, before)
         rests = soft.any(axis=1) & ~(soft & differs).any(axis=1) & ~missed.any(axis=1)
         stays = (decides & ~changed).any(axis=1) | rests
-        stays &= iteration >= HASTY_ITERATIONS and not self._limited
+        stays &= iteration >= HASTY_ITERATIONS
         self._stale[frames] = np.where(stays, self._stale[frames] + 1, 0)
         early = self._stale[frames] >= STALE_ITERATIONS
         self._from[frames] = np.where(early, np.minimum(self._from[frames], iteration), self._from[frames])

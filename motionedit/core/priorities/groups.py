@@ -224,6 +224,7 @@ def _group(asked: Asked, members: Sequence[int], frames: IntArray) -> Group:
         max_iterations=asked.settings.max_iterations,
         mobility=mobility,
         softness=softness,
+        ends_early=asked.settings.gives_way,
     )
     levels = asked.levels
     return Group(frames, np.array([levels.index(-priority) for priority, _ in order]), layers, prepare_problem(problem))

@@ -137,7 +137,9 @@ def _iterate(
     if not len(frames):
         return
     first, count = int(frames[0]), int(frames[-1] - frames[0]) + 1
-    annealing = Annealing(count, len(problem.layers), problem.max_iterations, limited=limited)
+    annealing = Annealing(
+        count, len(problem.layers), problem.max_iterations, ends_early=problem.ends_early and not limited
+    )
     block = _Block(problem, reference, Memory.empty(count, columns.size), Sides(count), annealing, first, root, limited)
     memory, moved_before = block.memory, np.zeros(count)
     for iteration in range(problem.max_iterations):

@@ -143,6 +143,8 @@ class Problem:
         lambda^2 of layers that give way, (m/rad)^2: such a layer is |e|^2 + lambda^2 |z|^2 made least among its rows. 0
         of layers that shall be met.
     limits : LimitColumns
+    ends_early : bool
+        Whether frames in which what is missed stays so end before their iterations do: see `annealing`.
     """
 
     columns: Columns
@@ -154,6 +156,7 @@ class Problem:
     mobility: FloatArray
     softness: FloatArray
     limits: LimitColumns = NO_LIMITS
+    ends_early: bool = True
 
 
 @dataclass(frozen=True, eq=False)

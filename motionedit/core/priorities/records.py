@@ -188,6 +188,7 @@ def settings_of(problem: Problem, structure: Structure, *, rows: int, targets: i
         root=structure.root,
         moves_root=problem.moves_root,
         max_iterations=problem.max_iterations,
+        ends_early=problem.ends_early,
         attraction=problem.attraction,
     )
 

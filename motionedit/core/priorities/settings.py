@@ -45,6 +45,11 @@ class LayeredSettings:
     recruiting_rule: RecruitingRule = "expand"
     threads: int = 1
 
+    @property
+    def gives_way(self) -> bool:
+        """Whether what is out of reach gives way: the paper's way is as near to it as any step comes."""
+        return isinstance(self.smoothing, Passes)
+
 
 @dataclass(frozen=True, eq=False)
 class Body:

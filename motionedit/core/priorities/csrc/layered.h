@@ -70,7 +70,7 @@ typedef struct {
 /* How many there are of what, and how frames are solved. */
 typedef struct {
     int64_t nodes, columns, tasks, hinges, limits, layers, joints, translated, rows, targets;
-    int64_t root, moves_root, max_iterations; /* root: a node, or -1 */
+    int64_t root, moves_root, max_iterations, ends_early; /* root: a node, or -1 */
     double attraction;
 } Settings;
 

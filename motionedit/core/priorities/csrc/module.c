@@ -37,7 +37,8 @@ typedef struct {
 static const Field SETTINGS_FIELDS[] = {INTEGER(Settings, nodes), INTEGER(Settings, columns), INTEGER(Settings, tasks),
     INTEGER(Settings, hinges), INTEGER(Settings, limits), INTEGER(Settings, layers), INTEGER(Settings, joints),
     INTEGER(Settings, translated), INTEGER(Settings, rows), INTEGER(Settings, targets), INTEGER(Settings, root),
-    INTEGER(Settings, moves_root), INTEGER(Settings, max_iterations), NUMBER(Settings, attraction), {0}};
+    INTEGER(Settings, moves_root), INTEGER(Settings, max_iterations), INTEGER(Settings, ends_early),
+    NUMBER(Settings, attraction), {0}};
 static const Field CONSTANTS_FIELDS[] = {NUMBER(Constants, largest_error), NUMBER(Constants, largest_soft_error),
     NUMBER(Constants, largest_turn), NUMBER(Constants, stop_step), NUMBER(Constants, stop_left),
     NUMBER(Constants, stop_error), NUMBER(Constants, largest_ratio), NUMBER(Constants, gain_decay),

@@ -141,7 +141,7 @@ static void end_frame(Batch *batch, int lane, int converged)
 /* Count the iterations in which what is missed stays so, in lanes that are watched: annealing.py. */
 static void watch_errors(Batch *batch, Mask watched)
 {
-    if (!any(watched)) {
+    if (!any(watched) || !batch->problem->of.ends_early) {
         batch->stale = all(0.0);
         return;
     }

@@ -6,19 +6,19 @@ from person import HARD, edited, held, held_feet, swaying
 
 from motionedit.core.priorities.annealing import Annealing
 from motionedit.core.priorities.constants import ANNEALED_ITERATIONS, HASTY_ITERATIONS, STALE_ITERATIONS
-from motionedit.core.priorities.settings import LayeredSettings
+from motionedit.core.priorities.settings import LayeredSettings, Passes
 
 MOST = 40
 LAST = MOST - ANNEALED_ITERATIONS
 EARLY = HASTY_ITERATIONS + STALE_ITERATIONS - 1
 
 
-def first_annealed(errors, softness=(0.0, 0.0), *, top=0.0, limited=False):
+def first_annealed(errors, softness=(0.0, 0.0), *, top=0.0, ends_early=True):
     """Return the first iteration whose factor is not 1 where errors(iteration) are left of two layers below the first.
 
     Of that one `top` ** iteration is left.
     """
-    annealing = Annealing(1, 3, MOST, limited=limited)
+    annealing = Annealing(1, 3, MOST, ends_early=ends_early)
     soft, frame = np.array([[0.0, *softness]]), np.array([0])
     factors = [annealing.factors(frame, np.array([[top**i, *errors(i)]]), soft, i)[0] for i in range(MOST)]
     first = next(i for i, each in enumerate(factors) if each < 1.0)
@@ -54,7 +54,7 @@ def test_layers_that_give_way_need_not_be_met():
 
 
 def test_what_gives_way_is_over_once_it_is_annealed():
-    annealing, frames = Annealing(2, 1, MOST, limited=False), np.arange(2)
+    annealing, frames = Annealing(2, 1, MOST, ends_early=True), np.arange(2)
     soft = np.array([[0.01], [0.0]])
     over = []
     for i in range(MOST):
@@ -70,20 +70,27 @@ def test_the_first_layer_is_not_waited_for_but_may_be_out_of_reach_itself():
     assert first_annealed(lambda i: (0.97**i, 0.0), top=1.0) == EARLY
 
 
-def test_with_limits_nothing_ends_early():
-    assert first_annealed(lambda _: (0.0, 0.5), limited=True) == LAST
+def test_with_limits_and_as_the_paper_has_it_nothing_ends_early():
+    assert first_annealed(lambda _: (0.0, 0.5), ends_early=False) == LAST
 
 
 def test_what_is_out_of_reach_ends_early_and_leaves_what_is_above_it_exact():
-    motion = swaying(8)
+    motion, soon = swaying(8), LayeredSettings(smoothing=Passes(0))
     reached, far = (
-        edited(motion, [*held_feet(8), held("RightHand", 8, shift, priority=2)], HARD)
+        edited(motion, [*held_feet(8), held("RightHand", 8, shift, priority=2)], soon)
         for shift in ((0.1, 0.1, 0.1), (0.0, 2.0, 1.0))
     )
     assert far.converged.all()
-    assert far.iterations.max() < LAST + STALE_ITERATIONS
+    assert far.iterations.max() < LAST
     assert max(each.positions.max() for each in far.errors[:-1]) < 1e-6
     assert reached.errors[-1].positions.max() < 1e-6
+
+
+def test_as_the_paper_has_it_what_is_out_of_reach_is_gone_to_as_far_as_any_step_leads():
+    asked = [*held_feet(8), held("RightHand", 8, (0.0, 2.0, 1.0), priority=2)]
+    hard, soon = (edited(swaying(8), asked, each) for each in (HARD, LayeredSettings(smoothing=Passes(0))))
+    assert hard.iterations.min() > soon.iterations.max()
+    assert hard.errors[-1].positions.max() < soon.errors[-1].positions.min() - 1e-3
 
 
 def test_goals_in_conflict_are_gone_to_however_far_off_they_are():
