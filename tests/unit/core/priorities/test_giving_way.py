@@ -4,14 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from person import BODY, HARD, edited, end, held_feet, path, swaying
+from person import BODY, HARD, edited, end, held, held_feet, joint, path, swaying
 
 from motionedit.core import rotations as rot
 from motionedit.core.kinematics import forward
 from motionedit.core.motion import Motion
 from motionedit.core.priorities.edit import edit_by_priorities, prepare
 from motionedit.core.priorities.frames import run_of, solve_frames
-from motionedit.core.priorities.kinds import CenterOfMass, Position
+from motionedit.core.priorities.giving_way import given_way
+from motionedit.core.priorities.kinds import CenterOfMass, Position, Posture
 from motionedit.core.priorities.numpy_solver import attraction
 from motionedit.core.priorities.problem import Reference
 from motionedit.core.priorities.settings import LayeredSettings, Passes
@@ -105,6 +106,27 @@ def test_what_is_left_is_told_of_what_was_asked_and_not_of_the_path_in_its_place
 def test_a_goal_in_reach_does_not_give_way():
     asked = [*held_feet(FRAMES), reaching((0.1, 0.1, 0.1))]
     assert lefts(edited(MOTION, asked, SMOOTH)).max() < 0.01 * MM
+
+
+def test_what_has_a_path_is_kept_to_it_and_what_has_none_stays_soft():
+    hand = held("RightHand", FRAMES, SHIFTS[0], priority=4)
+    keep = Posture(name="keep", joints=(joint("Spine"),), priority=hand.priority)
+    run, _ = prepare(MOTION, [*held_feet(FRAMES), hand, keep], BODY, SMOOTH)
+    missed = np.zeros(FRAMES, dtype=np.bool_)
+    missed[40:46] = True
+    last = len(run.asked.constraints) - 1
+    asked, smooth = given_way(run.asked, {last - 1: missed, last: missed}, Passes())
+    kept, soft = (asked.softness[k] for k in (last - 1, last))
+    lambdas = np.array([0.012, 0.12])  # m/rad
+    np.testing.assert_allclose([kept[43], soft[43]], lambdas**2)
+    np.testing.assert_allclose(kept[soft > 0.0] / soft[soft > 0.0], 0.01)
+    ramp = round(0.3 / MOTION.frame_time)
+    np.testing.assert_array_equal(np.flatnonzero(soft), np.arange(41 - ramp, 45 + ramp))
+    t = 0.5
+    halfway = t**3 * (10.0 - 15.0 * t + 6.0 * t * t)
+    np.testing.assert_allclose(soft[40 - ramp // 2], (lambdas[1] * halfway) ** 2)
+    # The path is the smooth edit's.
+    assert lefts_of(asked, smooth.motion)[last - 1][43] < 0.1 * MM < lefts_of(run.asked, smooth.motion)[last - 1][43]
 
 
 @pytest.mark.parametrize("threads", [2, 5])
