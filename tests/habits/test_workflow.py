@@ -61,7 +61,7 @@ def test_every_python_that_is_promised_is_tried_and_wheels_are_built_with_the_ol
 
 
 def test_the_stable_abi_of_the_compiled_part_is_that_of_the_oldest_python():
-    sources = "".join(path.read_text(encoding="utf-8") for path in (ROOT / "motionedit").rglob("*.c"))
+    sources = "".join(path.read_text(encoding="utf-8") for path in (ROOT / "motionedit").rglob("*.[ch]"))
     major, minor = map(int, PROJECT["project"]["requires-python"].removeprefix(">=").split("."))
     assert re.findall(r"#define Py_LIMITED_API (\w+)", sources) == [f"0x{major:02X}{minor:02X}0000"]
 

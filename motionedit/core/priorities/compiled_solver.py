@@ -29,7 +29,7 @@ _LEAST_SHARE = 32
 
 @dataclass(frozen=True, eq=False)
 class Layout:
-    """What of a problem does not change from solve to solve: buffers of module.c by their names."""
+    """What of a problem does not change from solve to solve: buffers of solve_module.c by their names."""
 
     buffers: dict[str, NDArray[Any]]
 

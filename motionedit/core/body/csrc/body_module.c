@@ -1,10 +1,10 @@
 /* Buffers from Python for what is in this folder: sizes are checked here, so that a slip there is an error and not a
    crash. */
 
-#include "module.h"
+#include "../../csrc/module.h"
 
 #include "body.h"
-#include "held.h"
+#include "../../csrc/held.h"
 
 /* World transforms, of `frames` frames from the place where the arrays begin; either may be None. */
 static int poses_of(

@@ -1,9 +1,9 @@
 /* Buffers from Python for what compares two motions: sizes are checked here, as in body_module.c. */
 
-#include "module.h"
+#include "../../csrc/module.h"
 
 #include "body.h"
-#include "held.h"
+#include "../../csrc/held.h"
 
 #include <string.h>
 

@@ -1,10 +1,10 @@
 /* Buffers from Python for what is about feet: sizes are checked here, so that a slip there is an error and not a crash. */
 
-#include "module.h"
+#include "../../csrc/module.h"
 
 #include "../../feet/csrc/stance.h"
 #include "body.h"
-#include "held.h"
+#include "../../csrc/held.h"
 
 #include <stdlib.h>
 

@@ -105,7 +105,7 @@ void largest_steps(const double *before, const double *after, int64_t frames, in
 {
     for (int64_t j = 0; j < joints; j++) {
         Arc largest = {0.0, 1.0};
-        double last[4], inverse[4], turn[4];
+        double last[4] = {0.0}, inverse[4], turn[4];
         int differ = before == NULL;
         angles[j] = 0.0, into[j] = first + 1;
         for (int64_t f = first; f < frames; f++) {

@@ -9,7 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Structures that come from Python are laid out there by the tables of module.c, field by field, by their names. */
+/* Structures that come from Python are laid out there by the tables of solve_module.c, field by field, by their names. */
 
 /* The joints that matter, an ancestor before its descendants. */
 typedef struct {

@@ -41,6 +41,16 @@ static inline const double *some_of(Held *held, PyObject *given, int64_t *count,
     return NULL;
 }
 
+/* Whether a buffer has `count` items of so many bytes; an error where it has not. */
+static inline int has_size(const Py_buffer *buffer, int64_t count, size_t bytes, const char *name)
+{
+    if (count >= 0 && buffer->len % (Py_ssize_t)bytes == 0 && buffer->len / (Py_ssize_t)bytes == count)
+        return 1;
+    PyErr_Format(
+        PyExc_ValueError, "%s has %zd bytes instead of %zd", name, buffer->len, (Py_ssize_t)((size_t)count * bytes));
+    return 0;
+}
+
 static inline void let_go(Held *held)
 {
     for (int i = 0; i < held->count; i++)

@@ -1,0 +1,117 @@
+/* Buffers from Python for the text of BVH files: sizes are checked here. */
+
+#include "../../csrc/module.h"
+
+#include "../../csrc/held.h"
+#include "text.h"
+
+#include <math.h>
+#include <string.h>
+
+static int read_double(const char *word, int64_t length, double *value)
+{
+    char text[LONGEST_WORD + 1];
+    memcpy(text, word, length);
+    text[length] = 0;
+    *value = PyOS_string_to_double(text, NULL, NULL);
+    if (PyErr_Occurred()) {
+        PyErr_Clear();
+        return 0;
+    }
+    return isfinite(*value);
+}
+
+static PyObject *rows_from_text(PyObject *self, PyObject *arguments)
+{
+    enum { TEXT, VALUES, STARTS, STOPS, COUNT };
+    Py_buffer b[COUNT] = {{0}};
+    RowsFound found = {0};
+    long long columns;
+    int status = -1;
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "y*Lw*w*w*", b, &columns, b + 1, b + 2, b + 3))
+        return NULL;
+    const int64_t room = b[STARTS].len / (Py_ssize_t)sizeof(int64_t);
+    if (columns < 1)
+        PyErr_SetString(PyExc_ValueError, "rows have columns");
+    else if (has_size(b + STOPS, room, sizeof(int64_t), "stops") &&
+             has_size(b + VALUES, room * columns, sizeof(double), "values"))
+        status = read_rows(
+            b[TEXT].buf, b[TEXT].len, columns, room, read_double, b[VALUES].buf, b[STARTS].buf, b[STOPS].buf, &found);
+    for (int i = 0; i < COUNT; i++)
+        PyBuffer_Release(b + i);
+    if (status < 0)
+        return NULL;
+    if (status == 0)
+        Py_RETURN_NONE;
+    return Py_BuildValue("LL", (long long)found.rows, (long long)found.decimals);
+}
+
+static PyObject *rows_to_text(PyObject *self, PyObject *arguments)
+{
+    enum { VALUES, ENDING, OUT, COUNT };
+    Py_buffer b[COUNT] = {{0}};
+    long long columns;
+    int decimals;
+    int64_t length = -2;
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "y*Liy*w*", b, &columns, &decimals, b + 1, b + 2))
+        return NULL;
+    const int64_t count = b[VALUES].len / (Py_ssize_t)sizeof(double);
+    if (columns < 1 || count % columns || decimals < 1 || decimals > 17)
+        PyErr_SetString(PyExc_ValueError, "no such rows, or no such decimals");
+    else if (has_size(b + OUT, count * longest_number(decimals) + count / columns * b[ENDING].len, 1, "text")) {
+        Py_BEGIN_ALLOW_THREADS length =
+            write_rows(b[VALUES].buf, count / columns, columns, decimals, b[ENDING].buf, b[ENDING].len, b[OUT].buf);
+        Py_END_ALLOW_THREADS
+    }
+    for (int i = 0; i < COUNT; i++)
+        PyBuffer_Release(b + i);
+    return length < -1 ? NULL : PyLong_FromLongLong(length);
+}
+
+static PyObject *plain_gaps(PyObject *self, PyObject *arguments)
+{
+    Py_buffer text = {0};
+    long long count;
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "y*L", &text, &count))
+        return NULL;
+    const int are_plain = has_plain_gaps(text.buf, text.len, count);
+    PyBuffer_Release(&text);
+    return PyBool_FromLong(are_plain);
+}
+
+static PyObject *splice(PyObject *self, PyObject *arguments)
+{
+    enum { TEXT, CELLS, VALUES, OUT, COUNT };
+    Py_buffer b[COUNT] = {{0}};
+    int decimals;
+    int64_t length = -2;
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "y*y*y*iw*", b, b + 1, b + 2, &decimals, b + 3))
+        return NULL;
+    const int64_t words = b[CELLS].len;
+    if (decimals < 1 || decimals > 17)
+        PyErr_SetString(PyExc_ValueError, "no such decimals");
+    else if (has_size(b + VALUES, words, sizeof(double), "values") &&
+             has_size(b + OUT, b[TEXT].len + words * longest_number(decimals), 1, "text")) {
+        Py_BEGIN_ALLOW_THREADS length =
+            splice_words(b[TEXT].buf, b[TEXT].len, b[CELLS].buf, b[VALUES].buf, words, decimals, b[OUT].buf);
+        Py_END_ALLOW_THREADS
+    }
+    for (int i = 0; i < COUNT; i++)
+        PyBuffer_Release(b + i);
+    return length < -1 ? NULL : PyLong_FromLongLong(length);
+}
+
+PyMethodDef text_methods[] = {
+    {"rows_from_text", rows_from_text, METH_VARARGS,
+        "Read rows of numbers; return how many and the most decimals, or None where it is no such text."},
+    {"rows_to_text", rows_to_text, METH_VARARGS,
+        "Write rows of numbers; return the text's length, -1 where one is large."},
+    {"plain_gaps", plain_gaps, METH_VARARGS, "Return whether a text's blanks are so many, single ones and line feeds."},
+    {"splice", splice, METH_VARARGS,
+        "Copy text with some words replaced by numbers; return its length, -1 where one is large."},
+    {NULL, NULL, 0, NULL},
+};
