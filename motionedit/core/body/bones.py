@@ -41,6 +41,8 @@ def travel_joint(motion: Motion) -> int:
     above = [j for j in _above_the_fork(skeleton) if skeleton.translation_places[j] >= 0]
     if not above:
         return min(map(int, skeleton.translated), key=lambda j: (len(skeleton.chain(j)), j))
+    if len(above) == 1:
+        return above[0]
     width = np.linalg.norm(np.ptp(motion.translations[:, skeleton.translation_places[above]], axis=0), axis=-1)
     if not width.any():
         return above[-1]
