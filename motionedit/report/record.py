@@ -94,11 +94,6 @@ def plain(value: Any) -> Any:  # noqa: ANN401  any value that a report may hold
     kind = type(value)
     if kind in _AS_THEY_ARE:
         return value
-    if kind is dict or isinstance(value, Mapping):
-        return {
-            str(key): item if type(item) in _AS_THEY_ARE else _rounded(item) if type(item) is float else plain(item)
-            for key, item in value.items()
-        }
     if isinstance(value, float):
         return _rounded(value)
     if isinstance(value, (list, tuple)):
@@ -107,6 +102,12 @@ def plain(value: Any) -> Any:  # noqa: ANN401  any value that a report may hold
             _rounded(item) if type(item) is float else item if type(item) in _AS_THEY_ARE else plain(item)
             for item in value
         ]
+    # The dearest question last: whether another class is a mapping.
+    if kind is dict or isinstance(value, Mapping):
+        return {
+            str(key): item if type(item) in _AS_THEY_ARE else _rounded(item) if type(item) is float else plain(item)
+            for key, item in value.items()
+        }
     if hasattr(value, "tolist"):  # numpy's numbers and arrays
         return plain(value.tolist())
     return value if isinstance(value, (int, str)) else str(value)

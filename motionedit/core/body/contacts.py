@@ -171,9 +171,7 @@ def plants_of(tracks: FloatArray, anatomy: Anatomy, *, up: FloatArray, first: in
 
 def sole_tracks(poses: WorldPoses, anatomy: Anatomy) -> FloatArray:
     """Return the paths of `Anatomy.sole_points` in the world, shape (F, P, 3), clip units."""
-    points = anatomy.sole_points
-    joints, offsets = np.array([point.joint for point in points], np.intp), np.array([point.offset for point in points])
-    return carried(poses, joints, offsets.reshape(-1, 3))
+    return carried(poses, *anatomy.soles)
 
 
 def _stands_of_all(

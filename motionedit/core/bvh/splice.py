@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from itertools import chain
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.arrays import frozen
 from motionedit.core.bvh.format import format_fixed, place
 from motionedit.core.bvh.rows import BLOCK_BYTES
 from motionedit.core.bvh.scan import words_between
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
     from motionedit.core.bvh.text import Written
     from motionedit.core.euler_pieces import Piece
     from motionedit.core.motion import Motion
+    from motionedit.core.skeleton import Skeleton
 
 # Rows of a long clip that are solved and held at a time; of a shorter one all angles are held, and so many of its rows
 # laid out at a time, near the processor.
@@ -76,9 +79,10 @@ def edited_pieces(
 
 @dataclass(frozen=True, eq=False)
 class _Plan:
-    """Which `columns` (K,) an edit touches, and their `values` (F, K), or of a long clip each joint's pieces."""
+    """Which `columns` (K,) an edit touches, their `joints` (K,), and their `values` (F, K), or a long clip's pieces."""
 
     columns: IntArray
+    joints: IntArray
     values: FloatArray | None
     pieces: dict[int, list[Piece]]
 
@@ -93,25 +97,32 @@ class _Edit:
 
 
 def _plan(clip: Written, motion: Motion, touched: BoolArray, moved: BoolArray | None) -> _Plan:
-    skeleton, given = clip.text.motion.skeleton, clip.text.values_between
-    columns = [
-        *(
-            column
-            for joint in np.flatnonzero(touched.any(axis=0)).tolist()
-            for column in skeleton.columns(joint, "rotation")
-        ),
-        *(column for _, _, column in _moved_columns(motion, moved)),
-    ]
-    every = np.array(sorted(columns), dtype=np.intp)
+    skeleton, given, positions = clip.text.motion.skeleton, clip.text.values_between, _moved_columns(motion, moved)
+    is_touched = touched.any(axis=0).tobytes()
+    every, joints, places = _columns_of(skeleton, is_touched, tuple(column for _, _, column in positions))
     if len(motion) > SEGMENT:
-        return _Plan(every, None, touched_pieces(motion, touched, given=given, size=SEGMENT))
+        return _Plan(every, joints, None, touched_pieces(motion, touched, given=given, size=SEGMENT))
     values = np.empty((len(motion), len(every)))
+    touched_angles(motion, touched, given=given, columns=places, out=values)
+    for p, axis, column in positions:
+        values[:, places[column]] = motion.translations[:, p, axis]
+    return _Plan(every, joints, values, {})
+
+
+@lru_cache(maxsize=8)
+def _columns_of(
+    skeleton: Skeleton, is_touched: bytes, positions: tuple[int, ...]
+) -> tuple[IntArray, IntArray, IntArray]:
+    """Return the columns of touched joints' rotations and of positions, growing, their joints, and each's place there.
+
+    The clips of a folder that share a skeleton are mostly touched alike.
+    """
+    touched = np.flatnonzero(np.frombuffer(is_touched, dtype=np.bool_)).tolist()
+    columns = sorted({column for joint in touched for column in skeleton.columns(joint, "rotation")} | {*positions})
+    every = np.array(columns, dtype=np.intp)
     places = np.zeros(skeleton.channel_count, dtype=np.intp)
     places[every] = np.arange(len(every))
-    touched_angles(motion, touched, given=given, columns=places, out=values)
-    for p, axis, column in _moved_columns(motion, moved):
-        values[:, places[column]] = motion.translations[:, p, axis]
-    return _Plan(every, values, {})
+    return frozen(every), frozen(np.searchsorted(skeleton.channel_starts, every, side="right") - 1), frozen(places)
 
 
 def _moved_columns(motion: Motion, moved: BoolArray | None) -> list[tuple[int, int, int]]:
@@ -129,12 +140,11 @@ def _moved_columns(motion: Motion, moved: BoolArray | None) -> list[tuple[int, i
 
 def _edit(plan: _Plan, motion: Motion, touched: BoolArray, moved: BoolArray | None, rows: slice) -> _Edit:
     """Return the new values of a segment of rows; the columns that nothing touches take no memory."""
-    skeleton = motion.skeleton
-    place = {column: k for k, column in enumerate(plan.columns.tolist())}
     positions = _moved_columns(motion, moved)
     if plan.values is not None:
         values = plan.values[rows]
     else:
+        skeleton, place = motion.skeleton, {column: k for k, column in enumerate(plan.columns.tolist())}
         values = np.empty((rows.stop - rows.start, len(place)))
         for joint, pieces in plan.pieces.items():
             columns = [place[column] for column in skeleton.columns(joint, "rotation")]
@@ -146,12 +156,9 @@ def _edit(plan: _Plan, motion: Motion, touched: BoolArray, moved: BoolArray | No
                         values[first - rows.start : last - rows.start, column] = angle
         for p, axis, column in positions:
             values[:, place[column]] = motion.translations[rows, p, axis]
-    cells = np.ones(values.shape, dtype=np.bool_)
-    for joint in np.flatnonzero(~touched[rows].all(axis=0)).tolist():
-        columns = [place[column] for column in skeleton.columns(joint, "rotation") if column in place]
-        cells[:, columns] = touched[rows, joint, None]
+    cells = touched[rows].take(plan.joints, axis=1)
     for p, _, column in positions:
-        cells[:, place[column]] = True if moved is None else moved[rows, p]
+        cells[:, np.searchsorted(plan.columns, column)] = True if moved is None else moved[rows, p]
     return _Edit(plan.columns, values, cells)
 
 

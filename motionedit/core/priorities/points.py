@@ -116,10 +116,16 @@ class Point:
         mask: BoolArray = moved[self.columns.joints] & self.recruited.joints
         return mask
 
-    @property
+    @cached_property
     def moves_with_root(self) -> bool:
         """Whether the root's translation is recruited and moves it."""
         return self.recruited.root and bool(below(self.columns.skeleton, self.columns.root)[self.effector.joint])
+
+
+@lru_cache(maxsize=64)
+def point_of(columns: Columns, effector: Effector, recruits: Recruits) -> Point:
+    """Return an effector as what is recruited of the columns moves it."""
+    return Point(columns, effector, recruited_of(columns, recruits))
 
 
 def lever_rows(levers: FloatArray, mask: FloatArray | BoolArray, *, root: bool) -> FloatArray:

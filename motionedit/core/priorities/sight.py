@@ -58,9 +58,10 @@ def sight_of(motion: Motion, joints: Callable[[], Collection[int]], masses: Mass
 
 def _seen_whole(motion: Motion, masses: Masses | None) -> Sight:
     """Return what is seen of a short motion, with all its joints: to pick some would take longer."""
-    poses = forward(motion)
+    poses = poses_again(motion) if motion.is_fixed else forward(motion)
     return Sight(motion, poses, np.zeros((len(motion), 3)) if masses is None else center_of_mass(poses, masses))
 
 
-# The input of an edit is looked at again and again.
+# The input of an edit, a short one that is fixed, is looked at again and again.
 _seen_again = lru_cache(maxsize=2)(_seen_whole)
+poses_again = lru_cache(maxsize=2)(forward)

@@ -11,6 +11,7 @@ from motionedit.core import rotations as rot
 from motionedit.core.body.quality import STILL, squared_jerks
 from motionedit.core.compiled import compiled
 from motionedit.core.kinematics import forward
+from motionedit.core.priorities.sight import poses_again
 from motionedit.core.trace import BLOCK_FRAMES, frame_blocks
 from motionedit.dataclass import dataclass
 
@@ -126,10 +127,17 @@ def _jerk(motion: Motion, first: int) -> FloatArray:
     parts = []
     for block in frame_blocks(len(motion) - first - 3):
         frames = slice(first + block.start, min(first + block.stop + 3, len(motion)))
-        squares = squared_jerks(forward(motion.at(frames)).positions)[0]
-        parts.append(np.sqrt(squares / len(motion.skeleton)))
+        parts.append(_root_mean_square(forward(motion.at(frames)).positions))
     return np.concatenate(parts)
 
 
-# The input of an edit is looked at again and again.
-_jerk_again = lru_cache(maxsize=2)(_jerk)
+def _root_mean_square(positions: FloatArray) -> FloatArray:
+    """Return the third difference of positions (F, J, 3) over frames, root mean square of joints, shape (F - 3,)."""
+    root: FloatArray = np.sqrt(squared_jerks(positions)[0] / positions.shape[1])
+    return root
+
+
+@lru_cache(maxsize=2)
+def _jerk_again(motion: Motion, first: int) -> FloatArray:
+    """Return `_jerk` of an edit's short input, whose poses are looked at again and again."""
+    return _root_mean_square(poses_again(motion).positions[first:])

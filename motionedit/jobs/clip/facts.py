@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from motionedit.core import kinematics
+from motionedit.core.arrays import frozen
 from motionedit.core.body import ground
 from motionedit.core.body.anatomy import NOTHING_GIVEN, Anatomy, GivenBody, find_anatomy
 from motionedit.core.body.bones import find_bones, travel_joint
@@ -107,11 +108,16 @@ class ClipFacts:
         self.world.forget()
 
     @cached_property
+    def tracks(self) -> FloatArray:
+        """The paths of heels and toes, shape (F, P, 3), as `sole_tracks`."""
+        (tracks,) = self.world.gathered(lambda poses: [sole_tracks(poses, self.anatomy)])
+        return frozen(tracks)
+
+    @cached_property
     def plants(self) -> tuple[Plant, ...]:
         """When heels and toes stand, as `plants_of`."""
-        (tracks,) = self.world.gathered(lambda poses: [sole_tracks(poses, self.anatomy)])
         frame_time = self.clip.motion.frame_time
-        return tuple(plants_of(tracks, self.anatomy, up=self.up, first=self.first, frame_time=frame_time))
+        return tuple(plants_of(self.tracks, self.anatomy, up=self.up, first=self.first, frame_time=frame_time))
 
     @cached_property
     def phases(self) -> tuple[Plant, ...]:
@@ -119,11 +125,11 @@ class ClipFacts:
         anatomy, frame_time = self.anatomy, self.clip.motion.frame_time
 
         def read(poses: WorldPoses) -> list[FloatArray]:
-            return [sole_tracks(poses, anatomy), *chain.from_iterable(leg_paths(poses, anatomy))]
+            return [*chain.from_iterable(leg_paths(poses, anatomy))]
 
-        plants, (tracks, *arrays) = self.plants, self.world.gathered(read)
+        plants, arrays = self.plants, self.world.gathered(read)
         legs = [LegPath(*arrays[i : i + 5]) for i in range(0, len(arrays), 5)]
-        return tuple(find_phases(tracks, legs, anatomy, plants, up=self.up, frame_time=frame_time))
+        return tuple(find_phases(self.tracks, legs, anatomy, plants, up=self.up, frame_time=frame_time))
 
     @cached_property
     def steps(self) -> Steps:

@@ -7,14 +7,13 @@ task, what is left of it, and its words. What it does not say stands here.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.kinematics import Effector
-from motionedit.core.priorities.points import Point, recruited_of
+from motionedit.core.priorities.points import point_of, recruited_of
 from motionedit.core.priorities.trajectories import active_interval, share_of
 from motionedit.dataclass import dataclass
 
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
     from motionedit.core.body.center_of_mass import Masses
     from motionedit.core.measure import Level
     from motionedit.core.motion import Motion
-    from motionedit.core.priorities.points import Columns, Recruited
+    from motionedit.core.priorities.points import Columns, Point, Recruited
     from motionedit.core.priorities.problem import Task
     from motionedit.core.priorities.recruiting import Recruits
     from motionedit.core.priorities.sight import Sight
@@ -78,12 +77,14 @@ class Targets:
 
     def within(self, frames: slice) -> Targets:
         """Return the targets at some of their frames."""
+        if frames.start == self.first and frames.stop == self.last + 1:
+            return self
         here = slice(frames.start - self.first, frames.stop - self.first)
         return Targets(frames.start, frames.stop - 1, *(None if part is None else part[here] for part in self.parts))
 
     def since(self, frame: int) -> Targets:
         """Return the same targets of a motion that begins at a frame of this one."""
-        return Targets(self.first - frame, self.last - frame, *self.parts)
+        return self if frame == 0 else Targets(self.first - frame, self.last - frame, *self.parts)
 
     def with_part(self, part: Targets) -> Targets:
         """Return the targets with those at some of their frames replaced."""
@@ -167,6 +168,8 @@ class ConstraintErrors:
 
 def joined(parts: Sequence[ConstraintErrors], first: int) -> ConstraintErrors:
     """Return what is left of a constraint from frame `first` on, of parts that follow one another."""
+    if len(parts) == 1 and parts[0].first == first:
+        return parts[0]
 
     def whole(name: str) -> FloatArray | None:
         arrays = [array for array in (getattr(part, name) for part in parts) if array is not None]
@@ -211,14 +214,14 @@ class Stage:
     masses: Masses
     reference: Motion
 
-    @cached_property
+    @property
     def recruited(self) -> Recruited:
         """The recruited unknowns."""
         return recruited_of(self.columns, self.recruits)
 
     def point(self, effector: Effector) -> Point:
         """Return an effector as the recruited unknowns move it."""
-        return Point(self.columns, effector, self.recruited)
+        return point_of(self.columns, effector, self.recruits)
 
     def joint(self, joint: int | None) -> Point | None:
         """Return a joint's own place as the recruited unknowns move it; None for none."""

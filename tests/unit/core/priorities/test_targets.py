@@ -1,6 +1,7 @@
 """Targets between others, targets moved along, and where a motion has the task of each kind."""
 
 from dataclasses import replace
+from itertools import pairwise, starmap
 
 import numpy as np
 import pytest
@@ -87,11 +88,13 @@ def test_nothing_is_left_of_a_constraint_whose_targets_are_where_a_motion_has_it
         assert (getattr(there, name) is None) == (getattr(targets, name) is None)
 
 
+# Over the constraints' frames, 1 to 12, and so that they lie in one that is not the first.
+@pytest.mark.parametrize("cuts", [(0, 5, 10, FRAMES), (0, 1, FRAMES)])
 @pytest.mark.parametrize("kind", KINDS)
-def test_what_is_left_of_a_constraint_is_the_same_block_by_block(kind, monkeypatch):
+def test_what_is_left_of_a_constraint_is_the_same_block_by_block(kind, cuts, monkeypatch):
     asked, motion = asked_of(KINDS[kind]), other_motion(2)
     (whole,) = errors_of(asked, motion)
-    blocks = [slice(0, 5), slice(5, 10), slice(10, FRAMES)]
+    blocks = list(starmap(slice, pairwise(cuts)))
     monkeypatch.setattr(of_all, "frame_blocks", lambda _: blocks)
     (found,) = errors_of(asked, motion)
     assert found.first == whole.first == 1
