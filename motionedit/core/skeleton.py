@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -12,6 +12,8 @@ from motionedit.core.arrays import frozen
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from motionedit.core.arrays import FloatArray, IntArray
 
 
@@ -84,6 +86,16 @@ class Skeleton:
 
     def __len__(self) -> int:
         return len(self.names)
+
+    def __reduce__(self) -> tuple[Callable[[bytes], Skeleton], tuple[bytes]]:
+        # Clips of a folder mostly share one: it goes to another process as bytes by which that finds its own again.
+        return _unpacked, (self._packed,)
+
+    @cached_property
+    def _packed(self) -> bytes:
+        import pickle
+
+        return pickle.dumps((self.names, self.parents, self.offsets, self.channels, self.end_sites))
 
     @cached_property
     def channel_count(self) -> int:
@@ -204,6 +216,14 @@ class Skeleton:
     def indices(self, name: str) -> tuple[int, ...]:
         """Return every joint of that name: none, one, or several where the file repeats a name."""
         return tuple(j for j, other in enumerate(self.names) if other == name)
+
+
+@lru_cache(maxsize=8)
+def _unpacked(packed: bytes) -> Skeleton:
+    import pickle
+
+    names, parents, offsets, channels, end_sites = pickle.loads(packed)  # noqa: S301  our own
+    return Skeleton(names, frozen(parents), frozen(offsets), channels, end_sites)
 
 
 def same_skeleton(one: Skeleton, other: Skeleton) -> bool:

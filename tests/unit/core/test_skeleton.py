@@ -1,9 +1,12 @@
 """The skeleton knows its tree, its channels and where they stand in a row."""
 
+import pickle
+
 import numpy as np
 import pytest
 
-from motionedit.core.skeleton import Skeleton
+from motionedit.core.skeleton import EndSite, Skeleton, same_skeleton
+from motionedit.dataclass import replace
 
 #        0
 #      /   \
@@ -27,6 +30,7 @@ def skeleton():
             ("Zrotation", "Xrotation", "Yrotation"),
             ("Yrotation",),
         ),
+        end_sites=(EndSite(5, np.array([0.0, 0.5, 0.0])),),
     )
 
 
@@ -77,3 +81,19 @@ def test_a_lone_root_is_a_skeleton():
     alone = Skeleton(("R",), np.array([-1]), np.zeros((1, 3)), (("Xrotation",),))
     assert [level.tolist() for level in alone.levels] == [[0]]
     assert alone.level_order.levels == ()
+
+
+def sent(thing):
+    return pickle.loads(pickle.dumps(thing))  # noqa: S301  our own
+
+
+def test_what_another_process_sends_is_one_skeleton_with_the_same_joints(skeleton):
+    mine = sent(skeleton)
+    assert sent(skeleton) is mine
+    assert same_skeleton(mine, skeleton)
+    assert mine.names == skeleton.names
+    for theirs, ours in zip(mine.end_sites, skeleton.end_sites, strict=True):
+        assert theirs.joint == ours.joint
+        np.testing.assert_array_equal(theirs.offset, ours.offset)
+    assert not mine.offsets.flags.writeable
+    assert not same_skeleton(sent(replace(skeleton, offsets=skeleton.offsets + 1.0)), mine)
