@@ -162,12 +162,6 @@ def _edit(plan: _Plan, motion: Motion, touched: BoolArray, moved: BoolArray | No
     return _Edit(plan.columns, values, cells)
 
 
-def _in_a_row(places: list[int]) -> slice | list[int]:
-    """Return places as a slice where they follow each other: numpy copies it much faster."""
-    first, stop = places[0], places[0] + len(places)
-    return slice(first, stop) if places == list(range(first, stop)) else places
-
-
 def _spliced_rows(clip: Written, edit: _Edit, first: int, at: int) -> Generator[bytes | memoryview, None, int]:
     """Yield a segment of rows from frame `first` on, with the new text of the touched values in place of the old.
 

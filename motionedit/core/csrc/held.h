@@ -51,10 +51,15 @@ static inline int has_size(const Py_buffer *buffer, int64_t count, size_t bytes,
     return 0;
 }
 
+static inline void release(Py_buffer *buffers, int count)
+{
+    for (int i = 0; i < count; i++)
+        PyBuffer_Release(buffers + i);
+}
+
 static inline void let_go(Held *held)
 {
-    for (int i = 0; i < held->count; i++)
-        PyBuffer_Release(held->held + i);
+    release(held->held, held->count);
 }
 
 #endif

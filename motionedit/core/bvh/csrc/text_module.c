@@ -38,8 +38,7 @@ static PyObject *rows_from_text(PyObject *self, PyObject *arguments)
              has_size(b + VALUES, room * columns, sizeof(double), "values"))
         status = read_rows(
             b[TEXT].buf, b[TEXT].len, columns, room, read_double, b[VALUES].buf, b[STARTS].buf, b[STOPS].buf, &found);
-    for (int i = 0; i < COUNT; i++)
-        PyBuffer_Release(b + i);
+    release(b, COUNT);
     if (status < 0)
         return NULL;
     if (status == 0)
@@ -65,8 +64,7 @@ static PyObject *rows_to_text(PyObject *self, PyObject *arguments)
             write_rows(b[VALUES].buf, count / columns, columns, decimals, b[ENDING].buf, b[ENDING].len, b[OUT].buf);
         Py_END_ALLOW_THREADS
     }
-    for (int i = 0; i < COUNT; i++)
-        PyBuffer_Release(b + i);
+    release(b, COUNT);
     return length < -1 ? NULL : PyLong_FromLongLong(length);
 }
 
@@ -100,8 +98,7 @@ static PyObject *splice(PyObject *self, PyObject *arguments)
             splice_words(b[TEXT].buf, b[TEXT].len, b[CELLS].buf, b[VALUES].buf, words, decimals, b[OUT].buf);
         Py_END_ALLOW_THREADS
     }
-    for (int i = 0; i < COUNT; i++)
-        PyBuffer_Release(b + i);
+    release(b, COUNT);
     return length < -1 ? NULL : PyLong_FromLongLong(length);
 }
 

@@ -111,8 +111,7 @@ static PyObject *on_rows(const OnRows *of, PyObject *arguments)
             done = 1;
         }
     }
-    while (held > 0)
-        PyBuffer_Release(b + --held);
+    release(b, held);
     return done < 0 ? NULL : PyBool_FromLong(done);
 }
 
@@ -159,8 +158,7 @@ static PyObject *turns_from_tangents(PyObject *self, PyObject *arguments)
         Py_BEGIN_ALLOW_THREADS from_tangents(b[0].buf, axes, count, b[1].buf);
         Py_END_ALLOW_THREADS
     }
-    PyBuffer_Release(b);
-    PyBuffer_Release(b + 1);
+    release(b, 2);
     if (!fits)
         return NULL;
     Py_RETURN_NONE;
@@ -202,8 +200,7 @@ static PyObject *cosines_of_arcs(PyObject *self, PyObject *arguments)
         Py_BEGIN_ALLOW_THREADS arc_cosines(arcs.rotations, arcs.frames, arcs.joints, arcs.at, arcs.count, b[2].buf);
         Py_END_ALLOW_THREADS
     }
-    for (int i = 0; i < 3; i++)
-        PyBuffer_Release(b + i);
+    release(b, 3);
     if (!fits)
         return NULL;
     Py_RETURN_NONE;
@@ -231,8 +228,7 @@ static PyObject *slerp(PyObject *self, PyObject *arguments)
         Py_BEGIN_ALLOW_THREADS slerp_all(&arcs, b[OUT].buf);
         Py_END_ALLOW_THREADS
     }
-    for (int i = 0; i < COUNT; i++)
-        PyBuffer_Release(b + i);
+    release(b, COUNT);
     if (!fits)
         return NULL;
     Py_RETURN_NONE;
@@ -262,8 +258,7 @@ static PyObject *sums_of_euler(PyObject *self, PyObject *arguments)
         Py_BEGIN_ALLOW_THREADS euler_sums(b[ROTATIONS].buf, 4 * joints, b[JOINTS].buf, count, frames, axes, b[OUT].buf);
         Py_END_ALLOW_THREADS
     }
-    for (int i = 0; i < COUNT; i++)
-        PyBuffer_Release(b + i);
+    release(b, COUNT);
     if (!fits)
         return NULL;
     Py_RETURN_NONE;
@@ -291,8 +286,7 @@ static PyObject *lay_rows(PyObject *self, PyObject *arguments)
         Py_BEGIN_ALLOW_THREADS rows_of_tracks(b[TRACKS].buf, columns, count, frames, factor, b[OUT].buf, width);
         Py_END_ALLOW_THREADS
     }
-    for (int i = 0; i < COUNT; i++)
-        PyBuffer_Release(b + i);
+    release(b, COUNT);
     if (!fits)
         return NULL;
     Py_RETURN_NONE;
@@ -334,8 +328,7 @@ static PyObject *make_continuous(PyObject *self, PyObject *arguments)
         double *angles = (double *)b[ANGLES].buf + run[0] * axes * frames + run[1];
         nearest_angles(angles, axes, frames, run[2] - run[1], (const double *)b[SEEDS].buf + i * axes);
     }
-    for (int i = 0; i < COUNT; i++)
-        PyBuffer_Release(b + i);
+    release(b, COUNT);
     if (!fits)
         return NULL;
     Py_RETURN_NONE;

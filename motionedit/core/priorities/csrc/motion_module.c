@@ -39,8 +39,7 @@ static PyObject *forward_frames(PyObject *self, PyObject *arguments)
             b[LOCAL].buf, b[MOVED].buf, b[POSITIONS].buf, b[WORLD].buf);
         Py_END_ALLOW_THREADS
     }
-    for (int i = 0; i < COUNT; i++)
-        PyBuffer_Release(b + i);
+    release(b, COUNT);
     if (!fits)
         return NULL;
     Py_RETURN_NONE;
@@ -71,8 +70,7 @@ static PyObject *smooth(PyObject *self, PyObject *arguments)
             Py_END_ALLOW_THREADS if (status < 0) PyErr_NoMemory();
         }
     }
-    for (int i = 0; i < COUNT; i++)
-        PyBuffer_Release(b + i);
+    release(b, COUNT);
     if (status < 0)
         return NULL;
     Py_RETURN_NONE;
@@ -100,8 +98,7 @@ static PyObject *low_pass_rows(PyObject *self, PyObject *arguments)
             Py_END_ALLOW_THREADS if (status < 0) PyErr_NoMemory();
         }
     }
-    for (int i = 0; i < COUNT; i++)
-        PyBuffer_Release(b + i);
+    release(b, COUNT);
     if (status < 0)
         return NULL;
     Py_RETURN_NONE;

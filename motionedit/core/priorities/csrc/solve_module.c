@@ -193,8 +193,7 @@ static PyObject *solve(PyObject *self, PyObject *arguments)
         } else
             PyErr_SetString(PyExc_ValueError, "no such frames");
     }
-    for (int i = 0; i < buffers.count; i++)
-        PyBuffer_Release(buffers.held + i);
+    release(buffers.held, buffers.count);
     if (status < 0)
         return NULL;
     Py_RETURN_NONE;
