@@ -79,10 +79,14 @@ def edited_pieces(
 
 @dataclass(frozen=True, eq=False)
 class _Plan:
-    """Which `columns` (K,) an edit touches, their `joints` (K,), and their `values` (F, K), or a long clip's pieces."""
+    """Which `columns` (K,) an edit touches, their `joints` (K,), and their `values` (F, K), or a long clip's pieces.
+
+    `positions` are the `_moved_columns` among them.
+    """
 
     columns: IntArray
     joints: IntArray
+    positions: list[tuple[int, int, int]]
     values: FloatArray | None
     pieces: dict[int, list[Piece]]
 
@@ -101,12 +105,12 @@ def _plan(clip: Written, motion: Motion, touched: BoolArray, moved: BoolArray | 
     is_touched = touched.any(axis=0).tobytes()
     every, joints, places = _columns_of(skeleton, is_touched, tuple(column for _, _, column in positions))
     if len(motion) > SEGMENT:
-        return _Plan(every, joints, None, touched_pieces(motion, touched, given=given, size=SEGMENT))
+        return _Plan(every, joints, positions, None, touched_pieces(motion, touched, given=given, size=SEGMENT))
     values = np.empty((len(motion), len(every)))
     touched_angles(motion, touched, given=given, columns=places, out=values)
     for p, axis, column in positions:
         values[:, places[column]] = motion.translations[:, p, axis]
-    return _Plan(every, joints, values, {})
+    return _Plan(every, joints, positions, values, {})
 
 
 @lru_cache(maxsize=8)
@@ -140,7 +144,6 @@ def _moved_columns(motion: Motion, moved: BoolArray | None) -> list[tuple[int, i
 
 def _edit(plan: _Plan, motion: Motion, touched: BoolArray, moved: BoolArray | None, rows: slice) -> _Edit:
     """Return the new values of a segment of rows; the columns that nothing touches take no memory."""
-    positions = _moved_columns(motion, moved)
     if plan.values is not None:
         values = plan.values[rows]
     else:
@@ -154,11 +157,12 @@ def _edit(plan: _Plan, motion: Motion, touched: BoolArray, moved: BoolArray | No
                     angles = piece_angles(motion, joint, piece=piece)[first - piece.start : last - piece.start]
                     for column, angle in zip(columns, angles.T, strict=True):
                         values[first - rows.start : last - rows.start, column] = angle
-        for p, axis, column in positions:
+        for p, axis, column in plan.positions:
             values[:, place[column]] = motion.translations[rows, p, axis]
     cells = touched[rows].take(plan.joints, axis=1)
-    for p, _, column in positions:
-        cells[:, np.searchsorted(plan.columns, column)] = True if moved is None else moved[rows, p]
+    if moved is not None:
+        for p, _, column in plan.positions:
+            cells[:, np.searchsorted(plan.columns, column)] = moved[rows, p]
     return _Edit(plan.columns, values, cells)
 
 
