@@ -55,10 +55,16 @@ def touched_angles(motion: Motion, touched: BoolArray, *, given: GivenRows, colu
     columns : shape (C,)
         Where each channel goes in the rows of the result.
     out : shape (F, K)
-        Receives them. Of a joint that is touched anywhere, frames that are not get any angles.
+        Receives them. Of a joint that is touched anywhere, frames that are not get any angles, or none.
     """
-    for solved in _solved(motion, touched, _Given(given, whole=True, frames=len(motion))):
-        rows_of_tracks(solved.angles, columns[solved.columns], factor=DEGREES, out=out)
+    rows = np.flatnonzero(touched.any(axis=1))
+    if not len(rows):
+        return
+    # One frame more on either side: what the runs meet there.
+    start, stop = max(int(rows[0]) - 1, 0), min(int(rows[-1]) + 2, len(motion))
+    here = _Given(lambda one, other: given(start + one, start + other), whole=True, frames=stop - start)
+    for solved in _solved(motion.at(slice(start, stop)), touched[start:stop], here):
+        rows_of_tracks(solved.angles, columns[solved.columns], factor=DEGREES, out=out[start:stop])
 
 
 def touched_pieces(motion: Motion, touched: BoolArray, *, given: GivenRows, size: int) -> dict[int, list[Piece]]:

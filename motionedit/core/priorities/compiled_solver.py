@@ -80,6 +80,7 @@ def solve(
     frames: IntArray,
     *,
     softness: FloatArray,
+    levels: IntArray,
     in_order: bool,
     threads: int,
 ) -> None:
@@ -91,6 +92,7 @@ def solve(
         "reference_rotations": _numbers(reference.rotations),
         "reference_root": _numbers([] if reference.root is None else reference.root),
         "softness": _numbers(softness),
+        "levels": _integers(levels),
         "rotations": motion.rotations,
         "translations": motion.translations,
         "iterations": solution.iterations,

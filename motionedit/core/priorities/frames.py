@@ -14,7 +14,7 @@ from motionedit.core.priorities.far_floors import lifted
 from motionedit.core.priorities.far_turns import parts_of
 from motionedit.core.priorities.groups import Asked, Group, groups_of, part_of, retargeted, spans_of
 from motionedit.core.priorities.problem import LayeredSolution, Reference
-from motionedit.core.priorities.solver import solve_into, solve_layers
+from motionedit.core.priorities.solver import solve_layers
 from motionedit.core.trace import frame_blocks
 from motionedit.dataclass import dataclass, replace
 
@@ -59,19 +59,13 @@ def run_of(asked: Asked) -> Run:
 
 
 @dataclass(eq=False)
-class Solved:
-    """A motion whose frames are solved in place, and how it went: iterations (F,), converged (F,), ranks (F, L).
+class Solved(LayeredSolution):
+    """A motion whose frames are solved in place, and how it went, with L the priorities of the whole edit.
 
-    `left` (F, L) is what was left of each layer before the last step, as `LayeredSolution` has it. `ends`: where the
-    ramps ended in the last pass, None where they were not led. `steps`, shape (F,): those of its joints' changes that
-    are seen, rad, None where nobody has looked.
+    `ends`: where the ramps ended in the last pass, None where they were not led. `steps`, shape (F,): those of its
+    joints' changes that are seen, rad, None where nobody has looked.
     """
 
-    motion: Motion
-    iterations: IntArray
-    converged: BoolArray
-    ranks: IntArray
-    left: FloatArray
     ends: Ends | None = None
     steps: FloatArray | None = None
 
@@ -112,7 +106,8 @@ def solve_frames(
         done = None if known is None else known.done[group.where]
         if done is not None and done.all():
             continue
-        _solve(run, solved, group, aim, done=done)
+        solved.converged[group.where] = False if done is None else done
+        _solve(run, solved, group, aim)
     if known is not None:
         solved.ranks[known.done] = known.ranks[known.done]
     return solved
@@ -144,9 +139,16 @@ def solve_in_order(run: Run) -> Solved:
             motion.rotations[first, joints] = motion.rotations[first - 1, joints]
             if part.problem.moves_root:
                 motion.translations[first, run.place] = motion.translations[first - 1, run.place]
+        solved.converged[span] = False
         _solve(run, solved, part, Reference(run.motion.rotations, None), in_order=True)
         before = first + len(span) - 1
     return solved
+
+
+def _solve(run: Run, solved: Solved, group: Group, reference: Reference, *, in_order: bool = False) -> None:
+    """Solve a group's frames of `solved` that are not converged from where they are, in place."""
+    frames, levels, threads = group.frames, group.levels, run.asked.settings.threads
+    solve_layers(solved, group.prepared, reference, frames, levels=levels, in_order=in_order, threads=threads)
 
 
 def known_after(run: Run, previous: Solved, start: Motion) -> Known:
@@ -179,40 +181,6 @@ def _unsolved(run: Run, start: Motion, *, in_place: bool = False) -> Solved:
         np.zeros((count, run.level_count), dtype=np.int64),
         np.zeros((count, run.level_count)),
     )
-
-
-def _solve(
-    run: Run,
-    solved: Solved,
-    group: Group,
-    reference: Reference,
-    *,
-    done: BoolArray | None = None,
-    in_order: bool = False,
-) -> None:
-    """Solve a group's frames of `solved` from where they are, in place."""
-    where, levels, threads = group.where, group.levels.tolist(), run.asked.settings.threads
-    if isinstance(where, slice) and levels == list(range(solved.ranks.shape[1])):
-        # In place: every frame is in one group.
-        solution = LayeredSolution(
-            solved.motion, solved.iterations[where], solved.converged[where], solved.ranks[where], solved.left[where]
-        )
-        solution.converged[:] = False if done is None else done
-        solve_into(solution, group.prepared, reference, group.frames, in_order=in_order, threads=threads)
-        return
-    solution = solve_layers(
-        group.prepared, solved.motion, reference, group.frames, done=done, in_order=in_order, threads=threads
-    )
-    solved.iterations[where], solved.converged[where] = solution.iterations, solution.converged
-    ranks, left = solution.ranks, solution.left
-    if levels != list(range(solved.ranks.shape[1])):
-        count = len(group.frames), solved.ranks.shape[1]
-        ranks, left = np.zeros(count, dtype=np.intp), np.zeros(count)
-        # Of one priority there may be two layers.
-        for layer, level in enumerate(levels):
-            ranks[:, level] += solution.ranks[:, layer]
-            np.maximum(left[:, level], solution.left[:, layer], out=left[:, level])
-    solved.ranks[where], solved.left[where] = ranks, left
 
 
 def _same(one: Motion, other: Motion) -> BoolArray:

@@ -31,7 +31,7 @@ from motionedit.core.priorities.hinged import Hinges
 from motionedit.core.priorities.homing import Memory, accelerated, attraction
 from motionedit.core.priorities.layers import Descent, descend
 from motionedit.core.priorities.one_sided import Evaluated, Rows, Sides
-from motionedit.core.priorities.problem import Reference
+from motionedit.core.priorities.problem import LayeredSolution, Reference
 from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
@@ -40,21 +40,38 @@ if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.points import Columns
-    from motionedit.core.priorities.problem import LayeredSolution, Problem, WeightedTask
+    from motionedit.core.priorities.problem import Problem, WeightedTask
 
 # Frames solved together: more would leave the processor's cache.
 BLOCK = 1024
 
 
 def solve(
-    problem: Problem, solution: LayeredSolution, reference: Reference, frames: IntArray, *, in_order: bool
+    problem: Problem,
+    solution: LayeredSolution,
+    reference: Reference,
+    frames: IntArray,
+    *,
+    levels: IntArray,
+    in_order: bool,
 ) -> None:
     """Solve those `frames` of a motion that are not converged from where they are, as `solve_layers`."""
-    whole = solution.motion
-    part = whole.at(frames)
+    whole, shape = solution.motion, (len(frames), len(problem.layers))
+    part = LayeredSolution(
+        whole.at(frames),
+        np.zeros(shape[0], dtype=np.int64),
+        solution.converged[frames],
+        np.zeros(shape, dtype=np.int64),
+        np.zeros(shape),
+    )
     root = None if reference.root is None else reference.root[frames]
-    _solve(problem, replace(solution, motion=part), Reference(reference.rotations[frames], root), in_order=in_order)
-    whole.rotations[frames], whole.translations[frames] = part.rotations, part.translations
+    _solve(problem, part, Reference(reference.rotations[frames], root), in_order=in_order)
+    whole.rotations[frames], whole.translations[frames] = part.motion.rotations, part.motion.translations
+    solution.iterations[frames], solution.converged[frames] = part.iterations, part.converged
+    # Of one priority there may be two layers.
+    for layer, level in enumerate(levels.tolist()):
+        solution.ranks[frames, level] += part.ranks[:, layer]
+        solution.left[frames, level] = np.maximum(solution.left[frames, level], part.left[:, layer])
 
 
 def _solve(problem: Problem, solution: LayeredSolution, reference: Reference, *, in_order: bool) -> None:

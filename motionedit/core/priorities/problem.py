@@ -169,9 +169,9 @@ class Reference:
 
 @dataclass(eq=False)
 class LayeredSolution:
-    """What comes out, written in place: the motion, and of its N frames iterations, converged, ranks (N, L).
+    """What comes out, written in place: the motion, and of its F frames iterations, converged, ranks (F, L).
 
-    `left` (N, L) is the largest error of any row, its weight taken off, before the last step: no step makes more of it.
+    `left` (F, L) is the largest error of any row, its weight taken off, before the last step: no step makes more of it.
     """
 
     motion: Motion

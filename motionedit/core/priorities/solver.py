@@ -18,18 +18,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from motionedit.core.compiled import compiled
 from motionedit.core.priorities import compiled_solver
 from motionedit.core.priorities.compiled_solver import Layout, layout_of
-from motionedit.core.priorities.problem import LayeredSolution, Problem
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from motionedit.core.arrays import BoolArray, IntArray
-    from motionedit.core.motion import Motion
-    from motionedit.core.priorities.problem import Reference
+    from motionedit.core.arrays import IntArray
+    from motionedit.core.priorities.problem import LayeredSolution, Problem, Reference
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,67 +46,48 @@ def prepare_problem(problem: Problem) -> Prepared:
 
 
 def solve_layers(
-    prepared: Prepared,
-    motion: Motion,
-    reference: Reference,
-    frames: IntArray,
-    *,
-    done: BoolArray | None = None,
-    in_order: bool = False,
-    threads: int = 1,
-) -> LayeredSolution:
-    """Move frames of a motion so that the layers are met, each as far as those above it allow.
-
-    Parameters
-    ----------
-    motion : Motion
-        The caller's own: it is changed in place, so that of a long one there is no copy.
-    reference : Reference
-        Of as many frames as the motion.
-    frames : shape (N,)
-        Which frames the problem is about.
-    done : shape (N,), optional
-        Frames that are known to need nothing: they stay as they are, converged, without iterations and ranks.
-    in_order : bool
-        The frames follow each other without a gap, none is `done`, and each begins where the one before ended, in what
-        the columns move: eq. (4).
-    threads : int
-        Frames are shared out among so many threads where the compiled solver runs; the result does not depend on it.
-    """
-    problem = prepared.problem
-    solution = LayeredSolution(
-        motion,
-        np.zeros(len(frames), dtype=np.int64),
-        np.zeros(len(frames), dtype=np.bool_) if done is None else done.copy(),
-        np.zeros((len(frames), len(problem.layers)), dtype=np.int64),
-        np.zeros((len(frames), len(problem.layers))),
-    )
-    solve_into(solution, prepared, reference, frames, in_order=in_order, threads=threads)
-    return solution
-
-
-def solve_into(
     solution: LayeredSolution,
     prepared: Prepared,
     reference: Reference,
     frames: IntArray,
     *,
+    levels: IntArray,
     in_order: bool = False,
     threads: int = 1,
 ) -> None:
-    """Do what `solve_layers` does, of a solution whose arrays are zeros: frames that are converged stay as they are."""
-    problem = prepared.problem
+    """Move frames of a motion so that the layers are met, each as far as those above it allow; in place.
+
+    Parameters
+    ----------
+    solution : LayeredSolution
+        The motion, where it starts, and what is told of it: zeros at the frames. Those that are converged are known to
+        need nothing: they stay as they are.
+    reference : Reference
+        Of as many frames as the motion.
+    frames : shape (N,)
+        Which frames the problem is about, each once.
+    levels : shape (L,)
+        Where the problem's layers stand among those that the solution tells of. Of several at one place the ranks are
+        added up, and the largest of what is left stands.
+    in_order : bool
+        The frames follow each other without a gap, none is converged, and each begins where the one before ended, in
+        what the columns move: eq. (4).
+    threads : int
+        Frames are shared out among so many threads where the compiled solver runs; the result does not depend on it.
+    """
     if prepared.layout is None or compiled() is None:
         from motionedit.core.priorities import numpy_solver
 
-        numpy_solver.solve(problem, solution, reference, frames, in_order=in_order)
-    else:
-        compiled_solver.solve(
-            prepared.layout,
-            solution,
-            reference,
-            frames,
-            softness=problem.softness,
-            in_order=in_order,
-            threads=threads,
-        )
+        numpy_solver.solve(prepared.problem, solution, reference, frames, levels=levels, in_order=in_order)
+        return
+    softness = prepared.problem.softness
+    compiled_solver.solve(
+        prepared.layout,
+        solution,
+        reference,
+        frames,
+        softness=softness,
+        levels=levels,
+        in_order=in_order,
+        threads=threads,
+    )

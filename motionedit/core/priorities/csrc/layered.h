@@ -77,7 +77,7 @@ typedef struct {
 typedef struct {
     Settings of;
     Constants constants;
-    int64_t count, motion_frames; /* N, F */
+    int64_t count, motion_frames, levels; /* N, F, and how many priorities are told of */
     int in_order, pulls_root;
     const Node *node;
     const int64_t *column_node; /* shape (K,) */
@@ -91,13 +91,14 @@ typedef struct {
     const double *reference_rotations; /* shape (F, J, 4) */
     const double *reference_root;      /* shape (F, 3), where the root is pulled */
     const double *softness; /* shape (N, L): lambda^2 of a layer that gives way, 0 of one that shall be met */
-    /* in: where each frame starts; out: the solution */
+    const int64_t *level;   /* shape (L,): under which of the priorities a layer is told of */
+    /* in: where each frame starts; out: the solution, at the frames that are solved */
     double *rotations;    /* shape (F, J, 4) */
     double *translations; /* shape (F, P, 3) */
-    int64_t *iterations;  /* shape (N,) */
-    uint8_t *converged;   /* shape (N,); in: frames that are left as they are */
-    int64_t *ranks;       /* shape (N, L) */
-    double *left;         /* shape (N, L): the largest error of any row, its weight taken off, before the last step */
+    int64_t *iterations;  /* shape (F,) */
+    uint8_t *converged;   /* shape (F,); in: frames that are left as they are */
+    int64_t *ranks;       /* shape (F, levels) */
+    double *left; /* shape (F, levels): the largest error of any row, its weight taken off, before the last step */
 } Problem;
 
 /* What is known of a kind of rows. */

@@ -110,6 +110,14 @@ static int are_frames(const Problem *problem)
     return sense;
 }
 
+static int are_levels(const Problem *problem)
+{
+    int sense = 1;
+    for (int64_t l = 0; l < problem->of.layers; l++)
+        sense &= between(0, problem->level[l], problem->levels);
+    return sense;
+}
+
 const char *problem_fault(const Problem *problem)
 {
     if (!are_nodes(problem))
@@ -120,5 +128,7 @@ const char *problem_fault(const Problem *problem)
         return "hinges that are none";
     if (!are_limits(problem))
         return "limits that are none";
+    if (!are_levels(problem))
+        return "levels that are none";
     return are_frames(problem) ? 0 : "frames that are none";
 }

@@ -86,30 +86,27 @@ static void begin_frame(Batch *batch, int lane, int64_t at)
         load(batch, lane, at);
 }
 
-/* The largest error of any row of each of a frame's layers, its weight taken off. */
-static void largest_left(const Batch *batch, int lane, double *left)
+/* The largest error of any row of a task, its weight taken off. */
+static double largest_left(const Batch *batch, int lane, int64_t t)
 {
-    const Problem *problem = batch->problem;
-    memset(left, 0, sizeof *left * problem->of.layers);
-    for (int64_t t = 0; t < problem->of.tasks; t++) {
-        const Task *task = problem->task + t;
-        const Pull *pull = batch->pulls + t;
-        const V *errors = (pull->rows > 0 ? batch->errors : batch->held_errors) + pull->first_row;
-        for (int64_t r = 0; r < task->rows; r++) {
-            const double error = LANE(errors[r], lane) / task->weight;
-            left[task->layer] = fmax(left[task->layer], task->one_sided ? error : fabs(error));
-        }
+    const Task *task = batch->problem->task + t;
+    const Pull *pull = batch->pulls + t;
+    const V *errors = (pull->rows > 0 ? batch->errors : batch->held_errors) + pull->first_row;
+    double left = 0.0;
+    for (int64_t r = 0; r < task->rows; r++) {
+        const double error = LANE(errors[r], lane) / task->weight;
+        left = fmax(left, task->one_sided ? error : fabs(error));
     }
+    return left;
 }
 
 /* Whether all layers that do not give way are met. */
 static int is_met_without_limits(const Batch *batch, int lane)
 {
     const Problem *problem = batch->problem;
-    double *left = problem->left + batch->at[lane] * problem->of.layers;
-    largest_left(batch, lane, left);
-    for (int64_t l = 0; l < problem->of.layers; l++)
-        if (left[l] > problem->constants.met_without_limits && LANE(batch->layers[l].soft, lane) == 0.0)
+    for (int64_t t = 0; t < problem->of.tasks; t++)
+        if (LANE(batch->layers[problem->task[t].layer].soft, lane) == 0.0 &&
+            largest_left(batch, lane, t) > problem->constants.met_without_limits)
             return 0;
     return 1;
 }
@@ -129,12 +126,19 @@ static int goes_on_with_limits(Batch *batch, int lane)
 static void end_frame(Batch *batch, int lane, int converged)
 {
     const Problem *problem = batch->problem;
-    const int64_t at = batch->at[lane];
-    problem->converged[at] = (uint8_t)converged,
+    const int64_t at = problem->frames[batch->at[lane]];
+    int64_t *ranks = problem->ranks + at * problem->levels;
+    double *left = problem->left + at * problem->levels;
+    problem->converged[at] = (uint8_t)converged;
     problem->iterations[at] = batch->before_limits[lane] + batch->iteration[lane];
-    for (int l = 0; l < problem->of.layers; l++)
-        problem->ranks[at * problem->of.layers + l] = (int64_t)LANE(batch->layers[l].rank, lane);
-    largest_left(batch, lane, problem->left + at * problem->of.layers);
+    memset(ranks, 0, sizeof *ranks * problem->levels);
+    memset(left, 0, sizeof *left * problem->levels);
+    for (int64_t l = 0; l < problem->of.layers; l++)
+        ranks[problem->level[l]] += (int64_t)LANE(batch->layers[l].rank, lane);
+    for (int64_t t = 0; t < problem->of.tasks; t++) {
+        const int64_t level = problem->level[problem->task[t].layer];
+        left[level] = fmax(left[level], largest_left(batch, lane, t));
+    }
     store(batch, lane);
 }
 
@@ -249,7 +253,7 @@ static int64_t fill(Batch *batch, int64_t next, int64_t end)
 {
     const Problem *problem = batch->problem;
     for (int lane = 0; lane < (problem->in_order ? 1 : LANES); lane++) {
-        while (next < end && problem->converged[next])
+        while (next < end && problem->converged[problem->frames[next]])
             next++;
         if (batch->at[lane] >= 0 || next == end)
             continue;

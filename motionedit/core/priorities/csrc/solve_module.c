@@ -114,7 +114,8 @@ static int read_problem(Problem *problem, Buffers *buffers)
     const size_t integer = sizeof(int64_t), number = sizeof(double);
     const int64_t N = count_of(buffers, "frames", integer), pulls = count_of(buffers, "reference_root", number);
     const int64_t F = of->joints == 0 ? 0 : count_of(buffers, "rotations", number) / (4 * of->joints);
-    problem->count = N, problem->motion_frames = F, problem->pulls_root = pulls > 0;
+    const int64_t levels = F == 0 ? of->layers : count_of(buffers, "ranks", integer) / F;
+    problem->count = N, problem->motion_frames = F, problem->levels = levels, problem->pulls_root = pulls > 0;
     if (!(take_buffer(buffers, "nodes", of->nodes, sizeof(Node), READ, &problem->node) &&
             take_buffer(buffers, "column_nodes", of->columns, integer, READ, &problem->column_node) &&
             take_buffer(buffers, "mobility", of->columns + 1, number, READ, &problem->mobility) &&
@@ -130,10 +131,11 @@ static int read_problem(Problem *problem, Buffers *buffers)
             take_buffer(buffers, "softness", N * of->layers, number, READ, &problem->softness) &&
             take_buffer(buffers, "rotations", 4 * F * of->joints, number, WRITE, &problem->rotations) &&
             take_buffer(buffers, "translations", 3 * F * of->translated, number, WRITE, &problem->translations) &&
-            take_buffer(buffers, "iterations", N, integer, WRITE, &problem->iterations) &&
-            take_buffer(buffers, "converged", N, 1, WRITE, &problem->converged) &&
-            take_buffer(buffers, "ranks", N * of->layers, integer, WRITE, &problem->ranks) &&
-            take_buffer(buffers, "left", N * of->layers, number, WRITE, &problem->left)))
+            take_buffer(buffers, "levels", of->layers, integer, READ, &problem->level) &&
+            take_buffer(buffers, "iterations", F, integer, WRITE, &problem->iterations) &&
+            take_buffer(buffers, "converged", F, 1, WRITE, &problem->converged) &&
+            take_buffer(buffers, "ranks", F * levels, integer, WRITE, &problem->ranks) &&
+            take_buffer(buffers, "left", F * levels, number, WRITE, &problem->left)))
         return 0;
     if (problem_fault(problem) != NULL)
         PyErr_SetString(PyExc_ValueError, problem_fault(problem));

@@ -9,7 +9,8 @@ from motionedit.core.kinematics import Effector, effector_positions, forward
 from motionedit.core.motion import Motion
 from motionedit.core.priorities.kinds.position import PositionTask
 from motionedit.core.priorities.points import Columns, Point, Recruited
-from motionedit.core.priorities.problem import HingeColumns, Problem, WeightedTask
+from motionedit.core.priorities.problem import HingeColumns, LayeredSolution, Problem, Reference, WeightedTask
+from motionedit.core.priorities.solver import prepare_problem, solve_layers
 from motionedit.core.skeleton import Skeleton
 
 
@@ -52,3 +53,20 @@ def arms_of(seed, frames=8):
         mobility=np.ones(7),
         softness=np.zeros((frames, 1)),
     ), motion
+
+
+def solved(problem, motion, frames, *, levels=None, **how):
+    """Return a copy of a motion, solved at some frames, and how that went."""
+    own = Motion(motion.skeleton, motion.rotations.copy(), motion.translations.copy(), motion.frame_time)
+    levels = np.arange(len(problem.layers)) if levels is None else np.array(levels)
+    told = len(own), int(levels.max()) + 1
+    solution = LayeredSolution(
+        own,
+        np.zeros(len(own), dtype=np.int64),
+        np.zeros(len(own), dtype=bool),
+        np.zeros(told, dtype=np.int64),
+        np.zeros(told),
+    )
+    reference = Reference(motion.rotations.copy(), None)
+    solve_layers(solution, prepare_problem(problem), reference, frames, levels=levels, **how)
+    return solution

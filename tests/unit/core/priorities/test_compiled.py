@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from arms import arms_of
+from arms import arms_of, solved
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from person import edited, end, held_feet, swaying
@@ -26,10 +26,9 @@ from motionedit.core.priorities.continuity import smoothed_displacement
 from motionedit.core.priorities.edit import edit_by_priorities
 from motionedit.core.priorities.kinds import KINDS, CenterOfMass, Position
 from motionedit.core.priorities.kinds.position import PositionTask
-from motionedit.core.priorities.problem import Reference
 from motionedit.core.priorities.recruiting import RecruitRule
 from motionedit.core.priorities.settings import Body, LayeredSettings, PaperFilter, Passes
-from motionedit.core.priorities.solver import prepare_problem, solve_layers
+from motionedit.core.priorities.solver import prepare_problem
 from motionedit.core.priorities.trajectories import ControlPoint
 from motionedit.core.skeleton import Skeleton
 
@@ -169,12 +168,6 @@ def test_a_solver_that_the_processor_does_not_have_is_refused():
         compiled().solve({}, 0, 0, False, "avx1024")
 
 
-def solved(problem, motion, frames, **how):
-    """Return a copy of a motion, solved at some frames, and how that went."""
-    own = Motion(motion.skeleton, motion.rotations.copy(), motion.translations.copy(), motion.frame_time)
-    return solve_layers(prepare_problem(problem), own, Reference(motion.rotations.copy(), None), frames, **how)
-
-
 @pytest.mark.parametrize("seed", range(10))
 def test_both_solvers_make_soft_rows_least_alike(patch, seed):
     problem, motion = arms_of(seed)
@@ -193,6 +186,31 @@ def test_both_solvers_make_soft_rows_least_alike(patch, seed):
     farther = rot.angle_between(hard.motion.rotations, motion.rotations).sum(axis=1)
     softened = soft[:, 0] > 0.0
     assert (far[softened] < farther[softened]).all()
+
+
+def test_layers_of_one_priority_are_told_of_as_one_at_the_frames_that_are_solved(patch):
+    problem, motion = arms_of(1)
+    (tasks,) = problem.layers
+    some = np.array([1, 2, 5, 6])
+    cut = tuple(replace(each, task=replace(each.task, targets=each.task.targets[some])) for each in tasks)
+    three = replace(problem, layers=(cut[:1], cut[1:2], cut[2:]), softness=np.zeros((len(some), 3)))
+    one_by_one = solved(three, motion, some)
+    for found in (
+        solved(three, motion, some, levels=[1, 1, 3]),
+        by_numpy(patch, lambda: solved(three, motion, some, levels=[1, 1, 3])),
+    ):
+        np.testing.assert_array_equal(found.ranks[:, 1], one_by_one.ranks[:, :2].sum(axis=1))
+        np.testing.assert_array_equal(found.ranks[:, 3], one_by_one.ranks[:, 2])
+        np.testing.assert_allclose(found.left[:, 1], one_by_one.left[:, :2].max(axis=1), atol=FEASIBLE)
+        np.testing.assert_allclose(found.left[:, 3], one_by_one.left[:, 2], atol=FEASIBLE)
+        assert not found.ranks[:, [0, 2]].any()
+        assert not found.left[:, [0, 2]].any()
+        assert found.ranks[some].any(axis=1).all()
+        assert found.left[some].any(axis=1).all()
+        others = np.setdiff1d(np.arange(len(motion)), some)
+        for rest in (found.ranks, found.left, found.iterations, found.converged):
+            assert not rest[others].any()
+        np.testing.assert_array_equal(found.motion.rotations[others], motion.rotations[others])
 
 
 @pytest.mark.parametrize("seed", range(30))
@@ -217,7 +235,7 @@ def test_no_frames_are_solved_at_once():
     )
     solution = solved(none, motion, np.arange(0))
     np.testing.assert_array_equal(solution.motion.rotations, motion.rotations)
-    assert len(solution.iterations) == 0
+    assert not solution.iterations.any()
 
 
 @pytest.mark.parametrize("smoothing", [Passes(2, 1.5), PaperFilter(2, 10.0)])

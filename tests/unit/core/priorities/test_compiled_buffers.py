@@ -4,12 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from arms import arms_of
+from arms import arms_of, solved
 
 from motionedit.core.compiled import compiled, solver_name
-from motionedit.core.motion import Motion
-from motionedit.core.priorities.problem import Reference
-from motionedit.core.priorities.solver import prepare_problem, solve_layers
+from motionedit.core.priorities.solver import prepare_problem
 
 pytestmark = pytest.mark.skipif(solver_name() == "numpy", reason="no compiled solver here")
 
@@ -60,9 +58,9 @@ def test_an_index_that_is_none_is_an_error_and_no_crash(buffer, field, at, value
         raw_solve(problem, motion, **{buffer: (field, at, value)})
 
 
-def raw_solve(problem, motion, *, frames=tuple(range(8)), in_order=False, **slip):
+def raw_solve(problem, motion, *, frames=tuple(range(8)), levels=(0,), in_order=False, **slip):
     """Solve a problem by its buffers, one field of which is another."""
-    count = len(frames)
+    count = len(motion)
     buffers = {name: array.copy() for name, array in prepare_problem(problem).layout.buffers.items()}
     for buffer, (field, at, value) in slip.items():
         buffers[buffer][field][at] = value
@@ -71,10 +69,11 @@ def raw_solve(problem, motion, *, frames=tuple(range(8)), in_order=False, **slip
         "converged": np.zeros(count, bool),
         "ranks": np.zeros((count, len(problem.layers)), int),
         "left": np.zeros((count, len(problem.layers))),
+        "levels": np.array(levels),
     }
     own = {"rotations": motion.rotations.copy(), "translations": motion.translations.copy()}
     pull = {"reference_rotations": motion.rotations, "reference_root": np.zeros(0), "softness": problem.softness}
-    compiled().solve({**buffers, **how, **own, **pull, "frames": np.array(frames)}, 0, count, in_order)
+    compiled().solve({**buffers, **how, **own, **pull, "frames": np.array(frames)}, 0, len(frames), in_order)
 
 
 @pytest.mark.parametrize("weights", [(1.0, 1.0, 1.0, 1.0, 1.0), (3.0, 0.3, 1.0, 0.5, 2.0)])
@@ -86,10 +85,7 @@ def test_points_that_share_joints_are_weighed_alike_by_both_solvers(seed, weight
     found = []
     for solver in ("", "numpy"):
         monkeypatch.setenv("MOTIONEDIT_SOLVER", solver)
-        own = Motion(motion.skeleton, motion.rotations.copy(), motion.translations.copy(), motion.frame_time)
-        prepared = prepare_problem(replace(problem, layers=(layer,)))
-        solve_layers(prepared, own, Reference(motion.rotations, None), np.arange(8))
-        found.append(own.rotations)
+        found.append(solved(replace(problem, layers=(layer,)), motion, np.arange(8)).motion.rotations)
     assert np.abs(found[0] - motion.rotations).max() > 0.01
     np.testing.assert_allclose(*found, atol=1e-9)
 
@@ -103,12 +99,19 @@ def test_frames_in_order_follow_each_other():
         raw_solve(problem, motion, frames=range(1, 9))
 
 
+def test_layers_are_told_of_under_priorities_that_there_are():
+    problem, motion = arms_of(0)
+    for level in (-1, 1):
+        with pytest.raises(ValueError, match="levels that are none"):
+            raw_solve(problem, motion, levels=(level,))
+
+
 def test_layers_come_one_after_the_other():
     problem, motion = arms_of(0)
     (tasks,) = problem.layers
     two = replace(problem, layers=(tasks[:2], tasks[2:]), softness=np.zeros((8, 2)))
     with pytest.raises(ValueError, match="tasks that are none"):
-        raw_solve(two, motion, tasks=("layer", 0, 1))
+        raw_solve(two, motion, levels=(0, 1), tasks=("layer", 0, 1))
 
 
 @pytest.mark.parametrize(("parents", "places"), [((-1, 1), (0, -1)), ((-1, 0), (1, -1)), ((-2, 0), (0, -1))])

@@ -116,6 +116,7 @@ def test_a_distance_that_is_none_is_an_error_and_no_crash(kind, field, value):
         "ranks": np.zeros((count, len(group.problem.layers)), int),
         "left": np.zeros((count, len(group.problem.layers))),
         "frames": np.arange(count),
+        "levels": group.levels,
     }
     compiled().solve(buffers, 0, count, False)
     buffers["tasks"][field][at] = value
