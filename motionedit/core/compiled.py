@@ -2,26 +2,25 @@
 
 from __future__ import annotations
 
-from functools import cache
+from functools import partial
 from typing import Any
 
 # Set to ``numpy``, it keeps the compiled part out, as where none could be built.
 CHOICE = "MOTIONEDIT_SOLVER"
 
-
-@cache
-def _module() -> Any:  # noqa: ANN401  a module without types
-    try:
-        from motionedit.core import _compiled  # type: ignore[attr-defined]
-    except ImportError:
-        return None
-    return _compiled
+try:
+    from motionedit.core import _compiled  # type: ignore[attr-defined]
+except ImportError:
+    _compiled = None
 
 
-def compiled() -> Any:  # noqa: ANN401  as above
-    """Return the compiled module, or None where there is none or numpy alone is wanted."""
-    module = _module()
-    return None if module is None or module.is_set(CHOICE, "numpy") else module
+def _nothing() -> None:
+    return None
+
+
+# Returns the compiled module, which has no types; None where there is none, or numpy alone is wanted. A short edit asks
+# a hundred times.
+compiled: Any = _nothing if _compiled is None else partial(_compiled.unless_set, CHOICE, "numpy")
 
 
 def room(count: int) -> bytes:

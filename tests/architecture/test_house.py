@@ -47,7 +47,7 @@ def test_the_environment_is_asked_for_in_two_files_and_changes_no_result():
     ask = [
         place_of(path)
         for path in FILES
-        if re.search(r"\b(?:environ|getenv|is_set)\b", path.read_text(encoding="utf-8"))
+        if re.search(r"\b(?:environ|getenv|unless_set)\b", path.read_text(encoding="utf-8"))
     ]
     assert ask == ["cli/program.py", "core/compiled.py"]
 

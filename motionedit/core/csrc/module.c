@@ -50,21 +50,21 @@ static PyObject *room(PyObject *self, PyObject *arguments)
     return bytes;
 }
 
-/* To ask `os.environ` takes fifteen times as long, and whoever changes that changes this. */
-static PyObject *is_set(PyObject *self, PyObject *arguments)
+/* The module, or None where a variable of the environment has a value. To ask `os.environ` takes fifteen times as long,
+   and whoever changes that changes this. */
+static PyObject *unless_set(PyObject *self, PyObject *arguments)
 {
     const char *name, *value, *found;
-    (void)self;
     if (!PyArg_ParseTuple(arguments, "ss", &name, &value))
         return NULL;
     found = getenv(name);
-    return PyBool_FromLong(found != NULL && strcmp(found, value) == 0);
+    return Py_NewRef(found != NULL && strcmp(found, value) == 0 ? Py_None : self);
 }
 
 static PyMethodDef methods[] = {
     {"keep_memory", keep_memory, METH_VARARGS, "Keep memory that was let go of, but for large arrays (glibc alone)."},
     {"room", room, METH_VARARGS, "Return so many bytes that are not yet written, for a stream."},
-    {"is_set", is_set, METH_VARARGS, "Return whether a variable of the environment has a value."},
+    {"unless_set", unless_set, METH_VARARGS, "Return the module; None where a variable of the environment has a value."},
     {NULL, NULL, 0, NULL},
 };
 

@@ -11,17 +11,19 @@ from motionedit.core.priorities.records import (
     constants_record,
     hinge_records,
     limit_records,
-    rows_of,
     settings_of,
     structure_of,
+    tasks_of,
 )
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from motionedit.core.arrays import FloatArray, IntArray
-    from motionedit.core.priorities.problem import LayeredSolution, Problem, Reference
+    from motionedit.core.priorities.problem import CompiledTask, LayeredSolution, Problem, Reference
 
 # Frames a thread takes at least.
 _LEAST_SHARE = 32
@@ -35,10 +37,8 @@ class Layout:
 
     def with_targets_of(self, problem: Problem) -> Layout:
         """Return the layout with the targets of a problem that has the same tasks."""
-        rows = (row for tasks in problem.layers for each in tasks for row in each.task.compiled() or ())
-        return Layout(
-            {**self.buffers, "targets": np.concatenate([np.zeros(0), *(np.ravel(row.targets) for row in rows)])}
-        )
+        rows = [row for tasks in problem.layers for each in tasks for row in each.task.compiled() or ()]
+        return Layout({**self.buffers, "targets": _all_targets(rows)})
 
 
 def layout_of(problem: Problem) -> Layout | None:
@@ -47,19 +47,18 @@ def layout_of(problem: Problem) -> Layout | None:
     That is a task of another kind, and a root that moves along one or two axes alone.
     """
     module, knows_root = compiled(), problem.columns.root_is_free or not problem.moves_root
-    found = rows_of(problem, module.row_kinds) if module is not None and knows_root else None
+    found = tasks_of(problem, module.row_kinds) if module is not None and knows_root else None
     if found is None:
         return None
-    rows = tuple(row for row, _ in found)
-    masses = next((task.masses for _, task in found if task.masses is not None), None)
-    given = [task.targets.ravel() for _, task in found]
-    counts = tuple(map(len, given))
-    structure = structure_of(problem.columns, rows, None if masses is None else masses.as_bytes, counts=counts)
-    targets = np.concatenate([np.zeros(0), *given])
-    asked = sum(len(row.counted) for row in rows)
+    told, tasks = found
+    weights, counts = None, tuple([task.targets.size for task in tasks])
+    for task in tasks:
+        weights = weights if task.masses is None else task.masses.as_bytes
+    structure = structure_of(problem.columns, told, weights, counts=counts)
+    targets = _all_targets(tasks)
     return Layout(
         {
-            "settings": settings_of(problem, structure, rows=asked, targets=len(targets)),
+            "settings": settings_of(problem, structure, targets=len(targets)),
             "constants": constants_record(),
             "nodes": structure.nodes,
             "column_nodes": structure.column_nodes,
@@ -71,6 +70,11 @@ def layout_of(problem: Problem) -> Layout | None:
             "targets": targets,
         }
     )
+
+
+def _all_targets(tasks: Sequence[CompiledTask]) -> FloatArray:
+    """Return the targets of all tasks, one after the other."""
+    return np.concatenate([task.targets for task in tasks], axis=None, dtype=np.float64) if tasks else np.zeros(0)
 
 
 def solve(

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
 from functools import cached_property, lru_cache
 from itertools import chain
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.arrays import frozen
 from motionedit.core.priorities.continuity import NO_DISPLACEMENT
+from motionedit.core.priorities.held_columns import held_columns
 from motionedit.core.priorities.kinds.constraint import Stage
 from motionedit.core.priorities.points import columns_of
-from motionedit.core.priorities.problem import HingeColumns, LimitColumns, Problem, WeightedTask, order_of_layers
+from motionedit.core.priorities.problem import Problem, WeightedTask, order_of_layers
 from motionedit.core.priorities.sight import sight_of
 from motionedit.core.priorities.solver import Prepared, prepare_problem
+from motionedit.core.trace import BLOCK_FRAMES
 from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
@@ -28,9 +30,7 @@ if TYPE_CHECKING:
     from motionedit.core.priorities.recruiting import Recruits
     from motionedit.core.priorities.settings import Body, LayeredSettings
     from motionedit.core.priorities.sight import Sight
-
-
-_Told = TypeVar("_Told", HingeColumns, LimitColumns)
+    from motionedit.core.skeleton import Skeleton
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,15 +153,30 @@ def groups_of(asked: Asked) -> tuple[Group, ...]:
         active[targets.span, i] = 1
         if softness is not None:
             active[targets.span, i] += softness[targets.span] > 0.0
-    active[: asked.body.first][_nothing_is_wanted(asked)] = 0
+    if asked.body.first:
+        active[: asked.body.first][_nothing_is_wanted(asked)] = 0
+    find = _together_again if len(active) <= BLOCK_FRAMES else _together
+    return tuple([_group(asked, members, frames) for members, frames in find(active.tobytes(), active.shape[1])])
+
+
+def _together(active: bytes, constraints: int) -> tuple[tuple[tuple[int, ...], IntArray], ...]:
+    """Return which constraints are active together anywhere, and the frames where they are so alike.
+
+    `active` are F rows of so many bytes, 0 where a constraint is not active.
+    """
+    rows = np.frombuffer(active, dtype=np.int8).reshape(-1, constraints)
     together: dict[tuple[int, ...], list[IntArray]] = {}
-    for run in np.split(np.arange(len(active)), np.flatnonzero((active[1:] != active[:-1]).any(axis=1)) + 1):
-        together.setdefault(tuple(active[run[0]].tolist()), []).append(run)
+    for run in np.split(np.arange(len(rows)), np.flatnonzero((rows[1:] != rows[:-1]).any(axis=1)) + 1):
+        together.setdefault(tuple(rows[run[0]].tolist()), []).append(run)
     return tuple(
-        _group(asked, [i for i, there in enumerate(key) if there], np.concatenate(together[key]))
+        (tuple(i for i, there in enumerate(key) if there), frozen(np.concatenate(together[key])))
         for key in sorted(together)
         if any(key)
     )
+
+
+# The clips of a folder are mostly as long, and asked for the same.
+_together_again = lru_cache(maxsize=16)(_together)
 
 
 def _nothing_is_wanted(asked: Asked) -> BoolArray:
@@ -201,23 +216,77 @@ def spans_of(frames: IntArray) -> list[IntArray]:
     return np.split(frames, np.flatnonzero(np.diff(frames) > 1) + 1)
 
 
-def _group(asked: Asked, members: Sequence[int], frames: IntArray) -> Group:
-    joints = frozenset().union(*(asked.recruits[i].joints for i in members))
-    columns = columns_of(asked.motion.skeleton, joints, asked.body.travel)
-    hinges, limits, mobility = _of_columns(asked.body, columns)
+@dataclass(frozen=True, eq=False)
+class _Plan:
+    """What of a group is the same for all clips that share a skeleton and what is asked of it.
+
+    `layers` are the places of constraints among the group's members, `levels` (L,) as `Group` has them, `weights` those
+    of each layer's constraints within it.
+    """
+
+    columns: Columns
+    moves_root: bool
+    layers: tuple[tuple[int, ...], ...]
+    levels: IntArray
+    weights: tuple[tuple[float, ...], ...]
+
+
+@lru_cache(maxsize=32)
+def _plan(
+    skeleton: Skeleton,
+    root: int,
+    recruits: tuple[Recruits, ...],
+    shares: tuple[tuple[int, float, bool], ...],
+    priorities: tuple[int, ...],
+) -> _Plan:
+    """Return the plan of a group, of what its members may move and their `shares`: priority, weight, are they soft."""
+    joints = frozenset().union(*(each.joints for each in recruits))
     # Of one priority, what gives way is a layer below what is met.
+    places = [(-priority, is_soft) for priority, _, is_soft in shares]
+    order, levels = sorted(set(places)), order_of_layers(priorities)
+    layers = tuple(tuple(k for k, place in enumerate(places) if place == layer) for layer in order)
+    # Weights say how a layer is shared: the step's damping and softness are in metres and radians of the largest.
+    largest = [max(shares[k][1] for k in layer) for layer in layers]
+    return _Plan(
+        columns_of(skeleton, joints, root),
+        any(each.root for each in recruits),
+        layers,
+        frozen(np.array([levels.index(-priority) for priority, _ in order], dtype=np.int64)),
+        tuple(tuple(shares[k][1] / most for k in layer) for layer, most in zip(layers, largest, strict=True)),
+    )
+
+
+def _group(asked: Asked, members: Sequence[int], frames: IntArray) -> Group:
+    constraints, recruits, body = asked.constraints, asked.recruits, asked.body
     soft = {i: asked.softness_at(i, frames) for i in members if asked.softness[i] is not None}
-    places = [(-asked.constraints[i].priority, i in soft and bool(soft[i][0] > 0.0)) for i in members]
-    order = sorted(set(places))
-    layers = tuple(tuple(i for i, place in zip(members, places, strict=True) if place == layer) for layer in order)
-    softness = np.zeros((len(frames), len(order)))
+    shares = [(constraints[i].priority, constraints[i].weight, i in soft and bool(soft[i][0] > 0.0)) for i in members]
+    plan = _plan(
+        asked.motion.skeleton,
+        body.travel,
+        tuple([recruits[i] for i in members]),
+        tuple(shares),
+        tuple([each.priority for each in constraints]),
+    )
+    layers = tuple([tuple([members[k] for k in layer]) for layer in plan.layers])
+    softness = np.zeros((len(frames), len(layers)))
     for k, layer in enumerate(layers):
         if layer[0] in soft:
             softness[:, k] = soft[layer[0]]
+    hinges, limits, mobility = held_columns(body, plan.columns)
     problem = Problem(
-        columns=columns,
-        moves_root=any(asked.recruits[i].root for i in members),
-        layers=_tasks(asked, layers, frames, columns),
+        columns=plan.columns,
+        moves_root=plan.moves_root,
+        layers=tuple(
+            [
+                tuple(
+                    [
+                        WeightedTask(_task(asked, i, frames, plan.columns), weight, constraints[i].one_sided)
+                        for i, weight in zip(layer, weights, strict=True)
+                    ]
+                )
+                for layer, weights in zip(layers, plan.weights, strict=True)
+            ]
+        ),
         hinges=hinges,
         limits=limits,
         attraction=asked.settings.attraction,
@@ -226,8 +295,7 @@ def _group(asked: Asked, members: Sequence[int], frames: IntArray) -> Group:
         softness=softness,
         ends_early=asked.settings.gives_way,
     )
-    levels = asked.levels
-    return Group(frames, np.array([levels.index(-priority) for priority, _ in order]), layers, prepare_problem(problem))
+    return Group(frames, plan.levels, layers, prepare_problem(problem))
 
 
 def retargeted(asked: Asked, group: Group, changed: frozenset[int]) -> Group:
@@ -245,61 +313,6 @@ def retargeted(asked: Asked, group: Group, changed: frozenset[int]) -> Group:
     return replace(group, prepared=group.prepared.with_targets_of(replace(problem, layers=layers)))
 
 
-def _tasks(
-    asked: Asked, layers: tuple[tuple[int, ...], ...], frames: IntArray, columns: Columns
-) -> tuple[tuple[WeightedTask, ...], ...]:
-    # Weights say how a layer is shared: the step's damping and softness are in metres and radians of the largest.
-    largest = [max(asked.constraints[i].weight for i in layer) for layer in layers]
-    return tuple(
-        tuple(
-            WeightedTask(
-                _task(asked, i, frames, columns), asked.constraints[i].weight / most, asked.constraints[i].one_sided
-            )
-            for i in layer
-        )
-        for layer, most in zip(layers, largest, strict=True)
-    )
-
-
 def _task(asked: Asked, i: int, frames: IntArray, columns: Columns) -> Task:
     stage = Stage(frames, columns, asked.recruits[i], asked.body.masses, asked.motion)
     return asked.constraints[i].task(asked.targets[i], stage)
-
-
-@lru_cache(maxsize=2)
-def _of_columns(body: Body, columns: Columns) -> tuple[HingeColumns, LimitColumns, FloatArray]:
-    """Return the hinges among columns, the limits of those that are none, and the mobility of all and of the root."""
-    hinges, limits = _of_all_joints(body)
-    turns = np.ones(len(columns.joints)) if body.mobility is None else body.mobility[columns.joints]
-    return _among(columns, hinges), _among(columns, limits), np.append(turns, body.root_mobility)
-
-
-def _among(columns: Columns, every: _Told) -> _Told:
-    """Return what is told of joints, by their `places`, of those that are columns alone, and by theirs."""
-    places = columns.places[every.places]
-    kept = places >= 0
-    if kept.all():
-        return replace(every, places=places)
-    told = {each.name: getattr(every, each.name)[kept] for each in fields(every)}
-    return type(every)(**{**told, "places": places[kept]})
-
-
-@lru_cache(maxsize=2)
-def _of_all_joints(body: Body) -> tuple[HingeColumns, LimitColumns]:
-    """Return the hinges of a body, and the limits of what is none, by joints: their `places` are these."""
-    hinges, hinged = body.hinges, {hinge.joint for hinge in body.hinges}
-    limits = [limit for limit in body.limits if limit.joint not in hinged]
-    return HingeColumns(
-        places=np.array([hinge.joint for hinge in hinges], dtype=np.intp),
-        axes=np.array([hinge.axis for hinge in hinges]).reshape(-1, 3),
-        upper=np.array([hinge.upper for hinge in hinges]).reshape(-1, 3),
-        lower=np.array([hinge.lower for hinge in hinges]).reshape(-1, 3),
-        limits=np.array([hinge.limits for hinge in hinges]).reshape(-1, 2),
-        second=np.array([hinge.is_second for hinge in hinges], dtype=np.bool_),
-    ), LimitColumns(
-        places=np.array([limit.joint for limit in limits], dtype=np.intp),
-        centers=np.array([limit.center for limit in limits]).reshape(-1, 4),
-        along=np.array([limit.along for limit in limits]).reshape(-1, 3),
-        swing=np.array([limit.swing for limit in limits]),
-        twist=np.array([limit.twist for limit in limits]),
-    )

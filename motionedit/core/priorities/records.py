@@ -18,7 +18,7 @@ from motionedit.core.arrays import frozen
 from motionedit.core.compiled import compiled
 from motionedit.core.priorities import constants
 from motionedit.core.priorities.points import places_of
-from motionedit.dataclass import dataclass, replace
+from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -26,10 +26,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from motionedit.core.arrays import FloatArray, IntArray
-    from motionedit.core.kinematics import Effector
     from motionedit.core.measure import Measure
-    from motionedit.core.priorities.points import Columns, Recruited
-    from motionedit.core.priorities.problem import CompiledTask, HingeColumns, LimitColumns, Problem, WeightedTask
+    from motionedit.core.priorities.points import Columns, Point, Recruited
+    from motionedit.core.priorities.problem import CompiledTask, HingeColumns, LimitColumns, Problem
 
 _NOWHERE = (0.0, 0.0, 0.0)
 _CONSTANTS = {"METRES_PER_RADIAN": units.METRES_PER_RADIAN, **vars(constants)}
@@ -63,66 +62,48 @@ class Row:
 Weights = tuple[bytes, bytes]
 
 
-def rows_of(problem: Problem, kinds: Sequence[str]) -> list[tuple[Row, CompiledTask]] | None:
-    """Return the rows of all tasks, layer by layer; None where one is of no kind that the compiled solver has."""
-    found: list[tuple[Row, CompiledTask]] = []
-    for layer, tasks in enumerate(problem.layers):
-        for each in tasks:
-            compiled_tasks = each.task.compiled()
-            if compiled_tasks is None or any(task.row_kind not in kinds for task in compiled_tasks):
-                return None
-            found += [(_row_of(task, layer, each, kinds), task) for task in compiled_tasks]
-    return found
+# All that a row is made of: its kind, layer, whether it is one-sided, weight, measure, width, recruited unknowns, point
+# and base, and axis as bytes.
+_Told = tuple[str, int, bool, float, "Measure", int, "Recruited", "Point | None", "Point | None", "bytes | None"]
 
 
-def _row_of(task: CompiledTask, layer: int, weighted: WeightedTask, kinds: Sequence[str]) -> Row:
-    point, base, axis = task.point, task.base, task.axis
-    row = _row_again(
-        kinds.index(task.row_kind),
-        layer,
-        one_sided=weighted.one_sided,
-        weight=weighted.weight * task.sign,
-        measure=task.measure,
-        width=task.targets.shape[1],
-        recruited=task.recruited,
-        effector=None if point is None else point.effector,
-        root=task.recruited.root if point is None else point.moves_with_root,
-    )
-    if base is not None:
-        offset = tuple(base.effector.offset.tolist())
-        row = replace(row, base_root=base.moves_with_root, base=base.effector.joint, base_offset=offset)
-    return row if axis is None else replace(row, axis=tuple(axis.tolist()))
+def tasks_of(problem: Problem, kinds: Sequence[str]) -> tuple[tuple[_Told, ...], list[CompiledTask]] | None:
+    """Return what rows are made of, and the tasks that they are of, layer by layer.
+
+    None where one is of no kind that the compiled solver has.
+    """
+    told: list[_Told] = []
+    tasks: list[CompiledTask] = []
+    for layer, members in enumerate(problem.layers):
+        for each in members:
+            for task in each.task.compiled() or (None,):
+                if task is None or task.row_kind not in kinds:
+                    return None
+                weight, width = each.weight * task.sign, task.targets.shape[1]
+                axis = None if task.axis is None else np.asarray(task.axis, dtype=np.float64).tobytes()
+                about = task.measure, width, task.recruited, task.point, task.base, axis
+                told.append((task.row_kind, layer, each.one_sided, weight, *about))
+                tasks.append(task)
+    return tuple(told), tasks
 
 
-@lru_cache(maxsize=64)
-def _row_again(  # noqa: PLR0913  all that a row is made of
-    kind: int,
-    layer: int,
-    *,
-    one_sided: bool,
-    weight: float,
-    measure: Measure,
-    width: int,
-    recruited: Recruited,
-    effector: Effector | None,
-    root: bool,
-) -> Row:
-    """Return the row of a task without a base and an axis: those of the clips of a folder are mostly the same."""
+def _row(told: _Told) -> Row:
+    kind, layer, one_sided, weight, measure, width, recruited, point, base, axis = told
     return Row(
-        kind=kind,
+        kind=compiled().row_kinds.index(kind),
         layer=layer,
         one_sided=one_sided,
         weight=weight,
         counted=measure.counted,
         measure=tuple(map(tuple, measure.rows.tolist())),
         width=width,
-        root=root,
-        joint=-1 if effector is None else effector.joint,
-        offset=_NOWHERE if effector is None else tuple(effector.offset.tolist()),
-        base_root=False,
-        base=-1,
-        base_offset=_NOWHERE,
-        axis=_NOWHERE,
+        root=recruited.root if point is None else point.moves_with_root,
+        joint=-1 if point is None else point.effector.joint,
+        offset=_NOWHERE if point is None else tuple(point.effector.offset.tolist()),
+        base_root=base is not None and base.moves_with_root,
+        base=-1 if base is None else base.effector.joint,
+        base_offset=_NOWHERE if base is None else tuple(base.effector.offset.tolist()),
+        axis=_NOWHERE if axis is None else tuple(np.frombuffer(axis).tolist()),
         recruited=recruited.joints.tobytes(),
     )
 
@@ -130,7 +111,7 @@ def _row_again(  # noqa: PLR0913  all that a row is made of
 class Structure(NamedTuple):
     """The records of nodes, the columns' nodes, the records of tasks, and what these recruit.
 
-    `root` is the root's node, -1 where it has no translation.
+    `root` is the root's node, -1 where it has no translation; `rows` is how many all tasks have.
     """
 
     nodes: NDArray[Any]
@@ -138,13 +119,15 @@ class Structure(NamedTuple):
     tasks: NDArray[Any]
     recruited: NDArray[np.uint8]
     root: int
+    rows: int
 
 
 @lru_cache(maxsize=32)
 def structure_of(
-    columns: Columns, rows: tuple[Row, ...], weights: Weights | None, *, counts: tuple[int, ...]
+    columns: Columns, told: tuple[_Told, ...], weights: Weights | None, *, counts: tuple[int, ...]
 ) -> Structure:
     """Return what of a layout is the same for all clips that share a skeleton; `counts` are the numbers of targets."""
+    rows = [_row(each) for each in told]
     shares = np.zeros(len(columns.skeleton)) if weights is None else np.frombuffer(weights[0])
     nodes = _nodes(columns, rows, shares)
     node_of = places_of(nodes, len(columns.skeleton))
@@ -153,7 +136,8 @@ def structure_of(
     records, tasks = _node_records(columns, nodes, node_of, weights), _tasks(rows, node_of)
     tasks["targets"] = [0, *accumulate(counts)][:-1]
     root = int(node_of[columns.root]) if len(columns.skeleton.translated) else -1
-    return Structure(frozen(records), frozen(column_nodes), frozen(tasks), recruited, root)
+    count = sum(len(row.counted) for row in rows)
+    return Structure(frozen(records), frozen(column_nodes), frozen(tasks), recruited, root, count)
 
 
 @cache
@@ -171,7 +155,7 @@ def _records(structure: str, count: int, values: Mapping[str, Any]) -> NDArray[A
     return records
 
 
-def settings_of(problem: Problem, structure: Structure, *, rows: int, targets: int) -> NDArray[Any]:
+def settings_of(problem: Problem, structure: Structure, *, targets: int) -> NDArray[Any]:
     """Return how many there are of what, and how frames are solved; `targets` is the length of all targets."""
     columns, skeleton = problem.columns, problem.columns.skeleton
     return _settings(
@@ -183,7 +167,7 @@ def settings_of(problem: Problem, structure: Structure, *, rows: int, targets: i
         layers=len(problem.layers),
         joints=len(skeleton),
         translated=len(skeleton.translated),
-        rows=rows,
+        rows=structure.rows,
         targets=targets,
         root=structure.root,
         moves_root=problem.moves_root,
