@@ -1,4 +1,4 @@
-"""What is made again and again of the same things: keys that are one thing, and the last few results by their keys."""
+"""What is made again and again of the same things: keys that are one thing, results by their keys, or of one call."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections import OrderedDict
 from typing import TYPE_CHECKING, Generic, TypeVar
 
 if TYPE_CHECKING:
-    from collections.abc import Hashable
+    from collections.abc import Callable, Hashable
 
 Value = TypeVar("Value")
 
@@ -41,3 +41,15 @@ class LastFew(Generic[Value]):
             self._known.popitem(last=False)
         self._known[key] = value
         return value
+
+
+def once(make: Callable[[], Value]) -> Callable[[], Value]:
+    """Return a function that makes something when it is first asked for it; `functools.cache` takes long to set up."""
+    known: list[Value] = []
+
+    def made() -> Value:
+        if not known:
+            known.append(make())
+        return known[0]
+
+    return made

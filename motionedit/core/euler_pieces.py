@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -128,14 +127,20 @@ class _Given:
     """The input's channel values, rad: the rows that are asked for, or all of a short clip where these are several."""
 
     def __init__(self, given: GivenRows, *, whole: bool, frames: int) -> None:
+        self._given = given
         # Joints mostly ask for the same few rows.
-        self._rows = cache(lambda start, stop: radians(given(start, stop)))
+        self._rows: dict[tuple[int, int], FloatArray] = {}
         self._frames = frames if whole else None
         self._whole: FloatArray | None = None
 
     def between(self, start: int, stop: int) -> FloatArray:
         """Return the values of some frames, shape (stop - start, C)."""
-        return self._rows(start, stop) if self._whole is None else self._whole[start:stop]
+        if self._whole is not None:
+            return self._whole[start:stop]
+        known = self._rows.get((start, stop))
+        if known is None:
+            known = self._rows[start, stop] = radians(self._given(start, stop))
+        return known
 
     def at(self, frames: IntArray, columns: IntArray) -> FloatArray:
         """Return the values of R frames, of each the columns, shape (R, A), that are its own."""
@@ -144,10 +149,10 @@ class _Given:
             one: FloatArray = self.between(int(frames[0]), int(frames[0]) + 1)[0, columns]
             return one
         if self._whole is None and self._frames is not None:
-            self._whole = self._rows(0, self._frames)
+            self._whole = self.between(0, self._frames)
         if self._whole is not None:
             return self._whole[frames[:, None], columns]
-        rows = [self._rows(frame, frame + 1)[0, own] for frame, own in zip(frames.tolist(), columns, strict=True)]
+        rows = [self.between(frame, frame + 1)[0, own] for frame, own in zip(frames.tolist(), columns, strict=True)]
         return np.array(rows).reshape(columns.shape)
 
 

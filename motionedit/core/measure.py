@@ -45,6 +45,11 @@ class Measure:
         """Whether the axes are the world's, or the base's own: what is along them needs no turning."""
         return bool(np.array_equal(self.axes, np.eye(3)))
 
+    @cached_property
+    def is_world(self) -> bool:
+        """Whether positions are those in the world, as they are."""
+        return self.is_whole and self._is_worlds
+
     @property
     def is_whole(self) -> bool:
         """Whether a position is all of a place in the world."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from motionedit.version import __version__
@@ -60,13 +60,14 @@ def report_pieces(
 
 def without_frames(record: dict[str, Any]) -> dict[str, Any]:
     """Return a clip's entry without what is told frame by frame, which takes more than all else: `frames`, mappings."""
-    return {
-        key: [without_frames(item) if isinstance(item, dict) else item for item in value]
-        if isinstance(value, list)
-        else value
-        for key, value in record.items()
-        if key != "frames" or not (type(value) is dict or isinstance(value, Mapping))
-    }
+    kept: dict[str, Any] = {}
+    for key, value in record.items():
+        if key == "frames" and (type(value) is dict or isinstance(value, Mapping)):
+            continue
+        kept[key] = (
+            [without_frames(item) if type(item) is dict else item for item in value] if type(value) is list else value
+        )
+    return kept
 
 
 def _encoded(text: str) -> bytes:
@@ -97,20 +98,38 @@ def plain(value: Any) -> Any:  # noqa: ANN401  any value that a report may hold
     if isinstance(value, float):
         return _rounded(value)
     if isinstance(value, (list, tuple)):
-        # Most are numbers of frames, for which the other questions take longer than the answer.
-        return [
-            _rounded(item) if type(item) is float else item if type(item) in _AS_THEY_ARE else plain(item)
-            for item in value
-        ]
+        return _plain_items(value)
     # The dearest question last: whether another class is a mapping.
     if kind is dict or isinstance(value, Mapping):
-        return {
-            str(key): item if type(item) in _AS_THEY_ARE else _rounded(item) if type(item) is float else plain(item)
-            for key, item in value.items()
-        }
+        return _plain_mapping(value)
     if hasattr(value, "tolist"):  # numpy's numbers and arrays
         return plain(value.tolist())
     return value if isinstance(value, (int, str)) else str(value)
+
+
+# A clip's record has dozens of mappings, lists and numbers: what most of them are is told here without a call more.
+
+
+def _plain_items(items: Sequence[Any]) -> list[Any]:
+    if _AS_THEY_ARE.issuperset(map(type, items)):
+        return list(items)
+    return [_rounded(item) if type(item) is float else plain(item) for item in items]
+
+
+def _plain_mapping(items: Mapping[Any, Any]) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for key, item in items.items():
+        kind = type(item)
+        if kind in _AS_THEY_ARE:
+            value = item
+        elif kind is float:
+            value = _rounded(item)
+        elif kind is list or kind is tuple:
+            value = _plain_items(item)
+        else:
+            value = _plain_mapping(item) if kind is dict else plain(item)
+        found[key if type(key) is str else str(key)] = value
+    return found
 
 
 def _rounded(value: float) -> float | None:

@@ -37,7 +37,8 @@ def calmed(found: Reached, smoothing: Passes) -> Solved:
     """Return an edit's solution in which what need not be met gives way where a viewer would see something."""
     seen = seen_of(found.run, found.state.motion, steps=found.state.steps)
     layers = _Layers(found.run.asked, found.state, seen)
-    return _steadied(_calmed(found, layers, smoothing) if seen.much.any() else layers, smoothing).state
+    calm = _steadied(_calmed(found, layers, smoothing) if seen.much.any() else layers, smoothing)
+    return replace(calm.state, poses=calm.seen.poses)
 
 
 def _calmed(found: Reached, last: _Layers, smoothing: Passes) -> _Layers:

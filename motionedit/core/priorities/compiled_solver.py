@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 # Frames a thread takes at least.
 _LEAST_SHARE = 32
+_NOTHING = np.zeros(0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +63,7 @@ def layout_of(problem: Problem) -> Layout | None:
             "constants": constants_record(),
             "nodes": structure.nodes,
             "column_nodes": structure.column_nodes,
-            "mobility": _numbers(problem.mobility),
+            "mobility": np.ascontiguousarray(problem.mobility),
             "tasks": structure.tasks,
             "hinges": hinge_records(problem.hinges),
             "limits": limit_records(problem.limits),
@@ -92,11 +93,11 @@ def solve(
     count, motion = len(frames), solution.motion
     buffers = {
         **layout.buffers,
-        "frames": _integers(frames),
-        "reference_rotations": _numbers(reference.rotations),
-        "reference_root": _numbers([] if reference.root is None else reference.root),
-        "softness": _numbers(softness),
-        "levels": _integers(levels),
+        "frames": frames,
+        "reference_rotations": np.ascontiguousarray(reference.rotations),
+        "reference_root": _NOTHING if reference.root is None else reference.root,
+        "softness": softness,
+        "levels": levels,
         "rotations": motion.rotations,
         "translations": motion.translations,
         "iterations": solution.iterations,
@@ -104,24 +105,16 @@ def solve(
         "ranks": solution.ranks,
         "left": solution.left,
     }
-    shares = 1 if in_order else max(1, min(threads, count // _LEAST_SHARE))
+    shares = 1 if in_order or threads == 1 else max(1, min(threads, count // _LEAST_SHARE))
+    if shares == 1:
+        compiled().solve(buffers, 0, count, in_order)
+        return
     bounds = [count * i // shares for i in range(shares + 1)]
 
     def run(share: int) -> None:
         compiled().solve(buffers, bounds[share], bounds[share + 1], in_order)
 
-    if shares == 1:
-        run(0)
-        return
     from concurrent.futures import ThreadPoolExecutor
 
     with ThreadPoolExecutor(shares) as pool:
         list(pool.map(run, range(shares)))
-
-
-def _integers(values: Any) -> IntArray:  # noqa: ANN401  whatever numpy takes
-    return np.ascontiguousarray(values, dtype=np.int64)
-
-
-def _numbers(values: Any) -> FloatArray:  # noqa: ANN401  whatever numpy takes
-    return np.ascontiguousarray(values, dtype=np.float64)

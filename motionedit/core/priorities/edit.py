@@ -199,7 +199,7 @@ def edit_by_priorities(
         motion=state.motion,
         touched=touched,
         moved=moved,
-        errors=errors_of(asked, state.motion),
+        errors=errors_of(asked, state.motion, poses=state.poses),
         iterations=passed.iterations,
         converged=state.converged,
         ranks=state.ranks,

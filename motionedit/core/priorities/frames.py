@@ -20,6 +20,7 @@ from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
+    from motionedit.core.kinematics import WorldPoses
     from motionedit.core.priorities.kinds.constraint import Targets
     from motionedit.core.priorities.ramps import Ends
 
@@ -63,11 +64,12 @@ class Solved(LayeredSolution):
     """A motion whose frames are solved in place, and how it went, with L the priorities of the whole edit.
 
     `ends`: where the ramps ended in the last pass, None where they were not led. `steps`, shape (F,): those of its
-    joints' changes that are seen, rad, None where nobody has looked.
+    joints' changes that are seen, rad, and `poses`, its world transforms: None where nobody has looked.
     """
 
     ends: Ends | None = None
     steps: FloatArray | None = None
+    poses: WorldPoses | None = None
 
 
 @dataclass(frozen=True, eq=False)

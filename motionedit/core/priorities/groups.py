@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
+    from motionedit.core.kinematics import WorldPoses
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.kinds.constraint import Constraint, Targets
     from motionedit.core.priorities.points import Columns
@@ -140,10 +141,18 @@ class Group:
         return self.prepared.problem
 
 
-def seen_by(constraints: Sequence[Constraint], motion: Motion, body: Body) -> Sight:
-    """Return what some constraints look at in a motion."""
-    masses = body.masses if any(each.weighs for each in constraints) else None
-    return sight_of(motion, lambda: frozenset().union(*(each.looked_at() for each in constraints)), masses)
+def seen_by(constraints: Sequence[Constraint], motion: Motion, body: Body, *, poses: WorldPoses | None = None) -> Sight:
+    """Return what some constraints look at in a motion, of which the `poses` may be known."""
+    masses = None
+    for each in constraints:
+        if each.weighs:
+            masses = body.masses
+            break
+
+    def joints() -> frozenset[int]:
+        return frozenset().union(*(each.looked_at() for each in constraints))
+
+    return sight_of(motion, joints, masses, poses=poses)
 
 
 def groups_of(asked: Asked) -> tuple[Group, ...]:

@@ -33,9 +33,10 @@ Ends = tuple[tuple[Targets, ...], ...]
 
 def ramps_of(asked: Asked, i: int) -> tuple[Ramp, ...]:
     """Return the ramps of a constraint that end within the clip: where the input has its task."""
-    constraint, targets, count = asked.constraints[i], asked.targets[i], len(asked.motion)
+    constraint = asked.constraints[i]
     if not constraint.points:
         return ()
+    targets, count = asked.targets[i], len(asked.motion)
     find = _sides_again if count <= BLOCK_FRAMES else _sides
     return tuple(
         Ramp(left, outside, task_at(asked, i, asked.motion, outside))
@@ -61,6 +62,9 @@ _sides_again = lru_cache(maxsize=32)(_sides)
 
 def task_at(asked: Asked, i: int, motion: Motion, frame: int) -> Targets:
     """Return where a motion has a constraint's task at a frame, as targets of one frame."""
+    if motion.is_fixed and len(motion) <= BLOCK_FRAMES:
+        # It is seen already, as a whole.
+        return _task(asked, i, seen_by([asked.constraints[i]], motion, asked.body), frame)
     return _task(asked, i, _seen(asked, [i], motion, [frame]), 0)
 
 

@@ -28,7 +28,9 @@ class Sight:
     center: FloatArray
 
 
-def sight_of(motion: Motion, joints: Callable[[], Collection[int]], masses: Masses | None) -> Sight:
+def sight_of(
+    motion: Motion, joints: Callable[[], Collection[int]], masses: Masses | None, *, poses: WorldPoses | None = None
+) -> Sight:
     """Return what is seen of a motion, block by block: a long motion's whole transforms are twice its file.
 
     Parameters
@@ -37,7 +39,11 @@ def sight_of(motion: Motion, joints: Callable[[], Collection[int]], masses: Mass
         Returns the joints; of a short motion all are seen.
     masses : Masses or None
         None where nobody asks for the center of mass.
+    poses : WorldPoses, optional
+        Of the motion, where they are known.
     """
+    if poses is not None:
+        return _sight(motion, poses, masses)
     if len(motion) <= BLOCK_FRAMES:
         return _seen_again(motion, masses) if motion.is_fixed else _seen_whole(motion, masses)
     frames, count = len(motion), len(motion.skeleton)
@@ -58,7 +64,10 @@ def sight_of(motion: Motion, joints: Callable[[], Collection[int]], masses: Mass
 
 def _seen_whole(motion: Motion, masses: Masses | None) -> Sight:
     """Return what is seen of a short motion, with all its joints: to pick some would take longer."""
-    poses = poses_again(motion) if motion.is_fixed else forward(motion)
+    return _sight(motion, poses_again(motion) if motion.is_fixed else forward(motion), masses)
+
+
+def _sight(motion: Motion, poses: WorldPoses, masses: Masses | None) -> Sight:
     return Sight(motion, poses, np.zeros((len(motion), 3)) if masses is None else center_of_mass(poses, masses))
 
 

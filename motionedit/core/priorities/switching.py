@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,13 +29,15 @@ def eased_from_others(asked: Asked, smoothing: Passes) -> Run:
     """
     motion = asked.motion
     alone: dict[tuple[int, ...], Motion] = {}
-    wanted = cache(lambda others: _wanted(asked.only(others), motion))
+    wanted: dict[tuple[int, ...], BoolArray] = {}
     targets, ramps = list(asked.targets), []
     for i in range(len(targets)):
         own = list(ramps_of(asked, i))
         for k, ramp in enumerate(own):
             others = _others(asked, i, ramp)
-            if not others or not wanted(others)[ramp.left > 0.0].any():
+            if others and others not in wanted:
+                wanted[others] = _wanted(asked.only(others), motion)
+            if not others or not wanted[others][ramp.left > 0.0].any():
                 continue
             if others not in alone:
                 alone[others] = solve_in_passes(run_of(asked.only(others)), smoothing).state.motion

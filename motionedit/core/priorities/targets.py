@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.again import once
 from motionedit.core.priorities.far_turns import arcs_of
 from motionedit.core.priorities.frames import run_of, solve_from_input
 from motionedit.core.priorities.groups import Asked, seen_by
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from motionedit.core.arrays import FloatArray
+    from motionedit.core.kinematics import WorldPoses
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.kinds.constraint import Constraint, ConstraintErrors
     from motionedit.core.priorities.recruiting import Recruits
@@ -52,7 +53,6 @@ def with_targets(
     free = [i for i, each in enumerate(constraints) if not each.waits_for_others]
     found = {i: constraints[i].targets(Scene(seen[i], settings.curve, dict, lambda: before)) for i in free}
 
-    @cache
     def others() -> Sight:
         """Return what is seen of the motion that those which do not wait ask for, solved once."""
         if not free:
@@ -61,9 +61,9 @@ def with_targets(
         solved = solve_from_input(run_of(Asked.of(motion, *own, body, settings)))
         return seen_by(constraints, solved.motion, body)
 
-    goals = cache(lambda: _goals(constraints, found, len(motion)))
+    goals, made = once(lambda: _goals(constraints, found, len(motion))), once(others)
     targets = tuple(
-        found[i] if i in found else each.targets(Scene(seen[i], settings.curve, goals, others))
+        found[i] if i in found else each.targets(Scene(seen[i], settings.curve, goals, made))
         for i, each in enumerate(constraints)
     )
     arcs = tuple(
@@ -73,19 +73,20 @@ def with_targets(
     return replace(Asked.of(motion, constraints, recruits, targets, body, settings), arcs=arcs)
 
 
-def errors_of(asked: Asked, motion: Motion) -> tuple[ConstraintErrors, ...]:
-    """Return what an edited motion leaves of every constraint, by forward kinematics."""
+def errors_of(asked: Asked, motion: Motion, *, poses: WorldPoses | None = None) -> tuple[ConstraintErrors, ...]:
+    """Return what an edited motion leaves of every constraint, by forward kinematics; its `poses` may be known."""
     parts: list[list[ConstraintErrors]] = [[] for _ in asked.constraints]
     # Block by block: what is seen of a long motion takes a third of its file.
     for block in frame_blocks(len(motion)):
         here = motion, asked.motion
         if len(motion) > block.stop - block.start:
-            here = motion.at(block), asked.motion.at(block)
-        after = seen_by(asked.constraints, here[0], asked.body)
+            here, poses = (motion.at(block), asked.motion.at(block)), None
+        after = seen_by(asked.constraints, here[0], asked.body, poses=poses)
         for each, targets, found in zip(asked.constraints, asked.targets, parts, strict=True):
             first, stop = max(targets.first, block.start), min(targets.last + 1, block.stop)
             if first < stop:
-                part = targets.within(slice(first, stop)).since(block.start)
+                is_whole = block.start == 0 and stop == targets.last + 1
+                part = targets if is_whole else targets.within(slice(first, stop)).since(block.start)
                 found.append(each.errors(part, after, reference=here[1]))
     return tuple(joined(found, targets.first) for found, targets in zip(parts, asked.targets, strict=True))
 

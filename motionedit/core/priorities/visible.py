@@ -17,6 +17,7 @@ from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray
+    from motionedit.core.kinematics import WorldPoses
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.frames import Run
 
@@ -33,12 +34,13 @@ class Seen:
     """What a viewer sees of an edited motion at each frame: how far joints step, and how much it jerks, shape (F,).
 
     Both are multiples of the least that is seen, and 0 where that is not reached. `jerk` is all the motion's over all
-    the input's, root mean squares.
+    the input's, root mean squares. `poses` are the world transforms of a short motion, where they were looked at.
     """
 
     steps: FloatArray
     jerks: FloatArray
     jerk: float = 1.0
+    poses: WorldPoses | None = None
 
     @property
     def much(self) -> FloatArray:
@@ -48,7 +50,9 @@ class Seen:
 
 def seen_of(run: Run, after: Motion, *, steps: FloatArray | None = None) -> Seen:
     """Return what a viewer sees of an edited motion, of which `steps_at` may be known."""
-    return Seen((steps_at(run, after) if steps is None else steps) / _step(run), *jerks_of(run, after))
+    poses = forward(after) if len(after) <= BLOCK_FRAMES else None
+    steps = steps_at(run, after) if steps is None else steps
+    return Seen(steps / _step(run), *jerks_of(run, after, poses=poses), poses)
 
 
 def _step(run: Run) -> float:
@@ -99,20 +103,21 @@ def _may_step(before: FloatArray, after: FloatArray, cosine: float) -> BoolArray
     return far
 
 
-def jerks_of(run: Run, after: Motion) -> tuple[FloatArray, float]:
+def jerks_of(run: Run, after: Motion, *, poses: WorldPoses | None = None) -> tuple[FloatArray, float]:
     """Return by how much of what a viewer sees the body jerks at each frame, and how much all in all times the input.
 
     The former, shape (F,), is 0 where he does not see it.
 
     The jerk of a frame is that of all joints, sqrt(mean |p(f+3) - 3 p(f+2) + 3 p(f+1) - p(f)|^2), over ten times the
-    root mean square of the input's.
+    root mean square of the input's. `poses` may be known.
     """
     before, first = run.motion, run.asked.body.first
     found, count = np.zeros(len(before)), len(before) - first - 3
     if count < 1:
         return found, 1.0
     is_kept = before.is_fixed and len(before) <= BLOCK_FRAMES
-    was, now = (_jerk_again if is_kept else _jerk)(before, first), _jerk(after, first)
+    was = (_jerk_again if is_kept else _jerk)(before, first)
+    now = _jerk(after, first) if poses is None else _root_mean_square(poses.positions[first:])
     own = max(float(np.sqrt(np.mean(was * was))), STILL * before.frame_time**3)
     seen = np.where(now > _OWN_JERK * was, now / (_JERK * own), 0.0)
     seen[seen <= 1.0] = 0.0

@@ -11,4 +11,4 @@ if TYPE_CHECKING:
 
 def effector_record(effector: Effector, skeleton: Skeleton, *, scale: float = 1.0) -> dict[str, Any]:
     """Return an effector's joint and offset in clip units; `scale` is what its offset was multiplied by."""
-    return {"joint": skeleton.names[effector.joint], "offset": effector.offset / scale}
+    return {"joint": skeleton.names[effector.joint], "offset": (effector.offset / scale).tolist()}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -57,7 +58,7 @@ def edit_record(
         if one.each.counts:
             statuses.append(found.status)
             missed.append(line)
-        if one.each.counts or one.excess.max() > FAR_OFF:
+        if one.each.counts or one.largest > FAR_OFF:
             warnings.append(line)
     solved = edit.iterations[edit.iterations > 0]
     record = {
@@ -90,9 +91,9 @@ def _record(one: Measured, found: Verdict) -> dict[str, Any]:
         "name": each.constraint.name,
         "type": each.constraint.type,
         "priority": each.constraint.priority,
-        "error_max": None if lengths is None else float(lengths.max()),
-        "error_rms": None if lengths is None else float(np.sqrt((lengths**2).mean())),
-        "error_angle_max": None if angles is None else float(angles.max()),
+        "error_max": None if lengths is None else float(np.maximum.reduce(lengths)),
+        "error_rms": None if lengths is None else math.sqrt(np.add.reduce(lengths * lengths) / len(lengths)),
+        "error_angle_max": None if angles is None else float(np.maximum.reduce(angles)),
         "frame": one.worst,
         "tolerance": each.tolerance if limits and lengths is not None else None,
         "tolerance_angle": each.angle_tolerance if limits and angles is not None else None,

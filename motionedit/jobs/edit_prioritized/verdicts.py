@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,8 +30,8 @@ _SMOOTHED = "the smoothing left it there"
 class Measured:
     """A constraint and its errors: lengths (n,) in clip units, angles (n,) in degrees, from frame `first` on.
 
-    `excess` (n,) is the larger of both over their tolerances: above 1 the constraint is missed there. `places` (n, 3)
-    is where the effector is wanted in the world, clip units.
+    `excess` (n,) is the larger of both over their tolerances: above 1 the constraint is missed there. It is `largest`
+    at frame `worst`. `places` (n, 3) is where the effector is wanted in the world, clip units.
     """
 
     each: ClipConstraint
@@ -40,6 +39,8 @@ class Measured:
     lengths: FloatArray | None
     angles: FloatArray | None
     excess: FloatArray
+    largest: float
+    worst: int
     places: FloatArray | None
 
     @property
@@ -47,15 +48,10 @@ class Measured:
         """Its last frame."""
         return self.first + len(self.excess) - 1
 
-    @cached_property
-    def worst(self) -> int:
-        """The frame at which it is furthest off."""
-        return self.first + first_worst(self.excess)
-
-    @cached_property
+    @property
     def missed(self) -> bool:
         """Whether it is missed at any frame."""
-        return bool(self.excess.max() > 1.0)
+        return self.largest > 1.0
 
 
 @dataclass(frozen=True)
@@ -77,12 +73,14 @@ def measured(each: ClipConstraint, errors: ConstraintErrors, scale: float) -> Me
         if values is not None
     ]
     places = None if errors.places is None else errors.places / scale
-    return Measured(each, errors.first, lengths, angles, over[0] if len(over) == 1 else np.max(over, axis=0), places)
+    excess = over[0] if len(over) == 1 else np.max(over, axis=0)
+    worst, largest = errors.first + first_worst(excess), float(np.maximum.reduce(excess))
+    return Measured(each, errors.first, lengths, angles, excess, largest, worst, places)
 
 
 def first_worst(excess: FloatArray) -> int:
     """Return the first of the frames with the largest error over tolerance."""
-    return int(np.argmax(np.round(excess, _DIGITS)))
+    return int(excess.round(_DIGITS).argmax())
 
 
 def verdict(i: int, one: Measured, edit: PrioritizedEdit, settings: LayeredSettings, *, scale: float) -> Verdict:

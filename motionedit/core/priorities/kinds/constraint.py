@@ -97,13 +97,11 @@ class Targets:
 
     def positions_at(self, frames: IntArray) -> FloatArray:
         """Return the positions at frames of the clip, shape (N, 3)."""
-        return _at(self.all_positions, frames, self.first)
+        return _at(self.positions, frames, self.first, "positions")
 
     def rotations_at(self, frames: IntArray) -> FloatArray:
         """Return the rotations at frames of the clip, shape (N, 4)."""
-        if self.rotations is None:
-            raise ValueError("these targets have no rotations")
-        return _at(self.rotations, frames, self.first)
+        return _at(self.rotations, frames, self.first, "rotations")
 
     @property
     def all_lengths(self) -> FloatArray:
@@ -114,11 +112,13 @@ class Targets:
 
     def lengths_at(self, frames: IntArray) -> FloatArray:
         """Return the lengths at frames of the clip, shape (N,)."""
-        return _at(self.all_lengths, frames, self.first)
+        return _at(self.lengths, frames, self.first, "lengths")
 
 
-def _at(values: FloatArray, frames: IntArray, first: int) -> FloatArray:
+def _at(values: FloatArray | None, frames: IntArray, first: int, name: str) -> FloatArray:
     """Return values, those of frames from `first` on, at growing frames; those that follow each other are a view."""
+    if values is None:
+        raise ValueError(f"these targets have no {name}")
     start, count = int(frames[0]) - first, len(frames)
     if int(frames[-1]) - first == start + count - 1:
         return values[start : start + count]
@@ -295,6 +295,8 @@ class Constraint(ABC):
 
     def active(self, frames: int) -> tuple[int, int]:
         """Return the first and last frame at which the constraint is active."""
+        if not self.points:
+            return 0, frames - 1
         return active_interval(
             self.points, ease_in=self.ease_in, ease_out=self.ease_out, frames=frames, since=self.since
         )

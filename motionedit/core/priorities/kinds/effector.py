@@ -113,7 +113,10 @@ class EffectorConstraint(Constraint):
         if targets.rotations is not None:
             turn = self.measure.rotations(poses.rotations[:, self.effector.joint], poses)
             angles = rot.angle_between(turn, targets.rotations)
-        if targets.positions is not None:
+        if targets.positions is not None and self.measure.is_world:
+            lengths = rot.length(effector_positions(poses, self.effector) - targets.positions)
+            places = targets.positions
+        elif targets.positions is not None:
             place = self.measure.positions(effector_positions(poses, self.effector), poses)
             wanted = self.measure.aimed(place, targets.positions)
             lengths = rot.length(place - wanted)

@@ -50,6 +50,8 @@ class Position(EffectorConstraint):
 
 def placed(constraint: EffectorConstraint, scene: Scene) -> FloatArray:
     """Return the positions (n, 3) that an effector's points ask for, as they are measured."""
+    if not constraint.points:
+        return constraint.path(scene)
     return position_targets(
         constraint.path(scene),
         constraint.points,
