@@ -38,7 +38,8 @@ def calmed(found: Reached, smoothing: Passes) -> Solved:
     seen = seen_of(found.run, found.state.motion, steps=found.state.steps)
     layers = _Layers(found.run.asked, found.state, seen)
     calm = _steadied(_calmed(found, layers, smoothing) if seen.much.any() else layers, smoothing)
-    return replace(calm.state, poses=calm.seen.poses)
+    calm.state.poses = calm.seen.poses
+    return calm.state
 
 
 def _calmed(found: Reached, last: _Layers, smoothing: Passes) -> _Layers:
