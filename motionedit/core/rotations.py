@@ -104,8 +104,14 @@ def dot(a: FloatArray, b: FloatArray) -> FloatArray:
 
 def length(v: FloatArray) -> FloatArray:
     """Return the lengths of vectors, shape (...): a norm over a short last axis takes several times as long."""
-    found = _in_one_loop("length", v, v)
-    return np.sqrt(dot(v, v)) if found is None else found
+    kernel = compiled()
+    if kernel is None:
+        return np.sqrt(dot(v, v))
+    found = np.empty(v.shape[:-1])
+    if not kernel.length(v, v, found):
+        own = np.ascontiguousarray(v, np.float64)
+        kernel.length(own, own, found)
+    return found
 
 
 def _in_one_loop(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cached_property
 from operator import itemgetter
 from typing import TYPE_CHECKING
 
@@ -27,10 +26,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """One edit ready to be solved: what is asked, and the groups of its frames."""
+    """One edit ready to be solved: what is asked, and the groups of its frames.
+
+    `idle`, shape (F,), are the frames in none; `place` is the root's among the joints with translations; `level_count`
+    is how many priorities there are.
+    """
 
     asked: Asked
     groups: tuple[Group, ...]
+    idle: BoolArray
+    place: int
+    level_count: int
 
     def aimed_at(self, targets: tuple[Targets, ...]) -> Run:
         """Return the same edit with other targets over the same frames."""
@@ -43,20 +49,14 @@ class Run:
         """The input."""
         return self.asked.motion
 
-    @cached_property
-    def place(self) -> int:
-        """The root's place among the joints with translations."""
-        return int(np.searchsorted(self.motion.skeleton.translated, self.asked.body.travel))
-
-    @cached_property
-    def level_count(self) -> int:
-        """How many priorities there are."""
-        return len(self.asked.levels)
-
 
 def run_of(asked: Asked) -> Run:
     """Return an edit ready to be solved."""
-    return Run(asked, groups_of(asked))
+    groups, place = groups_of(asked), np.searchsorted(asked.motion.skeleton.translated, asked.body.travel)
+    idle = np.ones(len(asked.motion), dtype=np.bool_)
+    for group in groups:
+        idle[group.where] = False
+    return Run(asked, groups, idle, int(place), len(asked.levels))
 
 
 @dataclass(eq=False)
@@ -100,16 +100,14 @@ def solve_frames(
     in_place : bool
         `start` is solved itself, and not a copy, be it the reference, too: of each that is read before it is written.
     """
-    solved = _unsolved(run, start, in_place=in_place)
+    solved = _unsolved(run, start, known, in_place=in_place)
     travels = bool(run.motion.translations.shape[1])
     root = np.ascontiguousarray(reference.translations[:, run.place]) if pull_root and travels else None
     aim = Reference(reference.rotations, root)
     for group in run.groups:
-        done = None if known is None else known.done[group.where]
-        if done is not None and done.all():
-            continue
-        solved.converged[group.where] = False if done is None else done
-        _solve(run, solved, group, aim)
+        # To count is quicker than to ask whether all are.
+        if known is None or np.count_nonzero(known.done[group.where]) < len(group.frames):
+            _solve(run, solved, group, aim)
     if known is not None:
         solved.ranks[known.done] = known.ranks[known.done]
     return solved
@@ -141,7 +139,6 @@ def solve_in_order(run: Run) -> Solved:
             motion.rotations[first, joints] = motion.rotations[first - 1, joints]
             if part.problem.moves_root:
                 motion.translations[first, run.place] = motion.translations[first - 1, run.place]
-        solved.converged[span] = False
         _solve(run, solved, part, Reference(run.motion.rotations, None), in_order=True)
         before = first + len(span) - 1
     return solved
@@ -171,17 +168,17 @@ def known_again(run: Run, left: Known, start: Motion) -> Known:
     return Known(_same(start, run.motion) & left.done if left.done.any() else left.done, left.ranks)
 
 
-def _unsolved(run: Run, start: Motion, *, in_place: bool = False) -> Solved:
+def _unsolved(run: Run, start: Motion, known: Known | None = None, *, in_place: bool = False) -> Solved:
     motion = start
     if not in_place:
         motion = Motion(start.skeleton, start.rotations.copy(), start.translations.copy(), start.frame_time)
-    count = len(start)
+    shape = len(run.idle), run.level_count
     return Solved(
         motion,
-        np.zeros(count, dtype=np.int64),
-        np.ones(count, dtype=np.bool_),
-        np.zeros((count, run.level_count), dtype=np.int64),
-        np.zeros((count, run.level_count)),
+        np.zeros(shape[0], dtype=np.int64),
+        run.idle.copy() if known is None else run.idle | known.done,
+        np.zeros(shape, dtype=np.int64),
+        np.zeros(shape),
     )
 
 

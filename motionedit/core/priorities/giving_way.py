@@ -57,7 +57,8 @@ class Reached:
 def within_reach(run: Run, state: Solved, smoothing: Passes) -> Reached:
     """Return an edit with goals that can be reached, and its smooth solution, from the solution of what was asked."""
     asked, along = run.asked, {}
-    for place, level in enumerate(asked.levels):
+    is_met = np.maximum.reduce(state.left, axis=None, initial=0.0) < MISSED
+    for place, level in enumerate([] if is_met else asked.levels):
         # A frame in which anything is missed is not solved on with limits: how far those reach shows without it.
         unsure = state.left[:, place if not asked.body.limits else slice(place, None)]
         unsure = np.atleast_2d(unsure.T).max(axis=0) >= MISSED

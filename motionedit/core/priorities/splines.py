@@ -6,8 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.dataclass import dataclass
+
 if TYPE_CHECKING:
-    from motionedit.core.arrays import FloatArray
+    from motionedit.core.arrays import BoolArray, FloatArray, IntArray
 
 
 def kochanek_bartels(
@@ -19,9 +21,9 @@ def kochanek_bartels(
     bias: FloatArray,
     start_tangent: FloatArray,
     end_tangent: FloatArray,
-    at: FloatArray,
+    basis: Basis,
 ) -> FloatArray:
-    """Return the curve through the values at places `at`, shape (N, D), clamped at the ends.
+    """Return the curve through the values at the N places of its basis, shape (N, D), clamped at the ends.
 
     The tangents of [KB84], corrected for uneven knots (out x 2 h1 / (h0 + h1), in x 2 h0 / (h0 + h1)), so that with
     continuity 0 the curve is C1. The paper calls this class of splines C2; a cubic that has its tangents given at both
@@ -38,22 +40,49 @@ def kochanek_bartels(
         of the first and last knot are not used: their tangents are given.
     start_tangent, end_tangent : shape (D,)
         At the first and last knot, per unit of `knots`.
-    at : shape (N,)
+    basis : Basis
+        Of the knots, `basis_of`.
     """
-    at = np.minimum(np.maximum(at, knots[0]), knots[-1])
-    i = np.minimum(np.searchsorted(knots, at, side="right") - 1, len(knots) - 2)
     into, out = np.zeros_like(values), np.zeros_like(values)
     if len(knots) > 2:
         into[1:-1], out[1:-1] = _tangents(knots, values, np.stack((tension, continuity, bias)))
     out[0], into[-1] = start_tangent, end_tangent
+    return basis.curve(values, into, out)
+
+
+@dataclass(frozen=True, eq=False)
+class Basis:
+    """What of curves is the same for all values at the knots.
+
+    Of N places in them: the knot before, `i` (N,), how far between that and the next, `s` and its rest `u` (N, 1), how
+    much of the step between both (`step`) and of the tangents (`bend`), (N, 1); and which are at the last knot, (N,).
+    """
+
+    i: IntArray
+    s: FloatArray
+    u: FloatArray
+    step: FloatArray
+    bend: FloatArray
+    is_last: BoolArray
+
+    def curve(self, values: FloatArray, into: FloatArray, out: FloatArray) -> FloatArray:
+        """Return Hermite's cubic through values with the tangents into and out of each knot, shape (N, D)."""
+        i, after = self.i, self.i + 1
+        # From the first value on: equal values leave exactly that value.
+        step = values[after] - values[i]
+        curve: FloatArray = values[i] + self.step * step + self.bend * (self.u * out[i] - self.s * into[after])
+        curve[self.is_last] = values[-1]
+        return curve
+
+
+def basis_of(knots: FloatArray, at: FloatArray) -> Basis:
+    """Return the basis of curves with so many knots, shape (K,), at places (N,)."""
+    at = np.minimum(np.maximum(at, knots[0]), knots[-1])
+    i = np.minimum(knots.searchsorted(at, side="right") - 1, len(knots) - 2)
     h = (knots[i + 1] - knots[i])[:, None]
     s = (at - knots[i])[:, None] / h
     u = 1.0 - s
-    # Hermite's cubic, from the first value on: equal values leave exactly that value.
-    step = values[i + 1] - values[i]
-    curve: FloatArray = values[i] + s * s * (3.0 - 2.0 * s) * step + s * u * h * (u * out[i] - s * into[i + 1])
-    curve[at == knots[-1]] = values[-1]
-    return curve
+    return Basis(i, s, u, s * s * (3.0 - 2.0 * s), s * u * h, at == knots[-1])
 
 
 def _tangents(knots: FloatArray, values: FloatArray, shape: FloatArray) -> tuple[FloatArray, FloatArray]:

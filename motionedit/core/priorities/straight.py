@@ -31,9 +31,11 @@ def bent_where_missed(run: Run, state: Solved) -> Solved:
 
     A frame keeps what it had where that does not help.
     """
+    if np.maximum.reduce(state.left, axis=None, initial=0.0) < _MISSED:
+        return state
     body, recruited = run.asked.body, frozenset().union(*(each.joints for each in run.asked.recruits))
     bends = [bend for bend in body.bends if bend.joint in recruited and bend.straight.any()]
-    if not bends or state.left.max(initial=0.0) < _MISSED:
+    if not bends:
         return state
     missed = state.left.max(axis=1) > _MISSED
     rotations = state.motion.rotations.copy()

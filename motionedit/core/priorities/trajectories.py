@@ -6,19 +6,21 @@ where some point gives a position, the path itself is. Inside a hold the target 
 
 from __future__ import annotations
 
+from functools import lru_cache
 from itertools import pairwise
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from motionedit.core.priorities.splines import kochanek_bartels
+from motionedit.core.priorities.splines import Basis, basis_of, kochanek_bartels
 from motionedit.core.timeline import round_half_up
+from motionedit.core.trace import BLOCK_FRAMES
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from motionedit.core.arrays import FloatArray, IntArray
+    from motionedit.core.arrays import FloatArray
 
 # What the parameter u of a spline S(u) is: time, or the knots' index as in the paper.
 Curve = Literal["time", "index"]
@@ -156,8 +158,9 @@ def position_targets(
     base, slope = (np.zeros_like(path), np.zeros_like(path)) if absolute else (path, velocity)
     ramps = eased(points, ease_in=ease_in, ease_out=ease_out)
     for run in _runs(points, _Input(path, velocity, base, slope), (first, last), ramps):
-        between = np.arange(max(run[0].frame + 1, first), min(run[-1].frame, last + 1))
-        targets[between] = base[between] + _splined(run, at=between, curve=curve)
+        start, stop = max(run[0].frame + 1, first), min(run[-1].frame, last + 1)
+        if start < stop:
+            targets[start:stop] = base[start:stop] + _splined(run, at=(start, stop), curve=curve)
     # Last, and not through the spline: path + (place - path) may differ from place by a rounding.
     for point in points:
         targets[point.span] = _places(point, path)
@@ -240,18 +243,18 @@ def _runs(
     return [run for run in runs if len(run) > 1]
 
 
-def _splined(run: list[_Knot], *, at: IntArray, curve: Curve) -> FloatArray:
-    """Return the spline of a run's knots over the base, S(T(t)), at frames, shape (N, 3)."""
+def _splined(run: list[_Knot], *, at: tuple[int, int], curve: Curve) -> FloatArray:
+    """Return the spline of a run's knots over the base, S(T(t)), at frames from one up to another, shape (N, 3)."""
     values = np.array([knot.value for knot in run])
     tension, continuity, bias = np.array([knot.shape for knot in run]).T
     # A point that ends a run, having no ramp, goes at the input's velocity as far as its tension lets it.
     start, end = ((1.0 - tension[k]) * run[k].slope for k in (0, -1))
-    knots, u = np.array([knot.frame for knot in run], dtype=np.float64), at.astype(np.float64)
+    frames = tuple([knot.frame for knot in run])
     if curve == "index":
-        # T(t): time to knot index, straight between the knots; tangents are per index there.
-        start, end = start * (knots[1] - knots[0]), end * (knots[-1] - knots[-2])
-        index = np.arange(len(knots), dtype=np.float64)
-        knots, u = index, np.interp(u, knots, index)
+        # Tangents are per index there.
+        start, end = start * float(frames[1] - frames[0]), end * float(frames[-1] - frames[-2])
+    find = _basis_again if at[1] - at[0] <= BLOCK_FRAMES else _basis
+    knots, basis = find(frames, at, curve)
     return kochanek_bartels(
         knots,
         values,
@@ -260,5 +263,19 @@ def _splined(run: list[_Knot], *, at: IntArray, curve: Curve) -> FloatArray:
         bias=bias,
         start_tangent=start,
         end_tangent=end,
-        at=u,
+        basis=basis,
     )
+
+
+def _basis(frames: tuple[int, ...], at: tuple[int, int], curve: Curve) -> tuple[FloatArray, Basis]:
+    """Return the knots at frames, as the curve has them, and the basis of splines through them, S(T(t))."""
+    knots, u = np.array(frames, dtype=np.float64), np.arange(*at, dtype=np.float64)
+    if curve == "index":
+        # T(t): time to knot index, straight between the knots.
+        index = np.arange(len(knots), dtype=np.float64)
+        knots, u = index, np.interp(u, knots, index)
+    return knots, basis_of(knots, u)
+
+
+# The clips of a folder mostly share their points.
+_basis_again = lru_cache(maxsize=32)(_basis)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -51,6 +51,11 @@ class EffectorConstraint(Constraint):
     def base(self) -> int | None:
         """The joint in whose frame targets are."""
         return self.measure.base
+
+    @cached_property
+    def is_plain(self) -> bool:
+        """Whether its positions are its joint's in the world."""
+        return self.measure.is_world and not self.effector.is_off
 
     @property
     def own_joint_moves_it(self) -> bool:
@@ -108,15 +113,16 @@ class EffectorConstraint(Constraint):
 
     def left(self, targets: Targets, after: Sight) -> ConstraintErrors:
         """Return how far the effector is from its targets' positions, and its joint from their rotations."""
+        if targets.positions is not None and targets.rotations is None and self.is_plain:
+            # Most are: a joint's place in the world is its position.
+            place = after.poses.positions[targets.first : targets.last + 1, self.effector.joint]
+            return ConstraintErrors(targets.first, rot.length(place - targets.positions), None, targets.positions)
         poses = after.poses.at(targets.span)
         lengths = angles = places = None
         if targets.rotations is not None:
             turn = self.measure.rotations(poses.rotations[:, self.effector.joint], poses)
             angles = rot.angle_between(turn, targets.rotations)
-        if targets.positions is not None and self.measure.is_world:
-            lengths = rot.length(effector_positions(poses, self.effector) - targets.positions)
-            places = targets.positions
-        elif targets.positions is not None:
+        if targets.positions is not None:
             place = self.measure.positions(effector_positions(poses, self.effector), poses)
             wanted = self.measure.aimed(place, targets.positions)
             lengths = rot.length(place - wanted)

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as nps
 from scipy.interpolate import CubicHermiteSpline
 
-from motionedit.core.priorities.splines import kochanek_bartels
+from motionedit.core.priorities.splines import basis_of, kochanek_bartels
 
 KNOTS = np.array([0.0, 1.0, 4.0, 4.5, 9.0])
 VALUES = np.random.default_rng(7).normal(size=(5, 3))
@@ -18,7 +18,7 @@ def curve(at, knots=KNOTS, values=VALUES, *, start=START, end=END, tension=0.0, 
     shape = {"tension": tension, "continuity": continuity, "bias": bias}
     shape = {name: np.broadcast_to(np.asarray(value, float), knots.shape) for name, value in shape.items()}
     at = np.atleast_1d(np.asarray(at, float))
-    return kochanek_bartels(knots, values, **shape, start_tangent=start, end_tangent=end, at=at)
+    return kochanek_bartels(knots, values, **shape, start_tangent=start, end_tangent=end, basis=basis_of(knots, at))
 
 
 def speeds(knot, step=1e-6, **shape):
