@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from motionedit.core.body.bones import below
 from motionedit.dataclass import dataclass
@@ -28,9 +28,11 @@ class RecruitRule:
 EVERYTHING = RecruitRule()
 
 
-@dataclass(frozen=True)
-class Recruits:
-    """The joints that a constraint may turn, and whether it may move the root's translation."""
+class Recruits(NamedTuple):
+    """The joints that a constraint may turn, and whether it may move the root's translation.
+
+    A tuple: what depends on it is looked up by it dozens of times a clip.
+    """
 
     joints: frozenset[int]
     root: bool

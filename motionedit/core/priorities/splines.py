@@ -43,7 +43,7 @@ def kochanek_bartels(
     basis : Basis
         Of the knots, `basis_of`.
     """
-    into, out = np.zeros_like(values), np.zeros_like(values)
+    into, out = np.zeros(values.shape), np.zeros(values.shape)
     if len(knots) > 2:
         into[1:-1], out[1:-1] = _tangents(knots, values, np.stack((tension, continuity, bias)))
     out[0], into[-1] = start_tangent, end_tangent

@@ -51,7 +51,9 @@ def with_targets(
     theirs = before if follows.reference is None else seen_by(constraints, follows.reference, body)
     seen = [theirs if each.follow == "reference" else before for each in constraints]
     free = [i for i, each in enumerate(constraints) if not each.waits_for_others]
-    found = {i: constraints[i].targets(Scene(seen[i], settings.curve, dict, lambda: before)) for i in free}
+    # Most follow the same motion.
+    scenes = {id(each): Scene(each, settings.curve, dict, lambda: before) for each in (before, theirs)}
+    found = {i: constraints[i].targets(scenes[id(seen[i])]) for i in free}
 
     def others() -> Sight:
         """Return what is seen of the motion that those which do not wait ask for, solved once."""

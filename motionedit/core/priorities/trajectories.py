@@ -149,13 +149,13 @@ def position_targets(
     targets = path.copy()
     if not points:
         return first, targets
-    velocity = np.zeros_like(path)
-    for part in (slice(0, since), slice(since, len(path))):
-        if len(path[part]) > 1:
-            _write_slope(path[part], velocity[part])
+    velocity = np.zeros(path.shape)
+    for start, stop in ((0, since), (since, len(path))):
+        if stop - start > 1:
+            _write_slope(path[start:stop], velocity[start:stop])
     absolute = any(point.position is not None for point in points)
     # What is splined is the path where a point gives a position, else the displacement from it.
-    base, slope = (np.zeros_like(path), np.zeros_like(path)) if absolute else (path, velocity)
+    base, slope = (np.zeros(path.shape), np.zeros(path.shape)) if absolute else (path, velocity)
     ramps = eased(points, ease_in=ease_in, ease_out=ease_out)
     for run in _runs(points, _Input(path, velocity, base, slope), (first, last), ramps):
         start, stop = max(run[0].frame + 1, first), min(run[-1].frame, last + 1)
