@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from functools import cached_property, lru_cache
+from functools import cached_property
 from itertools import chain
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motionedit.core.arrays import frozen
 from motionedit.core.priorities.continuity import NO_DISPLACEMENT
 from motionedit.core.priorities.held_columns import held_columns
 from motionedit.core.priorities.kinds.constraint import Stage
-from motionedit.core.priorities.points import columns_of
+from motionedit.core.priorities.plans import frames_together, plan_of
 from motionedit.core.priorities.problem import Problem, WeightedTask, order_of_layers
 from motionedit.core.priorities.sight import sight_of
 from motionedit.core.priorities.solver import Prepared, prepare_problem
-from motionedit.core.trace import BLOCK_FRAMES
 from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
@@ -31,7 +29,6 @@ if TYPE_CHECKING:
     from motionedit.core.priorities.recruiting import Recruits
     from motionedit.core.priorities.settings import Body, LayeredSettings
     from motionedit.core.priorities.sight import Sight
-    from motionedit.core.skeleton import Skeleton
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,28 +161,8 @@ def groups_of(asked: Asked) -> tuple[Group, ...]:
             active[targets.span, i] += softness[targets.span] > 0.0
     if asked.body.first:
         active[: asked.body.first][_nothing_is_wanted(asked)] = 0
-    find = _together_again if len(active) <= BLOCK_FRAMES else _together
-    return tuple([_group(asked, members, frames) for members, frames in find(active.tobytes(), active.shape[1])])
-
-
-def _together(active: bytes, constraints: int) -> tuple[tuple[tuple[int, ...], IntArray], ...]:
-    """Return which constraints are active together anywhere, and the frames where they are so alike.
-
-    `active` are F rows of so many bytes, 0 where a constraint is not active.
-    """
-    rows = np.frombuffer(active, dtype=np.int8).reshape(-1, constraints)
-    together: dict[tuple[int, ...], list[IntArray]] = {}
-    for run in np.split(np.arange(len(rows)), np.flatnonzero((rows[1:] != rows[:-1]).any(axis=1)) + 1):
-        together.setdefault(tuple(rows[run[0]].tolist()), []).append(run)
-    return tuple(
-        (tuple(i for i, there in enumerate(key) if there), frozen(np.concatenate(together[key])))
-        for key in sorted(together)
-        if any(key)
-    )
-
-
-# The clips of a folder are mostly as long, and asked for the same.
-_together_again = lru_cache(maxsize=16)(_together)
+    together = frames_together(active)
+    return tuple([_group(asked, members, frames) for members, frames in together])
 
 
 def _nothing_is_wanted(asked: Asked) -> BoolArray:
@@ -225,51 +202,11 @@ def spans_of(frames: IntArray) -> list[IntArray]:
     return np.split(frames, np.flatnonzero(np.diff(frames) > 1) + 1)
 
 
-@dataclass(frozen=True, eq=False)
-class _Plan:
-    """What of a group is the same for all clips that share a skeleton and what is asked of it.
-
-    `layers` are the places of constraints among the group's members, `levels` (L,) as `Group` has them, `weights` those
-    of each layer's constraints within it.
-    """
-
-    columns: Columns
-    moves_root: bool
-    layers: tuple[tuple[int, ...], ...]
-    levels: IntArray
-    weights: tuple[tuple[float, ...], ...]
-
-
-@lru_cache(maxsize=32)
-def _plan(
-    skeleton: Skeleton,
-    root: int,
-    recruits: tuple[Recruits, ...],
-    shares: tuple[tuple[int, float, bool], ...],
-    priorities: tuple[int, ...],
-) -> _Plan:
-    """Return the plan of a group, of what its members may move and their `shares`: priority, weight, are they soft."""
-    joints = frozenset().union(*(each.joints for each in recruits))
-    # Of one priority, what gives way is a layer below what is met.
-    places = [(-priority, is_soft) for priority, _, is_soft in shares]
-    order, levels = sorted(set(places)), order_of_layers(priorities)
-    layers = tuple(tuple(k for k, place in enumerate(places) if place == layer) for layer in order)
-    # Weights say how a layer is shared: the step's damping and softness are in metres and radians of the largest.
-    largest = [max(shares[k][1] for k in layer) for layer in layers]
-    return _Plan(
-        columns_of(skeleton, joints, root),
-        any(each.root for each in recruits),
-        layers,
-        frozen(np.array([levels.index(-priority) for priority, _ in order], dtype=np.int64)),
-        tuple(tuple(shares[k][1] / most for k in layer) for layer, most in zip(layers, largest, strict=True)),
-    )
-
-
 def _group(asked: Asked, members: Sequence[int], frames: IntArray) -> Group:
     constraints, recruits, body = asked.constraints, asked.recruits, asked.body
     soft = {i: asked.softness_at(i, frames) for i in members if asked.softness[i] is not None}
     shares = [(constraints[i].priority, constraints[i].weight, i in soft and bool(soft[i][0] > 0.0)) for i in members]
-    plan = _plan(
+    plan = plan_of(
         asked.motion.skeleton,
         body.travel,
         tuple([recruits[i] for i in members]),

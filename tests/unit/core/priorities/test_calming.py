@@ -7,6 +7,7 @@ import pytest
 from person import BODY, edited, end, held_feet, path, swaying
 
 from motionedit.core import rotations as rot
+from motionedit.core.kinematics import forward
 from motionedit.core.priorities import calming
 from motionedit.core.priorities.calming import calmed
 from motionedit.core.priorities.edit import prepare
@@ -40,6 +41,13 @@ def stiff_run():
     """Return an edit that is feasible, of a body with stiffness."""
     body = replace(BODY, mobility=np.ones(len(MOTION.skeleton)))
     return prepare(MOTION, [*held_feet(FRAMES), reaching((0.0, 0.25, 0.3), ease=3)], body, SMOOTH)[0]
+
+
+def test_the_world_transforms_that_were_looked_at_are_the_calm_motions_own():
+    state = solve_in_passes(stiff_run(), Passes()).state
+    poses = forward(state.motion)
+    np.testing.assert_array_equal(state.poses.positions, poses.positions)
+    np.testing.assert_array_equal(state.poses.rotations, poses.rotations)
 
 
 def looking_so(monkeypatch, *found):

@@ -11,6 +11,7 @@ from motionedit.core.motion import Motion
 from motionedit.core.priorities.edit import edit_by_priorities, prepare
 from motionedit.core.priorities.groups import groups_of
 from motionedit.core.priorities.kinds import Position
+from motionedit.core.priorities.plans import frames_together
 from motionedit.core.priorities.settings import LayeredSettings
 
 FRAMES = 10
@@ -72,6 +73,37 @@ def test_frames_are_together_where_the_same_is_active_and_what_gives_way_is_a_la
     np.testing.assert_array_equal(split.problem.softness, [[0.0, 0.1], [0.0, 0.2]])
     np.testing.assert_array_equal(groups[4, 5].problem.softness, [[0.3], [0.4]])
     assert [len(layer) for layer in groups[0, 1].problem.layers] == [2]
+
+
+def test_frames_are_told_apart_by_who_is_active_and_not_by_what_stands_there_alone():
+    def together(rows):
+        return [(members, frames.tolist()) for members, frames in frames_together(np.array(rows, dtype=np.int8))]
+
+    assert together([[1, 0], [0, 1], [1, 0]]) == [((1,), [1]), ((0,), [0, 2])]
+    assert together([[1], [0], [0], [1], [1], [0]]) == [((0,), [0, 3, 4])]  # the same bytes
+    assert together([[1, 2], [1, 1]]) == [((0, 1), [1]), ((0, 1), [0])]
+    assert together(np.zeros((3, 0))) == []
+
+
+def test_what_is_asked_of_one_clip_makes_no_plan_for_another():
+    whole, part = held("LeftHand", FRAMES, priority=2), held("RightHand", 4)
+    for constraints in (
+        [whole, part],
+        [replace(whole, priority=0), part],
+        [replace(whole, weight=3.0, priority=1), part],
+    ):
+        asked = asked_of(*constraints)
+        group = next(group for group in groups_of(asked) if len(group.members) and len(group.frames) == 4)
+        order = sorted({each.priority for each in constraints}, reverse=True)
+        assert [[constraints[i].priority for i in layer] for layer in group.members] == [
+            [priority] * sum(each.priority == priority for each in constraints) for priority in order
+        ]
+        most = max(each.weight for each in constraints if each.priority == order[0])
+        assert [each.weight for each in group.problem.layers[0]] == [
+            constraints[i].weight / most for i in group.members[0]
+        ]
+        joints = frozenset().union(*(each.joints for each in asked.recruits))
+        assert frozenset(group.problem.columns.joints.tolist()) == joints
 
 
 def test_a_rest_pose_that_does_what_is_asked_is_not_solved_and_one_that_does_not_is():
