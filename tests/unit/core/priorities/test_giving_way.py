@@ -189,4 +189,4 @@ def test_a_soft_layer_makes_the_error_and_the_change_least_together(softness):
 
 def _turning_only(run):
     (mine,) = run.asked.recruits
-    return replace(mine, root=False)
+    return mine._replace(root=False)
