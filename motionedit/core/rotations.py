@@ -6,7 +6,7 @@ Euler order such as ``ZXY`` names BVH channels in their order: R = Rz Rx Ry.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -241,12 +241,35 @@ def slerp_frames(rotations: FloatArray, frames: IntArray, t: FloatArray) -> Floa
     kernel = compiled()
     if kernel is None:
         return slerp(rotations[frames], rotations[np.minimum(frames + 1, len(rotations) - 1)], t[:, None])
-    given = [np.ascontiguousarray(each, kind) for each, kind in ((rotations, np.float64), (frames, np.int64))]
-    joints, parts = rotations.shape[1], np.ascontiguousarray(t, np.float64)
-    cosines, turned = np.empty((len(t), joints)), np.empty((len(t), joints, 4))
-    kernel.arc_cosines(*given, joints, cosines)
-    kernel.slerp(*given, joints, parts, cosines, _arc_tangents(cosines, parts[:, None]), _STRAIGHT, turned)
+    ways = ways_of(kernel, rotations, frames, t)
+    turned = np.empty((*ways.parts.shape[1:], 4))
+    kernel.sampled_turns(ways.rotations, turned.shape[1], ways.frames, ways.t, ways.parts, turned)
     return turned
+
+
+class Ways(NamedTuple):
+    """Ways (N,) from frames of `rotations` (F, J, 4) to the ones after, as the compiled part takes them.
+
+    The last two of `parts`, shape (3, N, J), are the weights of both ends.
+    """
+
+    rotations: FloatArray
+    frames: IntArray
+    t: FloatArray
+    parts: FloatArray
+
+
+def ways_of(kernel: Any, rotations: FloatArray, frames: IntArray, t: FloatArray) -> Ways:  # noqa: ANN401  as `compiled`
+    """Return the ways to fractions t (N,) from frames (N,) to the ones after; arguments as of `slerp_frames`."""
+    rotations, t = np.ascontiguousarray(rotations, np.float64), np.ascontiguousarray(t, np.float64)
+    frames, joints = np.ascontiguousarray(frames, np.int64), rotations.shape[1]
+    cosines, parts = np.empty((len(t), joints)), np.empty((3, len(t), joints))
+    kernel.arc_cosines(rotations, joints, frames, t, cosines, parts[0])
+    np.arccos(parts[0], out=parts[0])
+    kernel.arc_parts(t, joints, parts)
+    np.tan(parts, out=parts)
+    kernel.arc_weights(t, joints, cosines, _STRAIGHT, parts)
+    return Ways(rotations, frames, t, parts)
 
 
 def _arc_tangents(cosine: FloatArray, t: FloatArray) -> FloatArray:

@@ -43,9 +43,14 @@ def resampled_bytes(clip: Written, motion: Motion) -> bytes:
     where a value is not finite.
     """
     values = joint_angles(motion, start=clip.text.values_between(0, 1)[0])
+    return other_rows_bytes(clip, values, frame_time=motion.frame_time)
+
+
+def other_rows_bytes(clip: Written, values: FloatArray, *, frame_time: float) -> bytes:
+    """Return a file of the clip's own header with other rows, channel values (F, C), as `resampled_bytes`."""
     check_finite(clip, values)
     data, header = clip.text.data, clip.text.header
-    head = head_bytes(clip, frames=len(values), frame_time=motion.frame_time)
+    head = head_bytes(clip, frames=len(values), frame_time=frame_time)
     ending = _line_ending(data, header.rows_start)
     return _with_rows(head + ending, values, decimals=decimals_of_edits(clip), ending=ending)
 
