@@ -187,6 +187,7 @@ def plan(
     depends: Sequence[Path] = (),
     writes: Sequence[tuple[str, Path]] = (),
     verdicts: Verdicts | None = None,
+    found: list[ClipTask] | None = None,
 ) -> list[ClipTask]:
     """Return one task per clip, every rule about files checked before any work.
 
@@ -202,6 +203,8 @@ def plan(
         What the run writes beside clips, pages and report: what it is, and its file.
     verdicts
         What is known of earlier outputs: with `update` those of which nothing is are made again.
+    found
+        What `find_clips` found of the clips, where that was asked already.
 
     Raises
     ------
@@ -210,7 +213,8 @@ def plan(
         `overwrite` is off; `update` or `shard` with standard input or output; `scheduler` with standard input;
         `preview` with standard output.
     """
-    found = find_clips(clips, leave_out=None if output == "-" else Path(output))
+    if found is None:
+        found = find_clips(clips, leave_out=None if output == "-" else Path(output))
     if options.update and (output == "-" or any(task.source is None for task in found)):
         raise UsageError("--update compares the times of files: it does not go with '-'")
     if options.scheduler is not None and any(task.source is None for task in found):

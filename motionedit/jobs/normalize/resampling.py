@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from motionedit.core.body.quality import find_defects
-from motionedit.core.bvh import other_rows_bytes
+from motionedit.core.bvh import other_rows_pieces
 from motionedit.core.timeline.alignment import aligned
 from motionedit.core.timeline.resample import resample
 from motionedit.core.timeline.sampled_rows import sampled_rows
@@ -53,8 +53,10 @@ class ResampleClip:
         rows = sampled_rows(clip.motion, at, self.alignment, travel=measure.travel, start=first)
         places = ", ".join(f"{name} {frame:.2f}" for name, frame in measure.events.items())
         line = f"frames {measure.first} to {measure.last} -> {self.timeline.frames}; {places}"
-        content = other_rows_bytes(clip, rows, frame_time=frame_time)
-        digest = hashlib.sha256(content).hexdigest()
+        content, sha256 = list(other_rows_pieces(clip, rows, frame_time=frame_time)), hashlib.sha256()
+        for piece in content:
+            sha256.update(piece)
+        digest = sha256.hexdigest()
         return Outcome(
             content,
             {**self._record(), "clip_sha256": digest},
