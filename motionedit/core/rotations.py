@@ -119,7 +119,7 @@ def _in_one_loop(
     if kernel is None:
         return None
     one, other = a.shape[:-1], b.shape[:-1]
-    leading = one if one == other else np.broadcast_shapes(one, other)
+    leading = one if one == other or not other else other if not one else np.broadcast_shapes(one, other)
     out = np.empty(planes + leading + width)
     work = getattr(kernel, what)
     if not work(a, b, out):

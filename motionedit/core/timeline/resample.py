@@ -29,5 +29,5 @@ def resample(motion: Motion, at: FloatArray, *, frame_time: float) -> Motion:
 
 def frames_before(motion: Motion, at: FloatArray) -> tuple[IntArray, FloatArray]:
     """Return the frames at or before `at` (N,), the last one never, and the parts of a frame from there."""
-    frames = np.clip(np.floor(at).astype(np.intp), 0, max(len(motion) - 2, 0))
+    frames = np.minimum(np.maximum(np.floor(at).astype(np.intp), 0), max(len(motion) - 2, 0))
     return frames, at - frames

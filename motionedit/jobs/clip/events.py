@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 
 _QUANTITIES: dict[str, Quantity] = {"height": "height", "speed": "speed", "distance": "distance"}
+# Parts of a path that name nothing.
+_NO_NAMES = frozenset(("", "."))
 # Of each rule and skeleton of a run: mostly one of each.
 _EFFECTORS: LastFew[Effector] = LastFew(16)
 
@@ -210,7 +212,8 @@ def _names(path: str) -> tuple[str, str]:
 
 
 def _posix(path: str) -> str:
-    return str(PurePosixPath(path.replace("\\", "/")))
+    path = path.replace("\\", "/")
+    return path if _NO_NAMES.isdisjoint(path.split("/")) else str(PurePosixPath(path))
 
 
 def _without_suffix(path: str) -> str:

@@ -74,6 +74,7 @@ class MeasureClip:
         """Return the clip's measure."""
         spec = self.loaded.model
         clip = read_task(task, lenient=self.lenient)
+        digest = clip.sha256  # while the processor has the bytes at hand
         given = resolve.body(spec.body, clip.motion.skeleton, resolve.Place(self.loaded, ("body",), task.label))
         facts = facts_of(clip, up=spec.up, keep_rest_pose=spec.rest_pose == "keep", given=given)
         facts.refuse_one_frame()
@@ -85,7 +86,7 @@ class MeasureClip:
         return ClipMeasure(
             label=task.label,
             clip=task.relative,
-            digest=clip.sha256,
+            digest=digest,
             frames=len(clip.motion),
             frame_time=clip.motion.frame_time,
             first=first,
