@@ -109,18 +109,24 @@ def length(v: FloatArray) -> FloatArray:
 
 
 def _in_one_loop(
-    what: str, a: FloatArray, b: FloatArray, *width: int, planes: tuple[int, ...] = ()
+    what: str,
+    a: FloatArray,
+    b: FloatArray,
+    *width: int,
+    planes: tuple[int, ...] = (),
+    out: FloatArray | None = None,
 ) -> FloatArray | None:
     """Return what the compiled part makes of rows of numbers, the same to the bit; None where numpy makes it.
 
-    `width` is how many numbers a row of the result has; none where it is one without an axis of its own.
+    `width` is how many numbers a row of the result has; none where it is one without an axis of its own. The result is
+    `out`, if it is given.
     """
     kernel = compiled()
     if kernel is None:
         return None
     one, other = a.shape[:-1], b.shape[:-1]
     leading = one if one == other or not other else other if not one else np.broadcast_shapes(one, other)
-    out = np.empty(planes + leading + width)
+    out = np.empty(planes + leading + width) if out is None else out
     work = getattr(kernel, what)
     if not work(a, b, out):
         work(np.ascontiguousarray(a, np.float64), np.ascontiguousarray(b, np.float64), out)
@@ -146,7 +152,9 @@ def exp(v: FloatArray) -> FloatArray:
     q = np.empty((*v.shape[:-1], 4))
     np.cos(half, out=q[..., 0])
     # sin(x)/x by np.sinc, whose argument is x/pi, is exact at 0.
-    np.multiply((0.5 * np.sinc(half / np.pi))[..., None], v, out=q[..., 1:])
+    scale = np.reshape(0.5 * np.sinc(half / np.pi), (*v.shape[:-1], 1))
+    if _in_one_loop("scaled_vectors", v, scale, out=q) is None:
+        np.multiply(scale, v, out=q[..., 1:])
     return q
 
 
@@ -161,6 +169,9 @@ def log(q: FloatArray) -> FloatArray:
         scale = np.where(small, 2.0 + s * s / 3.0, scale / np.where(small, 1.0, s))
     else:
         scale /= s
+    found = _in_one_loop("scaled_shorter", q, np.reshape(scale, (*q.shape[:-1], 1)), 3)
+    if found is not None:
+        return found
     v: FloatArray = np.where(w < 0.0, -scale, scale)[..., None] * q[..., 1:]
     return v
 

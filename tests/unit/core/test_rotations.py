@@ -185,6 +185,20 @@ def test_what_is_compiled_is_that_of_numpy_to_the_bit(work, leading, monkeypatch
         np.testing.assert_array_equal(lengths, rot.length(pair[0][..., :3]), strict=True)
 
 
+@pytest.mark.compiled
+@pytest.mark.parametrize("leading", [(), (0,), (7,), (5, 3)])
+@pytest.mark.parametrize("lies", LYING)
+def test_compiled_rotation_vectors_are_those_of_numpy_to_the_bit(leading, lies, monkeypatch):
+    rng = np.random.default_rng(6)
+    v = rng.normal(size=(*leading, 3)) * rng.choice([0.0, 1e-9, 1e-4, 1.0, 3.0], size=(*leading, 1))
+    q = rot.exp(v) * rng.choice([-1.0, 1.0], size=(*leading, 1))
+    v, q = (lies(each) if leading else each for each in (v, q))
+    compiled = rot.exp(v), rot.log(q)
+    monkeypatch.setenv("MOTIONEDIT_SOLVER", "numpy")
+    for found, work, given in zip(compiled, (rot.exp, rot.log), (v, q), strict=True):
+        np.testing.assert_array_equal(found, work(given.astype(np.float64)), strict=True)
+
+
 @pytest.mark.skipif(solver_name() == "numpy", reason="nothing compiled here")
 def test_rows_of_another_width_are_an_error_and_no_crash():
     with pytest.raises(ValueError, match="not rows of 4 numbers"):

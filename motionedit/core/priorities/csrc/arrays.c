@@ -96,6 +96,24 @@ void turn_all(
     }
 }
 
+void scale_vectors(
+    const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out, int64_t apart)
+{
+    (void)apart;
+    for (int64_t i = 0; i < count; i++, a += a_step, b += b_step, out += 4)
+        out[1] = *b * a[0], out[2] = *b * a[1], out[3] = *b * a[2];
+}
+
+void scale_shorter(
+    const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out, int64_t apart)
+{
+    (void)apart;
+    for (int64_t i = 0; i < count; i++, a += a_step, b += b_step, out += 3) {
+        const double scale = a[0] < 0.0 ? -*b : *b;
+        out[0] = scale * a[1], out[1] = scale * a[2], out[2] = scale * a[3];
+    }
+}
+
 void from_tangents(const double *tangents, const int *axes, int64_t count, double *out)
 {
     const int i = 1 + axes[0], j = 1 + axes[1], k = 1 + axes[2];

@@ -20,6 +20,8 @@ RowWork dot_all;         /* out = a . b, one number each */
 RowWork length_all;      /* out = |b|, one number each */
 RowWork half_cosine_all; /* out = |a . b|, of quaternions, one number each */
 RowWork turn_all;        /* of a^-1 b sine and cosine of half the angle, apart from each other */
+RowWork scale_vectors;   /* the vectors of quaternions out = b a, of vectors; their first numbers stay */
+RowWork scale_shorter; /* out = b times the vectors of quaternions a, with the sign that turns by half a turn at most */
 
 /* Quaternions of `count` products of three turns about the axes, 0 to 2 and different, each by the tangent of half its
    angle: first all of the first turns, then of the second, of the third. */

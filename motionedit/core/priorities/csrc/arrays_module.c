@@ -132,6 +132,8 @@ ON_ROWS(dot_rows, dot_all, 3, 3, 1, 1)
 ON_ROWS(length, length_all, 3, 3, 1, 1)
 ON_ROWS(half_cosine, half_cosine_all, 4, 4, 1, 1)
 ON_ROWS(turn, turn_all, 4, 4, 1, 2)
+ON_ROWS(scaled_vectors, scale_vectors, 3, 1, 4, 1)
+ON_ROWS(scaled_shorter, scale_shorter, 4, 1, 3, 1)
 
 static PyObject *turns_from_tangents(PyObject *self, PyObject *arguments)
 {
@@ -265,6 +267,10 @@ PyMethodDef array_methods[] = {
     {"length", length, METH_VARARGS, "Write the lengths of vectors, the second given; False as `multiply`."},
     {"half_cosine", half_cosine, METH_VARARGS, "Write |a . b| of quaternions; False as `multiply`."},
     {"turn", turn, METH_VARARGS, "Write sines and cosines of half the turns between rotations; False as `multiply`."},
+    {"scaled_vectors", scaled_vectors, METH_VARARGS,
+        "Write vectors, each times a number, into quaternions whose first numbers stay; False as `multiply`."},
+    {"scaled_shorter", scaled_shorter, METH_VARARGS,
+        "Write the vectors of quaternions, each times a number and of the shorter way; False as `multiply`."},
     {"from_tangents", turns_from_tangents, METH_VARARGS,
         "Write the quaternions of three turns, given the tangents of half their angles."},
     {"euler_sums", sums_of_euler, METH_VARARGS,
