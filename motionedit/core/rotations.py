@@ -125,7 +125,7 @@ def _in_one_loop(
     if kernel is None:
         return None
     one, other = a.shape[:-1], b.shape[:-1]
-    leading = one if one == other or not other else other if not one else np.broadcast_shapes(one, other)
+    leading = one if one == other or not other else np.broadcast_shapes(one, other) if one else other
     out = np.empty(planes + leading + width) if out is None else out
     work = getattr(kernel, what)
     if not work(a, b, out):
