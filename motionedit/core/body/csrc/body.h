@@ -49,15 +49,27 @@ typedef struct {
     const double *positions, *rotations;
 } Poses;
 
-/* The sums over frames from `first` on of the ways from joints to others, seen from third ones: n triples, (n, 3). */
-void sum_ways(const Poses *poses, int64_t first, const int64_t *triples, int64_t count, double *out);
+static inline const double *joint_place(const Poses *poses, int64_t frame, int64_t joint)
+{
+    return poses->positions + 3 * (frame * poses->joints + joint);
+}
+
+static inline const double *joint_turn(const Poses *poses, int64_t frame, int64_t joint)
+{
+    return poses->rotations + 4 * (frame * poses->joints + joint);
+}
+
+/* The mean directions, over frames from `first` on, from joints to others, seen from third ones: n triples, (n, 3); unit
+   vectors, (n, 3). */
+void find_directions(const Poses *poses, int64_t first, const int64_t *triples, int64_t count, double *out);
 
 /* Sum q q^T over frames from `first` on, of n joints' rotations: shape (n, 4, 4). */
 void sum_products(const Poses *poses, int64_t first, const int64_t *joints, int64_t count, double *out);
 
-/* How far n joints swing bones `along` (n, 3) from where centers (n, 4) have them, and twist about them, at most, from
-   frame `first` on: (n, 2), rad. */
-void widest_turns(const Poses *poses, int64_t first, const int64_t *joints, const double *centers, const double *along,
+/* The cones of n joints, of which the eigenvectors of sum q q^T are known, (n, 4, 4), and the bones `along` (n, 3): the
+   last vector, signed as the rotation at frame `first`, is a cone's center, and how far the joint swings its bone from
+   there, and twists about it, at most, from that frame on, its ranges: (n, 6), rad. */
+void find_cones(const Poses *poses, int64_t first, const int64_t *joints, const double *vectors, const double *along,
     int64_t count, double *out);
 
 /* Where points (n, 3) in the frames of n joints are in the world at each frame: shape (F, n, 3). */
@@ -68,11 +80,23 @@ void carry(const Poses *poses, const int64_t *joints, const double *points, int6
 void largest_steps(const double *before, const double *after, int64_t frames, int64_t joints, int64_t first,
     double *angles, int64_t *into);
 
-/* How n limbs bend, each a top, a joint, an end and the joint's parent, (n, 4): upper x lower of their unit bones has
-   the `sines` (F, n); what it is in the parent's frame is summed to the `axes` (n, 3) over frames from `first` on in
-   which the sine is above `bent`. Whether there are any is `shown` (n,). */
-void bent_sides(const Poses *poses, int64_t first, const int64_t *limbs, double bent, int64_t count, double *sines,
-    double *axes, uint8_t *shown);
+/* n limbs, each a top, a joint, an end and the joint's parent, (n, 4): bent above one sine, straight below the other. */
+typedef struct {
+    int64_t count;
+    const int64_t *joints;
+    double bent, straight;
+} Limbs;
+
+/* How they bend, as bends.Bend: in which frames they are `straight` (n, F), about which unit `axes` (n, 3), and their
+   unit bones, upper and lower, (n, 2, 3). And what the angle about the axis is found from at each frame: the `lower`
+   bone in the parent's frame, (F, n, 3), and with the upper one its sine about the axis and its cosine, (2, F, n). */
+typedef struct {
+    uint8_t *straight;
+    double *axes, *bones, *lower, *turns;
+} BendsFound;
+
+/* Find how limbs bend in the frames from `first` on; 0 where one of them is bent in none of them. */
+int find_bends(const Poses *poses, int64_t first, const Limbs *limbs, const BendsFound *found);
 
 /* Let those frames be the `same` (F,) that were, and whose numbers (F, width) are equal in both. */
 void same_frames(const double *one, const double *other, int64_t frames, int64_t width, uint8_t *same);
