@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import cached_property
-from itertools import chain
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -17,7 +16,7 @@ from motionedit.core.body.contacts import plants_of, sole_tracks
 from motionedit.core.body.rest_pose import rest_pose_frames
 from motionedit.core.body.steps import own_steps
 from motionedit.core.body.up import find_up
-from motionedit.core.feet.phases import LegPath, find_phases, leg_paths
+from motionedit.core.feet.phases import find_phases, leg_paths
 from motionedit.core.trace import BLOCK_FRAMES, frame_blocks
 from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError
@@ -123,12 +122,7 @@ class ClipFacts:
     def phases(self) -> tuple[Plant, ...]:
         """The plants cut to what a foot can be held for in one place, as `find_phases`."""
         anatomy, frame_time = self.anatomy, self.clip.motion.frame_time
-
-        def read(poses: WorldPoses) -> list[FloatArray]:
-            return [*chain.from_iterable(leg_paths(poses, anatomy))]
-
-        plants, arrays = self.plants, self.world.gathered(read)
-        legs = [LegPath(*arrays[i : i + 5]) for i in range(0, len(arrays), 5)]
+        plants, (legs,) = self.plants, self.world.gathered(lambda poses: [leg_paths(poses, anatomy)])
         return tuple(find_phases(self.tracks, legs, anatomy, plants, up=self.up, frame_time=frame_time))
 
     @cached_property

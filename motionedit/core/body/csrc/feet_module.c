@@ -102,39 +102,6 @@ static PyObject *foot_figures(PyObject *self, PyObject *arguments)
     return found;
 }
 
-static PyObject *settled(PyObject *self, PyObject *arguments)
-{
-    Held held = {.count = 0};
-    PyObject *given[4];
-    long long frames, plants, half;
-    double frame_time, faster, above;
-    int status = -2;
-    (void)self;
-    if (!PyArg_ParseTuple(arguments, "OOOOLLLddd", given, given + 1, given + 2, given + 3, &frames, &plants, &half,
-            &frame_time, &faster, &above))
-        return NULL;
-    const double *places = items_of(&held, given[0], 3 * frames, sizeof *places, 0, "places");
-    const double *up = places == NULL ? NULL : items_of(&held, given[1], 3, sizeof *up, 0, "up");
-    const int64_t *counts = up == NULL ? NULL : items_of(&held, given[2], plants, sizeof *counts, 0, "counts");
-    int64_t *spans = counts == NULL ? NULL : items_of(&held, given[3], 2 * plants, sizeof *spans, 1, "spans");
-    if (spans != NULL) {
-        int64_t sum = 0;
-        for (long long k = 0; k < plants && sum >= 0; k++)
-            sum = counts[k] < 1 || counts[k] > frames - sum ? -1 : sum + counts[k];
-        if (sum != frames || half < 1)
-            PyErr_SetString(PyExc_ValueError, "counts are not those of the places");
-        else {
-            status = find_settled(places, up, counts, plants, half, frame_time, faster, above, spans);
-            if (status < 0)
-                PyErr_NoMemory();
-        }
-    }
-    let_go(&held);
-    if (status < 0)
-        return NULL;
-    Py_RETURN_NONE;
-}
-
 /* An array of a foot's frames, or of its plants. */
 typedef struct {
     const char *name;
@@ -191,39 +158,9 @@ static PyObject *stance(PyObject *self, PyObject *arguments)
     Py_RETURN_NONE;
 }
 
-static PyObject *kept(PyObject *self, PyObject *arguments)
-{
-    enum { ANKLE, TOE_PLACE, TURN, TOE, HIP, REACH, PLANTS, COUNT };
-    static const Item items[COUNT] = {{"ankle", 8, 3}, {"toe place", 8, 3}, {"turn", 8, 4}, {"toe", 8, 3},
-        {"hip", 8, 3}, {"reach", 8, 1}, {"plants", 8, 3}};
-    Held held = {.count = 0};
-    PyObject *given[COUNT];
-    void *at[COUNT];
-    long long frames, plants, shortest, rounds;
-    double rounding;
-    int status = -2;
-    (void)self;
-    if (!PyArg_ParseTuple(arguments, "OOOOOOOLLLLd", given, given + 1, given + 2, given + 3, given + 4, given + 5,
-            given + 6, &frames, &plants, &shortest, &rounds, &rounding))
-        return NULL;
-    if (take_foot(&held, given, items, COUNT, PLANTS, PLANTS, frames, plants, at)) {
-        const FootTrack track = {frames, at[ANKLE], at[TOE_PLACE], at[TURN], at[TOE]};
-        const HipReach leg = {at[HIP], at[REACH], rounding};
-        status = keep_plants(&track, &leg, shortest, rounds, at[PLANTS], plants);
-        if (status < 0)
-            PyErr_NoMemory();
-    }
-    let_go(&held);
-    if (status < 0)
-        return NULL;
-    Py_RETURN_NONE;
-}
-
 PyMethodDef feet_methods[] = {
     {"stands", stands, METH_VARARGS, "Return the stretches in which points of feet stand."},
     {"foot_figures", foot_figures, METH_VARARGS, "Return how well feet stand, in seven figures."},
-    {"settled", settled, METH_VARARGS, "Write which frames of plants are the first and the last that have settled."},
     {"stance", stance, METH_VARARGS, "Write where a foot stands, from the plants of its heel and its toe."},
-    {"kept", kept, METH_VARARGS, "Cut plants of a foot to what its leg can hold in one place."},
     {NULL, NULL, 0, NULL},
 };
