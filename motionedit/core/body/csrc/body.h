@@ -5,6 +5,12 @@
 
 #include <stdint.h>
 
+/* World transforms of a motion: positions (F, J, 3) and rotations (F, J, 4). */
+typedef struct {
+    int64_t frames, joints;
+    const double *positions, *rotations;
+} Poses;
+
 /* By what a point is taken to stand: contacts.py says what each is. Times are in frames, lengths in metres. */
 typedef struct {
     int64_t half, low_while, longest_gap, shortest, top_while;
@@ -26,6 +32,10 @@ int64_t find_stands(const double *tracks, int64_t frames, int64_t points, const 
 /* The median of values, of which there are some; `room` is for as many. */
 double median(const double *values, int64_t count, double *room);
 
+/* The medians over frames of the ways from the middle of two joints to that of two others, which may be one: n times
+   four joints, (n, 4), to `out` (n, 3). -1 where memory ran out. */
+int find_median_ways(const Poses *poses, const int64_t *joints, int64_t count, double *out);
+
 /* How P points of feet go along tracks (F, P, 3), at `scale` metres a unit, from frame `first` on: `toes` (P,) says
    which count as toes. They stand at `stood` frames of n plants, one after the other, `counts` (n,) of each. */
 typedef struct {
@@ -42,12 +52,6 @@ typedef struct {
 } FootFigures;
 
 void measure_feet(const FootTracks *feet, FootFigures *figures);
-
-/* World transforms of a motion: positions (F, J, 3) and rotations (F, J, 4). */
-typedef struct {
-    int64_t frames, joints;
-    const double *positions, *rotations;
-} Poses;
 
 static inline const double *joint_place(const Poses *poses, int64_t frame, int64_t joint)
 {

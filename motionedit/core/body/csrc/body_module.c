@@ -230,6 +230,30 @@ static PyObject *bends(PyObject *self, PyObject *arguments)
     return shown;
 }
 
+static PyObject *median_ways(PyObject *self, PyObject *arguments)
+{
+    Held held = {.count = 0};
+    PyObject *positions, *joints_given, *results;
+    long long frames, joints, count;
+    Poses poses;
+    int status = -2;
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "OLLOLO", &positions, &frames, &joints, &joints_given, &count, &results))
+        return NULL;
+    if (positions == Py_None || frames < 1)
+        return PyErr_Format(PyExc_ValueError, "no positions, or no frames");
+    if (poses_of(&held, positions, Py_None, frames, joints, &poses)) {
+        const int64_t *which = joints_of(&held, joints_given, 4 * count, &poses);
+        double *out = which == NULL ? NULL : items_of(&held, results, 3 * count, sizeof *out, 1, "results");
+        if (out != NULL && (status = find_median_ways(&poses, which, count, out)) < 0)
+            PyErr_NoMemory();
+    }
+    let_go(&held);
+    if (status < 0)
+        return NULL;
+    Py_RETURN_NONE;
+}
+
 PyMethodDef body_methods[] = {
     {"directions", directions, METH_VARARGS, "Write mean directions between joints, seen from others."},
     {"products", products, METH_VARARGS, "Write sums of products of joints' rotations."},
@@ -237,6 +261,7 @@ PyMethodDef body_methods[] = {
     {"carried", carried, METH_VARARGS, "Write where points in joints' frames are at each frame."},
     {"steps", steps, METH_VARARGS, "Write the largest step of each joint, and the frames into which these lead."},
     {"bends", bends, METH_VARARGS, "Write how much limbs are bent at each frame, and about which axes."},
+    {"median_ways", median_ways, METH_VARARGS, "Write median ways between the middles of joints."},
     {"jerks", jerks, METH_VARARGS, "Write squared third differences; return the largest, its frame and joint."},
     {NULL, NULL, 0, NULL},
 };

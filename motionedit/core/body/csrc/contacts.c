@@ -74,42 +74,6 @@ static void rolling_minimum(double *padded, int64_t frames, int64_t width)
     }
 }
 
-/* The value that would be in a place if the values were in order: those before it are then no larger. */
-static double in_place(double *values, int64_t count, int64_t place)
-{
-    for (int64_t low = 0, high = count - 1; low < high;) {
-        const double middle = values[low + (high - low) / 2];
-        int64_t i = low - 1, j = high + 1;
-        for (;;) {
-            while (values[++i] < middle)
-                ;
-            while (values[--j] > middle)
-                ;
-            if (i >= j)
-                break;
-            const double other = values[i];
-            values[i] = values[j], values[j] = other;
-        }
-        if (place <= j)
-            high = j;
-        else
-            low = j + 1;
-    }
-    return values[place];
-}
-
-double median(const double *values, int64_t count, double *room)
-{
-    memcpy(room, values, sizeof *room * (size_t)count);
-    const double upper = in_place(room, count, count / 2);
-    if (count % 2)
-        return upper;
-    double lower = room[0];
-    for (int64_t i = 1; i < count / 2; i++)
-        lower = room[i] > lower ? room[i] : lower;
-    return (lower + upper) / 2.0;
-}
-
 /* Put runs together where fewer frames part them than a gap has and the point stays at its place; how many. */
 static int64_t close_gaps(Run *runs, int64_t count, const double *places, const StandRules *rules)
 {
