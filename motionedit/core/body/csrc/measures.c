@@ -62,22 +62,30 @@ static double twist_of(const Arc *arc, double sign)
     return fabs((twist < 0.0 ? twist + whole : twist) - PI);
 }
 
+/* Of the square of a cosine: more by far than its rounding, so that what is let off by it swings less. */
+#define SURELY 1e-12
+
 /* How far a joint swings a bone from its center and twists about it, at most: rad, to `widest` (2,). */
-static void find_widest(
-    const Poses *poses, int64_t first, int64_t joint, const double *center, const double *bone, double *widest)
+static void find_widest(const Poses *poses, int64_t first, int64_t joint, const double *center, const double *bone,
+    double *widest)
 {
     /* To both sides by themselves, as they are rounded. */
     Arc swing = {0.0, 1.0}, twists[2] = {{0.0, 1.0}, {0.0, 1.0}};
-    double inverse[4];
+    double inverse[4], least = 1.0;
     q_conjugate(center, inverse);
     for (int64_t f = first; f < poses->frames; f++) {
         double turn[4], turned_bone[3], across[3];
         q_multiply(inverse, joint_turn(poses, f, joint), turn);
+        const double sine = dot(turn + 1, bone);
+        lengthen(twists + ((sine < 0.0) != (turn[0] < 0.0)), fabs(sine), fabs(turn[0]));
+        /* The squared cosine of half the swing: what is left of it costs as much as all before. */
+        const double square = turn[0] * turn[0] + sine * sine;
+        if (square > least + SURELY)
+            continue;
+        least = square < least ? square : least;
         q_turn(turn, bone, turned_bone);
         cross(bone, turned_bone, across);
         lengthen(&swing, sqrt(dot(across, across)), dot(turned_bone, bone));
-        const double sine = dot(turn + 1, bone);
-        lengthen(twists + ((sine < 0.0) != (turn[0] < 0.0)), fabs(sine), fabs(turn[0]));
     }
     const double one = twist_of(twists, 1.0), other = twist_of(twists + 1, -1.0);
     widest[0] = atan2(swing.sine, swing.cosine), widest[1] = one > other ? one : other;
