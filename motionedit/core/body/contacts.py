@@ -131,6 +131,23 @@ def _frames_of(plants: Sequence[Plant]) -> PlantFrames:
     return PlantFrames(frozen(frames), frozen(np.repeat(points, counts)), frozen(places), frozen(counts))
 
 
+def spans_of(plants: Sequence[Plant]) -> NDArray[np.int64]:
+    """Return plants as the compiled part has them, shape (n, 3): point, first and last frame."""
+    if not isinstance(plants, tuple):
+        return _spans_of(plants)
+    key = Same(plants)
+    known = _SPANS.get(key)
+    return _SPANS.keep(key, _spans_of(plants)) if known is None else known
+
+
+_SPANS: LastFew[NDArray[np.int64]] = LastFew(2)
+
+
+def _spans_of(plants: Sequence[Plant]) -> NDArray[np.int64]:
+    rows = [(plant.point, plant.start, plant.stop) for plant in plants]
+    return frozen(np.array(rows, dtype=np.int64).reshape(-1, 3))
+
+
 @dataclass(frozen=True)
 class FootPlant:
     """A foot that stands from frame `start` to frame `stop`, both in, with the plants of its heel and its toe."""

@@ -36,22 +36,38 @@ double median(const double *values, int64_t count, double *room);
    four joints, (n, 4), to `out` (n, 3). -1 where memory ran out. */
 int find_median_ways(const Poses *poses, const int64_t *joints, int64_t count, double *out);
 
-/* How P points of feet go along tracks (F, P, 3), at `scale` metres a unit, from frame `first` on: `toes` (P,) says
-   which count as toes. They stand at `stood` frames of n plants, one after the other, `counts` (n,) of each. */
+/* A point of a foot that stands from one frame to another, both in. */
 typedef struct {
-    int64_t frames, points, first, plants, stood;
+    int64_t point, start, stop;
+} PlantFrames;
+
+/* How P points of feet go along tracks (F, P, 3), and which of them stand when: n plants. */
+typedef struct {
+    int64_t frames, points, plants;
     const double *tracks, *up;
-    const uint8_t *toes;
-    const int64_t *at, *point, *counts;
-    double scale, frame_time, near_floor, skates, slides, under;
+    const PlantFrames *stands;
 } FootTracks;
+
+/* By what feet are measured, measures.py says what each is: at `scale` metres a unit, from frame `first` on; `toes` (P,)
+   says which points count as toes. */
+typedef struct {
+    int64_t first;
+    const uint8_t *toes;
+    double scale, frame_time, near_floor, skates, slides, under;
+} FootRules;
 
 /* As measures.FootMeasures. */
 typedef struct {
     double skate_mean, skate_ratio, sliding_share, penetration_share, penetration_max, drift_max, floating_max;
 } FootFigures;
 
-void measure_feet(const FootTracks *feet, FootFigures *figures);
+void measure_feet(const FootTracks *feet, const FootRules *rules, FootFigures *figures);
+
+/* How far a planted point goes on the level from a frame to the next, at most. */
+double farthest_slide(const FootTracks *feet);
+
+/* How far a planted point is from where other tracks (F, P, 3) have it, at most. */
+double farthest_drift(const FootTracks *feet, const double *other);
 
 static inline const double *joint_place(const Poses *poses, int64_t frame, int64_t joint)
 {

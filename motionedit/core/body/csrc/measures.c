@@ -66,8 +66,8 @@ static double twist_of(const Arc *arc, double sign)
 #define SURELY 1e-12
 
 /* How far a joint swings a bone from its center and twists about it, at most: rad, to `widest` (2,). */
-static void find_widest(const Poses *poses, int64_t first, int64_t joint, const double *center, const double *bone,
-    double *widest)
+static void find_widest(
+    const Poses *poses, int64_t first, int64_t joint, const double *center, const double *bone, double *widest)
 {
     /* To both sides by themselves, as they are rounded. */
     Arc swing = {0.0, 1.0}, twists[2] = {{0.0, 1.0}, {0.0, 1.0}};

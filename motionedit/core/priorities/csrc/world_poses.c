@@ -8,9 +8,12 @@
 /* `n` numbers of the lanes' frames, which are so many numbers apart. */
 static inline void take(const double *from, int64_t apart, int n, V *to)
 {
-    for (int a = 0; a < n; a++)
+    for (int a = 0; a < n; a++) {
+        V numbers = all(0.0);
         for (int lane = 0; lane < LANES; lane++)
-            LANE(to[a], lane) = from[lane * apart + a];
+            LANE(numbers, lane) = from[lane * apart + a];
+        to[a] = numbers;
+    }
 }
 
 static inline void give(const V *from, int64_t apart, int n, double *to)
@@ -39,6 +42,7 @@ static inline void pose_frames(const int64_t *parents, const int64_t *places, co
 {
     const int64_t next = apart * joints;
     V p[3], q[4], own[3], turn[4];
+    memset(p, 0, sizeof p), memset(q, 0, sizeof q); /* a root has no parent, which compilers do not see */
     for (int64_t j = 0; j < joints; j++) {
         for (int a = 0; a < 3; a++)
             own[a] = all(offsets[3 * j + a]);
