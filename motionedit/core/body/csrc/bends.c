@@ -99,3 +99,17 @@ int find_bends(const Poses *poses, int64_t first, const Limbs *limbs, const Bend
     }
     return 1;
 }
+
+void find_bent_back(const Poses *poses, int64_t first, const int64_t *joints, const double *upper, const double *lower,
+    const double *axes, int64_t count, double *back)
+{
+    for (int64_t i = 0; i < count; i++, upper += 3, lower += 3, axes += 3) {
+        back[i] = 0.0;
+        for (int64_t f = first; f < poses->frames && back[i] == 0.0; f++) {
+            double bone[3], side[3];
+            q_turn(joint_turn(poses, f, joints[i]), lower, bone);
+            cross(upper, bone, side);
+            back[i] = !(dot(side, axes) >= 0.0);
+        }
+    }
+}

@@ -118,6 +118,11 @@ typedef struct {
 /* Find how limbs bend in the frames from `first` on; 0 where one of them is bent in none of them. */
 int find_bends(const Poses *poses, int64_t first, const Limbs *limbs, const BendsFound *found);
 
+/* Whether the joints of n limbs, whose bones are the same at all frames, `upper` (n, 3) in the frame of a joint's parent
+   and `lower` (n, 3) in its own, bend back about `axes` (n, 3) at any frame from `first` on: to `back` (n,). */
+void find_bent_back(const Poses *poses, int64_t first, const int64_t *joints, const double *upper, const double *lower,
+    const double *axes, int64_t count, double *back);
+
 /* Let those frames be the `same` (F,) that were, and whose numbers (F, width) are equal in both. */
 void same_frames(const double *one, const double *other, int64_t frames, int64_t width, uint8_t *same);
 

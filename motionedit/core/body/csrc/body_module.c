@@ -114,6 +114,12 @@ static void cones_work(
     find_cones(poses, first, joints, arrays[0], arrays[1], count, out);
 }
 
+static void back_work(
+    const Poses *poses, int64_t first, const int64_t *joints, const double **arrays, int64_t count, double *out)
+{
+    find_bent_back(poses, first, joints, arrays[0], arrays[1], arrays[2], count, out);
+}
+
 static void carry_work(
     const Poses *poses, int64_t first, const int64_t *joints, const double **arrays, int64_t count, double *out)
 {
@@ -137,6 +143,12 @@ static PyObject *cones(PyObject *self, PyObject *arguments)
 {
     (void)self;
     return on_joints(&(const OnJoints){cones_work, 1, {16, 3}, 6, 0, 0, 1}, arguments);
+}
+
+static PyObject *bent_back(PyObject *self, PyObject *arguments)
+{
+    (void)self;
+    return on_joints(&(const OnJoints){back_work, 1, {3, 3, 3}, 1, 0, 0, 1}, arguments);
 }
 
 static PyObject *carried(PyObject *self, PyObject *arguments)
@@ -258,6 +270,7 @@ PyMethodDef body_methods[] = {
     {"directions", directions, METH_VARARGS, "Write mean directions between joints, seen from others."},
     {"products", products, METH_VARARGS, "Write sums of products of joints' rotations."},
     {"cones", cones, METH_VARARGS, "Write the cones of joints about their means, which are eigenvectors."},
+    {"bent_back", bent_back, METH_VARARGS, "Write which limbs bend back at any frame: 1 or 0."},
     {"carried", carried, METH_VARARGS, "Write where points in joints' frames are at each frame."},
     {"steps", steps, METH_VARARGS, "Write the largest step of each joint, and the frames into which these lead."},
     {"bends", bends, METH_VARARGS, "Write how much limbs are bent at each frame, and about which axes."},
