@@ -164,10 +164,15 @@ def mean_directions(
     poses: WorldPoses, starts: IntArray, stops: IntArray, *, seen_from: IntArray, first: int
 ) -> FloatArray:
     """Return `mean_direction` of n pairs of joints, shape (n, 3)."""
-    triples = np.stack((starts, stops, seen_from), axis=1)
-    found = read_off("directions", poses.positions, poses.rotations, triples, shape=(len(triples), 3), first=first)
+    return directions_of(poses, np.stack((starts, stops, seen_from), axis=1), first=first)
+
+
+def directions_of(poses: WorldPoses, triples: IntArray, *, first: int) -> FloatArray:
+    """Return `mean_direction` of n triples of joints, start, stop and the one that they are seen from, shape (n, 3)."""
+    found = read_off("directions", poses.positions, poses.rotations, triples, shape=triples.shape, first=first)
     if found is not None:
         return found
+    starts, stops, seen_from = triples.T
     ways = poses.positions[first:, stops] - poses.positions[first:, starts]
     own = rot.unrotate(poses.rotations[first:, seen_from], ways).sum(axis=0)
     directions: FloatArray = own / np.maximum(np.linalg.norm(own, axis=1, keepdims=True), np.finfo(float).tiny)

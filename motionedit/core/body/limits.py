@@ -15,7 +15,7 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
-from motionedit.core.body.bends import mean_direction, mean_directions
+from motionedit.core.body.bends import directions_of, mean_direction
 from motionedit.core.body.in_one_loop import read_off
 from motionedit.core.compiled import compiled
 from motionedit.dataclass import dataclass
@@ -75,20 +75,20 @@ class Limit:
 
 def human_limits(motion: Motion, poses: WorldPoses, anatomy: Anatomy, *, travel: int, first: int) -> list[Limit]:
     """Return the limits of neck, spine, clavicles, shoulders, hips, wrists and ankles that were found."""
-    joints, tops, ends, halves = _wanted(motion.skeleton, anatomy, travel)
+    joints, bones, halves = _wanted(motion.skeleton, anatomy, travel)
     found = []
     # A few joints at a time: those of a long motion all at once would take several times its memory.
     together = len(joints) if compiled() else max(_BLOCK_POSES // len(motion), 1)
     for start in range(0, len(joints), max(together, 1)):
         some = slice(start, start + together)
-        along = mean_directions(poses, tops[some], ends[some], seen_from=joints[some], first=first)
+        along = directions_of(poses, bones[some], first=first)
         found += _limits(motion, joints[some], along, halves[some], first)
     return found
 
 
 @lru_cache(maxsize=8)
-def _wanted(skeleton: Skeleton, anatomy: Anatomy, travel: int) -> tuple[IntArray, IntArray, IntArray, FloatArray]:
-    """Return the n joints that have limits, from where to where their bones are, (n,) each, and half ranges, (n, 2)."""
+def _wanted(skeleton: Skeleton, anatomy: Anatomy, travel: int) -> tuple[IntArray, IntArray, FloatArray]:
+    """Return the n joints that have limits, (n,), their bones as `directions_of`, (n, 3), and half ranges, (n, 2)."""
     wanted: dict[int, tuple[int, int, float, float]] = {}
     for region, joints in _regions(skeleton, anatomy, travel):
         # Of a region that n joints share each may do more than its nth part: not all of them are always asked.
@@ -96,8 +96,9 @@ def _wanted(skeleton: Skeleton, anatomy: Anatomy, travel: int) -> tuple[IntArray
         half = math.radians(share * region.swing), math.radians(share * region.twist)
         wanted.update({joint: (top, end, *half) for joint, top, end in joints})
     rows = sorted((joint, *its) for joint, its in wanted.items())
-    ways = np.array([row[:3] for row in rows], dtype=np.int64).reshape(-1, 3).T.copy()
-    return (*frozen(ways), frozen(np.array([row[3:] for row in rows]).reshape(-1, 2)))
+    which = np.array([row[0] for row in rows], dtype=np.int64)
+    bones = np.array([(top, end, joint) for joint, top, end, *_ in rows], dtype=np.int64).reshape(-1, 3)
+    return frozen(which), frozen(bones), frozen(np.array([row[3:] for row in rows]).reshape(-1, 2))
 
 
 def given_limits(motion: Motion, poses: WorldPoses, given: Mapping[int, Range], *, first: int) -> list[Limit]:

@@ -62,7 +62,7 @@ static double twist_of(const Arc *arc, double sign)
     return fabs((twist < 0.0 ? twist + whole : twist) - PI);
 }
 
-/* Of the square of a cosine: more by far than its rounding, so that what is let off by it swings less. */
+/* Of a cosine or its square: more by far than its rounding, so that what is let off by it turns less. */
 #define SURELY 1e-12
 
 /* How far a joint swings a bone from its center and twists about it, at most: rad, to `widest` (2,). */
@@ -115,14 +115,37 @@ void carry(const Poses *poses, const int64_t *joints, const double *points, int6
 /* Beside the largest arc others may be larger by their rounding: only these are taken as angles. */
 #define NEARLY (1.0 - 1e-12)
 
+/* A joint's largest step so far. */
+typedef struct {
+    Arc arc;
+    double angle;
+    int64_t into;
+} Step;
+
+/* Take the step from one turn to the next, into a frame, where it is the largest. */
+static void take_step(const double *last, const double *next, int64_t frame, Step *largest)
+{
+    const double cosine = fabs(last[0] * next[0] + last[1] * next[1] + last[2] * next[2] + last[3] * next[3]);
+    double inverse[4], turn[4];
+    if (cosine > largest->arc.cosine + SURELY)
+        return;
+    q_conjugate(last, inverse);
+    q_multiply(inverse, next, turn);
+    const double sine = sqrt(dot(turn + 1, turn + 1));
+    if (sine * largest->arc.cosine > largest->arc.sine * cosine * NEARLY) {
+        const double angle = 2.0 * atan2(sine, cosine);
+        if (angle > largest->angle)
+            *largest = (Step){{sine, cosine}, angle, frame};
+    }
+}
+
 void largest_steps(const double *before, const double *after, int64_t frames, int64_t joints, int64_t first,
     double *angles, int64_t *into)
 {
     for (int64_t j = 0; j < joints; j++) {
-        Arc largest = {0.0, 1.0};
-        double last[4] = {0.0}, inverse[4], turn[4];
+        Step largest = {{0.0, 1.0}, 0.0, first + 1};
+        double last[4] = {0.0}, inverse[4];
         int differ = before == NULL;
-        angles[j] = 0.0, into[j] = first + 1;
         for (int64_t f = first; f < frames; f++) {
             const double *q = after + 4 * (f * joints + j);
             double change[4];
@@ -133,20 +156,11 @@ void largest_steps(const double *before, const double *after, int64_t frames, in
                 q_conjugate(own, inverse);
                 q_multiply(inverse, q, change);
             }
-            if (f > first) {
-                q_conjugate(last, inverse);
-                q_multiply(inverse, change, turn);
-                const double sine = sqrt(dot(turn + 1, turn + 1)), cosine = fabs(turn[0]);
-                if (sine * largest.cosine > largest.sine * cosine * NEARLY) {
-                    const double angle = 2.0 * atan2(sine, cosine);
-                    if (angle > angles[j])
-                        angles[j] = angle, into[j] = f, largest = (Arc){sine, cosine};
-                }
-            }
+            if (f > first)
+                take_step(last, change, f, &largest);
             memcpy(last, change, sizeof last);
         }
-        if (!differ)
-            angles[j] = 0.0, into[j] = first + 1;
+        angles[j] = differ ? largest.angle : 0.0, into[j] = differ ? largest.into : first + 1;
     }
 }
 
