@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.body.contacts import frames_of, spans_of
+from motionedit.core.body.plant_frames import frames_of, spans_of
 from motionedit.core.compiled import compiled
 from motionedit.dataclass import dataclass
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
-from motionedit.core.body.contacts import frames_of, spans_of
+from motionedit.core.body.plant_frames import frames_of, spans_of
 from motionedit.core.compiled import compiled
 from motionedit.core.units import STANDARD_LEG
 from motionedit.dataclass import dataclass
@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.body.anatomy import Anatomy
-    from motionedit.core.body.contacts import Plant, PlantFrames
+    from motionedit.core.body.contacts import Plant
+    from motionedit.core.body.plant_frames import PlantFrames
 
 _NEAR_FLOOR = 0.05  # m: a toe below it should not move (Kimodo)
 _SKATES = 0.2  # m/s: a toe near the floor that is faster skates (Kimodo)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from operator import itemgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from motionedit.core.arrays import frozen
+from motionedit.core.body.contacts import planted
 from motionedit.core.compiled import compiled
 from motionedit.core.feet.reach import REACH, ROUNDING, reach_of, released
 from motionedit.core.feet.settled import settled, settling_rules
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import FloatArray
     from motionedit.core.body.anatomy import Anatomy
-    from motionedit.core.body.contacts import Plant
+    from motionedit.core.body.contacts import Plant, Stand
     from motionedit.core.kinematics import WorldPoses
 
 _ROUNDS = 6
@@ -33,7 +35,7 @@ def find_phases(
     tracks: FloatArray,
     legs: FloatArray,
     anatomy: Anatomy,
-    plants: Sequence[Plant],
+    stands: Sequence[Stand],
     *,
     up: FloatArray,
     frame_time: float,
@@ -46,12 +48,13 @@ def find_phases(
         Those of `sole_tracks`.
     legs : shape (F, n, 14)
         Of the feet in the order of `feet_of`, by `leg_paths`.
+    stands : sequence of Stand
+        Those of `stands_of`.
     """
-    if plants and compiled() is not None:
-        found = _phases_at_once(tracks, legs, anatomy, plants, up=up, frame_time=frame_time)
-    else:
-        calm = settled(plants, tracks, anatomy, up=up, frame_time=frame_time)
-        found = kept(calm, legs, anatomy, frame_time)
+    if stands and compiled() is not None:
+        return planted(anatomy, _phases_at_once(tracks, legs, anatomy, stands, up=up, frame_time=frame_time))
+    calm = settled(planted(anatomy, stands), tracks, anatomy, up=up, frame_time=frame_time)
+    found = kept(calm, legs, anatomy, frame_time)
     return sorted(found, key=lambda plant: (plant.start, plant.foot, plant.point))
 
 
@@ -85,27 +88,32 @@ def _legs_of(anatomy: Anatomy) -> tuple[NDArray[np.int64], FloatArray]:
     return frozen(np.array(joints, np.int64).reshape(-1, 4)), frozen(np.array(toes, np.float64).reshape(-1, 3))
 
 
+@lru_cache(maxsize=8)
+def _parts_of(anatomy: Anatomy) -> tuple[tuple[int, bool], ...]:
+    """Return the foot of each of the sole points, by its place, and whether it is a toe."""
+    places = {"left": 0, "right": 1}
+    return tuple((places[point.foot], point.part == "toe") for point in anatomy.sole_points)
+
+
 def _phases_at_once(
     tracks: FloatArray,
     legs: FloatArray,
     anatomy: Anatomy,
-    plants: Sequence[Plant],
+    stands: Sequence[Stand],
     *,
     up: FloatArray,
     frame_time: float,
-) -> list[Plant]:
-    """Return the plants that are left as the compiled part finds them: `settled` and `kept` in one call."""
-    kernel, places = compiled(), {"left": 0, "right": 1}
-    rows = [(places[each.foot], each.part == "toe", each.point, each.start, each.stop) for each in plants]
-    spans = np.array(rows, dtype=np.int64).reshape(-1, 5)
-    sizes, metre = (*tracks.shape[:2], legs.shape[1], len(plants)), anatomy.leg_length / STANDARD_LEG
+) -> list[Stand]:
+    """Return what is left of stands as the compiled part finds it: `settled` and `kept` in one call."""
+    kernel, parts = compiled(), _parts_of(anatomy)
+    spans = np.array([(*parts[p], p, start, stop) for p, start, stop, _ in stands], dtype=np.int64)
+    sizes, metre = (*tracks.shape[:2], legs.shape[1], len(stands)), anatomy.leg_length / STANDARD_LEG
     rules = settling_rules(frame_time), (_shortest(frame_time), _ROUNDS, ROUNDING)
     kernel.phases(np.ascontiguousarray(tracks), up, legs, spans, *sizes, metre, frame_time, *rules)
-    return [
-        plant if start == plant.start and stop == plant.stop else replace(plant, start=start, stop=stop)
-        for plant, (start, stop) in zip(plants, spans[:, 3:].tolist(), strict=True)
-        if stop >= 0
-    ]
+    cut = zip(stands, spans[:, 3:].tolist(), strict=True)
+    return sorted(
+        [(p, start, stop, height) for (p, *_, height), (start, stop) in cut if stop >= 0], key=itemgetter(1, 0)
+    )
 
 
 def kept(plants: Sequence[Plant], legs: FloatArray, anatomy: Anatomy, frame_time: float) -> list[Plant]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.body.contacts import frames_of
+from motionedit.core.body.plant_frames import frames_of
 from motionedit.core.units import STANDARD_LEG
 from motionedit.dataclass import replace
 
@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.body.anatomy import Anatomy
-    from motionedit.core.body.contacts import Plant, PlantFrames
+    from motionedit.core.body.contacts import Plant
+    from motionedit.core.body.plant_frames import PlantFrames
 
 # m/s, at a leg of `STANDARD_LEG`: a point that has settled is no faster than the plant's own median, which is how fast
 # the whole foot slides, by more than this;

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.body.contacts import frames_of
+from motionedit.core.body.plant_frames import frames_of
 from motionedit.core.body.quality import foot_drift
 
 if TYPE_CHECKING:

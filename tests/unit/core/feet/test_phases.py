@@ -9,7 +9,7 @@ from human import skeleton_of, standing
 
 from motionedit.core import rotations as rot
 from motionedit.core.body.anatomy import find_anatomy
-from motionedit.core.body.contacts import Plant, sole_tracks
+from motionedit.core.body.contacts import sole_tracks
 from motionedit.core.compiled import compiled, solver_name
 from motionedit.core.feet.phases import find_phases, leg_paths
 from motionedit.core.kinematics import forward
@@ -28,14 +28,14 @@ def poses_of(rng, *, reach):
     return forward(replace(motion, rotations=rot.multiply(motion.rotations, rot.exp(turns))))
 
 
-def plants(rng, points):
-    """Return plants of each point that follow each other, in any order."""
+def stands(rng, points):
+    """Return stands of each of so many points that follow each other, in the order of their first frames."""
     found = []
-    for p, point in enumerate(points):
+    for p in range(points):
         edges = np.unique(rng.integers(0, FRAMES + 1, size=8)).tolist()
         some = [pair for pair in pairwise(edges) if rng.random() < 0.7]
-        found += [Plant(point.foot, point.part, point.joint, p, a, b - 1, 0.0) for a, b in some]
-    return [found[k] for k in rng.permutation(len(found))]
+        found += [(p, a, b - 1, 0.1 * a) for a, b in some]
+    return sorted(found, key=lambda stand: (stand[1], stand[0]))
 
 
 def legs_by_toes():
@@ -72,7 +72,7 @@ def test_compiled_phases_are_those_of_numpy(seed, monkeypatch):
     poses = poses_of(rng, reach=float(rng.choice([0.02, 0.3, 2.0])))
     tracks, legs = sole_tracks(poses, BODY), leg_paths(poses, BODY)
     legs[..., 13] *= rng.uniform(0.95, 1.02, size=legs.shape[:2])
-    asked = plants(rng, BODY.sole_points) if seed else []
+    asked = stands(rng, len(BODY.sole_points)) if seed else []
     how = {"up": UP, "frame_time": 1.0 / float(rng.choice([30, 60, 240]))}
     found = find_phases(tracks, legs, BODY, asked, **how)
     monkeypatch.setenv("MOTIONEDIT_SOLVER", "numpy")
