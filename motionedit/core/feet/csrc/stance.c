@@ -153,10 +153,15 @@ static void place_plants(
 static int64_t find_both(const int64_t *down, int64_t frames, Both *both)
 {
     int64_t count = 0;
+    int sorted = 1; /* as they are where plants are in the order of their frames */
     for (int64_t f = 0; f < frames; f++)
-        if (down[f] >= 0 && down[frames + f] >= 0)
-            both[count++] = (Both){down[f], down[frames + f], f};
-    qsort(both, (size_t)count, sizeof *both, in_order);
+        if (down[f] >= 0 && down[frames + f] >= 0) {
+            both[count] = (Both){down[f], down[frames + f], f};
+            sorted = sorted && (count == 0 || in_order(both + count - 1, both + count) < 0);
+            count++;
+        }
+    if (!sorted)
+        qsort(both, (size_t)count, sizeof *both, in_order);
     return count;
 }
 
