@@ -98,13 +98,13 @@ def _bends_at_once(poses: WorldPoses, limbs: NDArray[np.int64], first: int) -> t
     kernel, (frames, joints), count = compiled(), poses.rotations.shape[:2], len(limbs)
     if kernel is None:
         return None
-    straight, turns = np.empty((count, frames), dtype=np.bool_), np.empty((2, frames, count))
+    straight, turns = np.empty((count, frames), dtype=np.bool_), np.empty((2, count, frames))
     axes, bones, lower = np.empty((count, 3)), np.empty((count, 2, 3)), np.empty((frames, count, 3))
     given = np.ascontiguousarray(poses.positions), np.ascontiguousarray(poses.rotations), frames, joints, first
     if not kernel.bends(*given, limbs, count, _BENT, _STRAIGHT, straight, axes, bones, lower, turns):
         return None
     angles = np.arctan2(turns[0], turns[1] - _along(axes, bones[:, 0], lower))
-    return _rows_of(limbs[:, 1], axes, straight, bones, angles[first:])
+    return _rows_of(limbs[:, 1], axes, straight, bones, angles[:, first:])
 
 
 def _bends(poses: WorldPoses, limbs: NDArray[np.int64], towards: Sequence[_Towards], first: int) -> tuple[Bend, ...]:
@@ -119,15 +119,15 @@ def _bends(poses: WorldPoses, limbs: NDArray[np.int64], towards: Sequence[_Towar
     turns = turns_about(axes, uppers, rot.rotate(local, lowers))
     straight = np.ascontiguousarray((sines < _STRAIGHT).T)
     some = lengths > 0.0
-    return _rows_of(joints[some], axes[some], straight[some], bones.swapaxes(0, 1)[some], turns[first:, some])
+    # Limb by limb in memory: those of a limb are looked at together.
+    angles = np.ascontiguousarray(turns[first:, some].T)
+    return _rows_of(joints[some], axes[some], straight[some], bones.swapaxes(0, 1)[some], angles)
 
 
 def _rows_of(
     joints: IntArray, axes: FloatArray, straight: BoolArray, bones: FloatArray, angles: FloatArray
 ) -> tuple[Bend, ...]:
-    """Return n bends of arrays (n, ...), their bones (n, 2, 3), their angles frame by frame, (F, n)."""
-    # Limb by limb in memory: those of a limb are looked at together.
-    angles = np.ascontiguousarray(angles.T)
+    """Return n bends of arrays (n, ...), their bones (n, 2, 3)."""
     ranges = zip(angles.min(axis=1).tolist(), angles.max(axis=1).tolist(), strict=True)
     rows = map(frozen, (axes, straight, bones[:, 0], bones[:, 1], angles))
     return tuple(Bend(*each) for each in zip(joints.tolist(), *rows, ranges, strict=True))
@@ -140,15 +140,15 @@ def turns_about(axis: FloatArray, start: FloatArray, stop: FloatArray) -> FloatA
     (a . v)): what they have along the axis does not count.
     """
     sine = rot.dot(axis, rot.cross(start, stop))
-    along = (start @ axis) * (stop @ axis) if axis.ndim == 1 else _along(axis, start, stop)
+    along = (start @ axis) * (stop @ axis) if axis.ndim == 1 else _along(axis, start, stop).T
     angles: FloatArray = np.arctan2(sine, rot.dot(start, stop) - along)
     return angles
 
 
 def _along(axes: FloatArray, starts: FloatArray, stops: FloatArray) -> FloatArray:
-    """Return (a . u) (a . v) of n axes a and directions u, (n, 3), and others v, (F, n, 3), shape (F, n)."""
+    """Return (a . u) (a . v) of n axes a and directions u, (n, 3), and others v, (F, n, 3), shape (n, F)."""
     own, other = np.matmul(starts[:, None], axes[..., None]), np.matmul(stops.swapaxes(0, 1), axes[..., None])
-    along: FloatArray = own[:, 0, 0] * other[..., 0].T
+    along: FloatArray = own[:, 0] * other[..., 0]
     return along
 
 

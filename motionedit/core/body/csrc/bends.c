@@ -64,7 +64,7 @@ static double length_of(const double *v)
 static void write_turns(const Poses *poses, int64_t limb, const Limbs *limbs, const BendsFound *found)
 {
     const double *axis = found->axes + 3 * limb, *upper = found->bones + 6 * limb, *lower = upper + 3;
-    double *sines = found->turns + limb, *cosines = sines + poses->frames * limbs->count;
+    double *sines = found->turns + limb * poses->frames, *cosines = sines + limbs->count * poses->frames;
     for (int64_t f = 0; f < poses->frames; f++) {
         const LimbPose at = pose_of(poses, f, limbs->joints + 4 * limb);
         double inverse[4], local[4], side[3], *turned_lower = found->lower + 3 * (f * limbs->count + limb);
@@ -72,7 +72,7 @@ static void write_turns(const Poses *poses, int64_t limb, const Limbs *limbs, co
         q_multiply(inverse, at.turn, local);
         q_turn(local, lower, turned_lower);
         cross(upper, turned_lower, side);
-        sines[f * limbs->count] = dot(axis, side), cosines[f * limbs->count] = dot(upper, turned_lower);
+        sines[f] = dot(axis, side), cosines[f] = dot(upper, turned_lower);
     }
 }
 

@@ -109,7 +109,7 @@ typedef struct {
 
 /* How they bend, as bends.Bend: in which frames they are `straight` (n, F), about which unit `axes` (n, 3), and their
    unit bones, upper and lower, (n, 2, 3). And what the angle about the axis is found from at each frame: the `lower`
-   bone in the parent's frame, (F, n, 3), and with the upper one its sine about the axis and its cosine, (2, F, n). */
+   bone in the parent's frame, (F, n, 3), and with the upper one its sine about the axis and its cosine, (2, n, F). */
 typedef struct {
     uint8_t *straight;
     double *axes, *bones, *lower, *turns;
