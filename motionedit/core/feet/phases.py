@@ -111,9 +111,8 @@ def _phases_at_once(
     rules = settling_rules(frame_time), (_shortest(frame_time), _ROUNDS, ROUNDING)
     kernel.phases(np.ascontiguousarray(tracks), up, legs, spans, *sizes, metre, frame_time, *rules)
     cut = zip(stands, spans[:, 3:].tolist(), strict=True)
-    return sorted(
-        [(p, start, stop, height) for (p, *_, height), (start, stop) in cut if stop >= 0], key=itemgetter(1, 0)
-    )
+    left = [(p, start, stop, height) for (p, _, _, height), (start, stop) in cut if stop >= 0]
+    return sorted(left, key=itemgetter(1, 0))
 
 
 def kept(plants: Sequence[Plant], legs: FloatArray, anatomy: Anatomy, frame_time: float) -> list[Plant]:

@@ -28,7 +28,6 @@ static void add_unturned(const double *q, const double *v, double *sum)
     add(sum, own);
 }
 
-/* Divide by a length, or by what is no nothing. */
 static void shorten(double *v, double length)
 {
     for (int a = 0; a < 3; a++)
