@@ -167,11 +167,13 @@ def parse_clip(data: bytes, *, label: str, lenient: bool = False, source: Path |
 
     def take(first: int, values: FloatArray) -> None:
         block = slice(first, first + len(values))
-        if kept is not None:
+        if kept is not None and values.base is not kept:
             kept[block] = values
         write_poses(skeleton, values, rotations=rotations[block], translations=translations[block])
 
-    rows = read_rows(data, start, columns=columns, expected=header.frames, label=label, lenient=lenient, take=take)
+    rows = read_rows(
+        data, start, columns=columns, expected=header.frames, label=label, lenient=lenient, take=take, room=kept
+    )
     warnings = _row_count_warnings(data, header, rows, label=label, lenient=lenient)
     frames = len(rows.starts)
     _refuse_far_places(data, rows, translations[:frames], label=label)

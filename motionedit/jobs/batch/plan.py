@@ -157,11 +157,12 @@ def find_clips(clips: Sequence[Path], *, leave_out: Path | None = None) -> list[
 
 def folder_clips(folder: Path, *, leave_out: Path | None = None) -> list[ClipTask]:
     """Return the clips of one folder as `find_clips` does, none where it has none."""
-    found = sorted(_clips_below(folder, leave_out), key=lambda clip: clip.relative_to(folder).as_posix())
+    found = sorted((clip.relative_to(folder).as_posix(), clip) for clip in _clips_below(folder, leave_out))
     if leave_out is not None and not leave_out.is_dir():
         # An output of an earlier run inside the folder is no clip, unless it is all there is: then it is refused.
-        found = [clip for clip in found if identity(clip) != identity(leave_out)] or found
-    return [ClipTask(clip, str(clip), None, clip.relative_to(folder).as_posix()) for clip in found]
+        left_out = identity(leave_out)
+        found = [(name, clip) for name, clip in found if identity(clip) != left_out] or found
+    return [ClipTask(clip, str(clip), None, name) for name, clip in found]
 
 
 def shared_out(tasks: list[ClipTask], shard: Shard | None) -> list[ClipTask]:
