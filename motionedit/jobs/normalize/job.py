@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 # Bytes of files whose clips are held from the first phase to the second, when one process does both: their motions are
 # about as large.
-_MOST_KEPT = 1 << 27
+_MOST_KEPT = 1 << 26
 
 
 @dataclass(frozen=True)
