@@ -27,7 +27,7 @@ cones=tests/unit/core/priorities/test_cones.py::test_joints_stay_within_their_co
   tests/unit/core/priorities/test_compiled.py tests/unit/core/priorities/test_compiled_buffers.py \
   tests/unit/core/priorities/test_compiled_one_sided.py tests/unit/core/priorities/test_compiled_postures.py \
   tests/unit/core/priorities/test_cones.py tests/unit/core/priorities/test_few_channels.py \
-  tests/unit/core/test_rotations.py tests/unit/core/test_euler.py \
-  tests/unit/core/body/test_contacts.py tests/unit/core/body/test_in_one_loop.py \
-  tests/unit/core/feet/test_measures.py tests/unit/core/feet/test_stance.py \
-  tests/properties/test_compiled_text.py
+  tests/unit/core/test_rotations.py tests/unit/core/test_euler.py tests/unit/core/test_kinematics.py \
+  tests/unit/core/body/test_contacts.py tests/unit/core/body/test_in_one_loop.py tests/unit/core/body/test_ranges.py \
+  tests/unit/core/feet/test_measures.py tests/unit/core/feet/test_phases.py tests/unit/core/feet/test_stance.py \
+  tests/unit/core/timeline/test_sampled_rows.py tests/properties/test_compiled_text.py

@@ -33,7 +33,7 @@ GIMBAL_BAND = np.radians(1e-4)
 # Rotations that are solved together stay in the processor's cache.
 _TOGETHER = 1 << 13
 # Rotations whose angles are held at once, near the processor: all of a short clip, some joints of a long one.
-_HELD = 1 << 16
+HELD = 1 << 16
 
 
 def joint_angles(motion: Motion, *, start: FloatArray) -> FloatArray:
@@ -72,14 +72,14 @@ def joint_angles(motion: Motion, *, start: FloatArray) -> FloatArray:
 
 def joints_together(joints: IntArray, columns: IntArray, *, frames: int) -> Iterator[tuple[IntArray, IntArray]]:
     """Yield as many joints at a time, with their columns (G, A), as are held at once in a clip of so many frames."""
-    step = max(_HELD // frames, 1)
+    step = max(HELD // frames, 1)
     for first in range(0, len(joints), step):
         yield joints[first : first + step], columns[first : first + step]
 
 
 def room_together(frames: int, joints: int) -> FloatArray:
     """Return memory for the angles of as many of so many joints as `joints_together` yields at a time."""
-    return np.empty(3 * min(max(_HELD, frames), frames * joints))
+    return np.empty(3 * min(max(HELD, frames), frames * joints))
 
 
 def rows_of_tracks(tracks: FloatArray, columns: IntArray, *, factor: float, out: FloatArray) -> None:

@@ -6,7 +6,7 @@ Euler order such as ``ZXY`` names BVH channels in their order: R = Rz Rx Ry.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -115,18 +115,24 @@ def length(v: FloatArray) -> FloatArray:
 
 
 def _in_one_loop(
-    what: str, a: FloatArray, b: FloatArray, *width: int, planes: tuple[int, ...] = ()
+    what: str,
+    a: FloatArray,
+    b: FloatArray,
+    *width: int,
+    planes: tuple[int, ...] = (),
+    out: FloatArray | None = None,
 ) -> FloatArray | None:
     """Return what the compiled part makes of rows of numbers, the same to the bit; None where numpy makes it.
 
-    `width` is how many numbers a row of the result has; none where it is one without an axis of its own.
+    `width` is how many numbers a row of the result has; none where it is one without an axis of its own. The result is
+    `out`, if it is given.
     """
     kernel = compiled()
     if kernel is None:
         return None
     one, other = a.shape[:-1], b.shape[:-1]
     leading = one if one == other or not other else np.broadcast_shapes(one, other) if one else other
-    out = np.empty(planes + leading + width)
+    out = np.empty(planes + leading + width) if out is None else out
     work = getattr(kernel, what)
     if not work(a, b, out):
         work(np.ascontiguousarray(a, np.float64), np.ascontiguousarray(b, np.float64), out)
@@ -152,7 +158,9 @@ def exp(v: FloatArray) -> FloatArray:
     q = np.empty((*v.shape[:-1], 4))
     np.cos(half, out=q[..., 0])
     # sin(x)/x by np.sinc, whose argument is x/pi, is exact at 0.
-    np.multiply((0.5 * np.sinc(half / np.pi))[..., None], v, out=q[..., 1:])
+    scale = np.reshape(0.5 * np.sinc(half / np.pi), (*v.shape[:-1], 1))
+    if _in_one_loop("scaled_vectors", v, scale, out=q) is None:
+        np.multiply(scale, v, out=q[..., 1:])
     return q
 
 
@@ -167,6 +175,9 @@ def log(q: FloatArray) -> FloatArray:
         scale = np.where(small, 2.0 + s * s / 3.0, scale / np.where(small, 1.0, s))
     else:
         scale /= s
+    found = _in_one_loop("scaled_shorter", q, np.reshape(scale, (*q.shape[:-1], 1)), 3)
+    if found is not None:
+        return found
     v: FloatArray = np.where(w < 0.0, -scale, scale)[..., None] * q[..., 1:]
     return v
 
@@ -247,12 +258,35 @@ def slerp_frames(rotations: FloatArray, frames: IntArray, t: FloatArray) -> Floa
     kernel = compiled()
     if kernel is None:
         return slerp(rotations[frames], rotations[np.minimum(frames + 1, len(rotations) - 1)], t[:, None])
-    given = [np.ascontiguousarray(each, kind) for each, kind in ((rotations, np.float64), (frames, np.int64))]
-    joints, parts = rotations.shape[1], np.ascontiguousarray(t, np.float64)
-    cosines, turned = np.empty((len(t), joints)), np.empty((len(t), joints, 4))
-    kernel.arc_cosines(*given, joints, cosines)
-    kernel.slerp(*given, joints, parts, cosines, _arc_tangents(cosines, parts[:, None]), _STRAIGHT, turned)
+    ways = ways_of(kernel, rotations, frames, t)
+    turned = np.empty((*ways.parts.shape[1:], 4))
+    kernel.sampled_turns(ways.rotations, turned.shape[1], ways.frames, ways.t, ways.parts, turned)
     return turned
+
+
+class Ways(NamedTuple):
+    """Ways (N,) from frames of `rotations` (F, J, 4) to the ones after, as the compiled part takes them.
+
+    The last two of `parts`, shape (3, N, J), are the weights of both ends.
+    """
+
+    rotations: FloatArray
+    frames: IntArray
+    t: FloatArray
+    parts: FloatArray
+
+
+def ways_of(kernel: Any, rotations: FloatArray, frames: IntArray, t: FloatArray) -> Ways:  # noqa: ANN401  as `compiled`
+    """Return the ways to fractions t (N,) from frames (N,) to the ones after; arguments as of `slerp_frames`."""
+    rotations, t = np.ascontiguousarray(rotations, np.float64), np.ascontiguousarray(t, np.float64)
+    frames, joints = np.ascontiguousarray(frames, np.int64), rotations.shape[1]
+    cosines, parts = np.empty((len(t), joints)), np.empty((3, len(t), joints))
+    kernel.arc_cosines(rotations, joints, frames, t, cosines, parts[0])
+    np.arccos(parts[0], out=parts[0])
+    kernel.arc_parts(t, joints, parts)
+    np.tan(parts, out=parts)
+    kernel.arc_weights(t, joints, cosines, _STRAIGHT, parts)
+    return Ways(rotations, frames, t, parts)
 
 
 def _arc_tangents(cosine: FloatArray, t: FloatArray) -> FloatArray:

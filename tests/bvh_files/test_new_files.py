@@ -44,6 +44,17 @@ def test_a_resampled_file_keeps_the_header_and_line_ending(ending):
     assert same_motion(read(written).motion, every_other_frame(clip.motion))
 
 
+@pytest.mark.parametrize("ending", ["\n", "\r\n", "\r"])
+def test_a_clip_without_its_rows_is_enough_to_write_others(ending):
+    clip = read(TEXT.replace("\n", ending).encode())
+    motion = every_other_frame(clip.motion)
+    lean = clip.without_rows()
+    assert resampled_bytes(lean, motion) == resampled_bytes(clip, motion)
+    assert lean.text.data.startswith(clip.text.data[: clip.text.header.rows_start])
+    assert len(lean.text.data) <= clip.text.header.rows_start + 2
+    assert (lean.motion, len(lean.text.values)) == (clip.motion, 1)
+
+
 def test_an_unchanged_rate_keeps_the_text_of_the_frame_time():
     clip = read(with_text("0.04", "4.0E-2"))
     assert b"Frame Time: 4.0E-2\n" in resampled_bytes(clip, clip.motion)

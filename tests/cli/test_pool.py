@@ -31,6 +31,21 @@ def die_at_one(item):
     return item
 
 
+def die_at_sixty(item):
+    if item == 60:
+        os._exit(9)
+    return item
+
+
+def take_a_while(item):
+    time.sleep(2.0 * processes._SECONDS_A_MESSAGE)
+    return item
+
+
+def first_letter(item):
+    return item[0]
+
+
 def mark(folder, item):
     (folder / str(item)).touch()
     time.sleep(0.02)
@@ -97,6 +112,47 @@ def test_workers_are_only_a_few_items_ahead_of_the_results_that_are_taken(tmp_pa
 def test_every_item_after_a_death_is_a_value_too():
     found = list(results_in_order(die_at_one, [1] * 100, options=RunOptions(jobs=2)))
     assert [type(value) for value in found] == [WorkerDiedError] * 100
+
+
+def test_a_worker_that_dies_of_one_of_several_items_loses_that_one_alone():
+    found = list(results_in_order(die_at_sixty, range(200), options=RunOptions(jobs=2)))
+    assert [place for place, value in enumerate(found) if isinstance(value, WorkerDiedError)] == [60]
+    assert [value for value in found if not isinstance(value, WorkerDiedError)] == [i for i in range(200) if i != 60]
+
+
+@pytest.fixture
+def messages(monkeypatch):
+    """How many items each message had, and its bytes, in the order in which they were sent."""
+    sent = []
+
+    class Noted(processes.ForkingPickler):
+        @classmethod
+        def dumps(cls, items):
+            message = processes.multiprocessing.reduction.ForkingPickler.dumps(items)
+            sent.append((len(items), len(message)))
+            return message
+
+    monkeypatch.setattr(processes, "ForkingPickler", Noted)
+    return sent
+
+
+def test_short_items_go_several_at_a_time_to_their_workers(messages):
+    assert list(results_in_order(math.isqrt, [9] * 400, options=RunOptions(jobs=2))) == [3] * 400
+    assert max(count for count, _ in messages) == processes._AT_ONCE
+    assert sum(count for count, _ in messages) == 400
+    assert len(messages) < 200
+
+
+def test_items_that_take_long_go_one_by_one(messages):
+    assert list(results_in_order(take_a_while, range(20), options=RunOptions(jobs=2))) == list(range(20))
+    assert [count for count, _ in messages] == [1] * 20
+
+
+def test_messages_stay_small_enough_for_the_pipe(messages):
+    items = [letter * (processes._MOST_BYTES // 3) for letter in "abcdefghij" * 10]
+    assert list(results_in_order(first_letter, items, options=RunOptions(jobs=2))) == list("abcdefghij" * 10)
+    assert max(count for count, _ in messages) == 2
+    assert max(size for _, size in messages) <= processes._MOST_BYTES
 
 
 def test_closing_early_leaves_no_worker():

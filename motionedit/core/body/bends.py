@@ -16,10 +16,15 @@ from motionedit.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from numpy.typing import NDArray
+
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.body.anatomy import Anatomy, Leg
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.skeleton import Skeleton
+
+    # What returns the side, shape (F, 3), towards which a limb bends where no frame shows it.
+    _Towards = Callable[[], FloatArray | None]
 
 _BENT = float(np.sin(np.radians(2.0)))  # a limb bent by more than this shows to which side it bends
 _STRAIGHT = float(np.sin(np.radians(0.2)))  # a limb bent by less than this hardly shortens when it bends
@@ -42,6 +47,8 @@ class Bend:
         Unit directions of the limb's bones, in the frames of the joint's parent and of the joint.
     angles : shape (n,), rad
         How far it is bent about the axis, from `upper` to `lower`, after a rest pose; 0 is straight.
+    bent : (least, most), rad
+        The range of those.
     """
 
     joint: int
@@ -50,6 +57,7 @@ class Bend:
     upper: FloatArray
     lower: FloatArray
     angles: FloatArray
+    bent: tuple[float, float]
 
 
 def find_bends(skeleton: Skeleton, poses: WorldPoses, anatomy: Anatomy, *, first: int) -> tuple[Bend, ...]:
@@ -58,6 +66,10 @@ def find_bends(skeleton: Skeleton, poses: WorldPoses, anatomy: Anatomy, *, first
     A limb bends as it does in the clip's own frames from `first` on. One that is always straight bends as bodies do:
     knees to the toes' side, elbows so that the hands come to the front.
     """
+    limbs = _limbs_of(skeleton, anatomy)
+    found = _bends_at_once(poses, limbs, first)
+    if found is not None:
+        return found
     front = cache(lambda: _front(poses, anatomy))
 
     def backward(leg: Leg) -> FloatArray | None:
@@ -65,41 +77,60 @@ def find_bends(skeleton: Skeleton, poses: WorldPoses, anatomy: Anatomy, *, first
         forward = front() if toes is None else toes
         return None if forward is None else -forward
 
-    limbs: list[_Limb] = [((leg.thigh, leg.knee, leg.ankle), partial(backward, leg)) for leg in anatomy.legs or ()]
-    limbs += [((arm.shoulder, arm.elbow, arm.wrist), front) for arm in anatomy.arms or ()]
+    towards = [partial(backward, leg) for leg in anatomy.legs or ()] + [front for _ in anatomy.arms or ()]
     # A few limbs at a time: those of a long motion all at once would take several times its memory.
     together = max(_BLOCK_POSES // len(poses.positions), 1)
-    starts = range(0, len(limbs), together)
-    return tuple(bend for i in starts for bend in _bends(skeleton, poses, limbs[i : i + together], first))
+    blocks = (slice(i, i + together) for i in range(0, len(limbs), together))
+    return tuple(bend for some in blocks for bend in _bends(poses, limbs[some], towards[some], first))
 
 
-# A limb's joints, and what returns the side, shape (F, 3), towards which it bends where no frame shows it.
-_Limb = tuple[tuple[int, int, int], "Callable[[], FloatArray | None]"]
+@lru_cache(maxsize=8)
+def _limbs_of(skeleton: Skeleton, anatomy: Anatomy) -> NDArray[np.int64]:
+    """Return the joints of n limbs, shape (n, 4): the top, the one that bends, the end, and where the second hangs."""
+    limbs = [(leg.thigh, leg.knee, leg.ankle) for leg in anatomy.legs or ()]
+    limbs += [(arm.shoulder, arm.elbow, arm.wrist) for arm in anatomy.arms or ()]
+    parents = [(*limb, skeleton.parents[limb[1]]) for limb in limbs]
+    return frozen(np.array(parents, dtype=np.int64).reshape(-1, 4))
 
 
-def _bends(skeleton: Skeleton, poses: WorldPoses, limbs: Sequence[_Limb], first: int) -> tuple[Bend, ...]:
-    tops, joints, ends = which = _limbs_joints(tuple(limb for limb, _ in limbs))
-    parents = skeleton.parents[joints]
-    sines, axes = _shown(poses, which, parents, first) or _sides(poses, which, parents, limbs, first)
-    ways = (np.concatenate(each) for each in ((tops, joints), (joints, ends), (parents, joints)))
-    starts, stops, seen_from = ways
-    both = mean_directions(poses, starts, stops, seen_from=seen_from, first=first)
-    uppers, lowers = both[: len(joints)], both[len(joints) :]
+def _bends_at_once(poses: WorldPoses, limbs: NDArray[np.int64], first: int) -> tuple[Bend, ...] | None:
+    """Return what `_bends` does in one loop; None where there is no compiler, or a limb that is never bent."""
+    kernel, (frames, joints), count = compiled(), poses.rotations.shape[:2], len(limbs)
+    if kernel is None:
+        return None
+    straight, turns = np.empty((count, frames), dtype=np.bool_), np.empty((2, count, frames))
+    axes, bones, lower = np.empty((count, 3)), np.empty((count, 2, 3)), np.empty((frames, count, 3))
+    given = np.ascontiguousarray(poses.positions), np.ascontiguousarray(poses.rotations), frames, joints, first
+    if not kernel.bends(*given, limbs, count, _BENT, _STRAIGHT, straight, axes, bones, lower, turns):
+        return None
+    angles = np.arctan2(turns[0], turns[1] - _along(axes, bones[:, 0], lower))
+    return _rows_of(limbs[:, 1], axes, straight, bones, angles[:, first:])
+
+
+def _bends(poses: WorldPoses, limbs: NDArray[np.int64], towards: Sequence[_Towards], first: int) -> tuple[Bend, ...]:
+    tops, joints, ends, parents = limbs.T
+    sines, axes = _sides(poses, limbs, towards, first)
+    starts, stops, seen_from = (np.concatenate(each) for each in ((tops, joints), (joints, ends), (parents, joints)))
+    bones = mean_directions(poses, starts, stops, seen_from=seen_from, first=first).reshape(2, -1, 3)
+    uppers, lowers = bones
     local = rot.between(poses.rotations[:, parents], poses.rotations[:, joints])
     lengths = np.sqrt([axis.dot(axis) for axis in axes])
     axes /= np.where(lengths > 0.0, lengths, 1.0)[:, None]
     turns = turns_about(axes, uppers, rot.rotate(local, lowers))
+    straight = np.ascontiguousarray((sines < _STRAIGHT).T)
+    some = lengths > 0.0
     # Limb by limb in memory: those of a limb are looked at together.
-    straight, angles = np.ascontiguousarray((sines < _STRAIGHT).T), np.ascontiguousarray(turns[first:].T)
-    rows = map(frozen, (axes, straight, uppers, lowers, angles))
-    found = [Bend(*each) for each in zip(joints.tolist(), *rows, strict=True)]
-    return tuple(bend for bend, length in zip(found, lengths.tolist(), strict=True) if length > 0.0)
+    angles = np.ascontiguousarray(turns[first:, some].T)
+    return _rows_of(joints[some], axes[some], straight[some], bones.swapaxes(0, 1)[some], angles)
 
 
-@lru_cache(maxsize=32)
-def _limbs_joints(limbs: tuple[tuple[int, int, int], ...]) -> IntArray:
-    """Return the joints of n limbs, shape (3, n)."""
-    return frozen(np.array(limbs, dtype=np.intp).T)
+def _rows_of(
+    joints: IntArray, axes: FloatArray, straight: BoolArray, bones: FloatArray, angles: FloatArray
+) -> tuple[Bend, ...]:
+    """Return n bends of arrays (n, ...), their bones (n, 2, 3)."""
+    ranges = zip(angles.min(axis=1).tolist(), angles.max(axis=1).tolist(), strict=True)
+    rows = map(frozen, (axes, straight, bones[:, 0], bones[:, 1], angles))
+    return tuple(Bend(*each) for each in zip(joints.tolist(), *rows, ranges, strict=True))
 
 
 def turns_about(axis: FloatArray, start: FloatArray, stop: FloatArray) -> FloatArray:
@@ -109,13 +140,16 @@ def turns_about(axis: FloatArray, start: FloatArray, stop: FloatArray) -> FloatA
     (a . v)): what they have along the axis does not count.
     """
     sine = rot.dot(axis, rot.cross(start, stop))
-    if axis.ndim == 1:
-        along = (start @ axis) * (stop @ axis)
-    else:
-        own, other = np.matmul(start[:, None], axis[..., None]), np.matmul(stop.swapaxes(0, 1), axis[..., None])
-        along = own[:, 0, 0] * other[..., 0].T
+    along = (start @ axis) * (stop @ axis) if axis.ndim == 1 else _along(axis, start, stop).T
     angles: FloatArray = np.arctan2(sine, rot.dot(start, stop) - along)
     return angles
+
+
+def _along(axes: FloatArray, starts: FloatArray, stops: FloatArray) -> FloatArray:
+    """Return (a . u) (a . v) of n axes a and directions u, (n, 3), and others v, (F, n, 3), shape (n, F)."""
+    own, other = np.matmul(starts[:, None], axes[..., None]), np.matmul(stops.swapaxes(0, 1), axes[..., None])
+    along: FloatArray = own[:, 0] * other[..., 0]
+    return along
 
 
 def mean_direction(poses: WorldPoses, start: int, stop: int, *, seen_from: int, first: int) -> FloatArray:
@@ -130,36 +164,29 @@ def mean_directions(
     poses: WorldPoses, starts: IntArray, stops: IntArray, *, seen_from: IntArray, first: int
 ) -> FloatArray:
     """Return `mean_direction` of n pairs of joints, shape (n, 3)."""
-    triples = np.stack((starts, stops, seen_from), axis=1)
-    own = read_off("ways", poses.positions, poses.rotations, triples, shape=(len(triples), 3), first=first)
-    if own is None:
-        ways = poses.positions[first:, stops] - poses.positions[first:, starts]
-        own = rot.unrotate(poses.rotations[first:, seen_from], ways).sum(axis=0)
+    return directions_of(poses, np.stack((starts, stops, seen_from), axis=1), first=first)
+
+
+def directions_of(poses: WorldPoses, triples: IntArray, *, first: int) -> FloatArray:
+    """Return `mean_direction` of n triples of joints, start, stop and the one that they are seen from, shape (n, 3)."""
+    found = read_off("directions", poses.positions, poses.rotations, triples, shape=triples.shape, first=first)
+    if found is not None:
+        return found
+    starts, stops, seen_from = triples.T
+    ways = poses.positions[first:, stops] - poses.positions[first:, starts]
+    own = rot.unrotate(poses.rotations[first:, seen_from], ways).sum(axis=0)
     directions: FloatArray = own / np.maximum(np.linalg.norm(own, axis=1, keepdims=True), np.finfo(float).tiny)
     return directions
 
 
-def _shown(poses: WorldPoses, which: IntArray, parents: IntArray, first: int) -> tuple[FloatArray, FloatArray] | None:
-    """Return what `_sides` does in one loop; None where there is no compiler, or a limb that is never bent."""
-    kernel, (frames, joints) = compiled(), poses.rotations.shape[:2]
-    if kernel is None:
-        return None
-    count = which.shape[1]
-    sines, axes, shown = np.empty((frames, count)), np.empty((count, 3)), np.empty(count, dtype=np.bool_)
-    given = np.ascontiguousarray(poses.positions), np.ascontiguousarray(poses.rotations)
-    limbs = np.ascontiguousarray(np.vstack((which, parents)).T, dtype=np.int64)
-    kernel.bends(*given, frames, joints, first, limbs, count, _BENT, sines, axes, shown)
-    return (sines, axes) if shown.all() else None
-
-
 def _sides(
-    poses: WorldPoses, which: IntArray, parents: IntArray, limbs: Sequence[_Limb], first: int
+    poses: WorldPoses, limbs: NDArray[np.int64], towards: Sequence[_Towards], first: int
 ) -> tuple[FloatArray, FloatArray]:
     """Return the sines by which n limbs are bent, shape (F, n), and the sums of the axes about which they are, (n, 3).
 
     An axis is upper x lower of a limb's unit bones, in the frame of its joint's parent, which has the sine's length.
     """
-    tops, joints, ends = which
+    tops, joints, ends, parents = limbs.T
     upper, lower = (poses.positions[:, b] - poses.positions[:, a] for a, b in ((tops, joints), (joints, ends)))
     lengths = rot.length(upper) * rot.length(lower)
     sides: FloatArray = rot.cross(upper, lower) / np.maximum(lengths, np.finfo(float).tiny)[..., None]
@@ -167,9 +194,9 @@ def _sides(
     bent = sines > _BENT
     bent[:first] = False
     for i in np.flatnonzero(~bent.any(axis=0)).tolist():
-        towards = limbs[i][1]()
-        if towards is not None:
-            sides[:, i], bent[:, i] = rot.cross(lower[:, i], towards), True
+        side = towards[i]()
+        if side is not None:
+            sides[:, i], bent[:, i] = rot.cross(lower[:, i], side), True
     own = rot.unrotate(poses.rotations[:, parents], sides)
     own[~bent] = 0.0
     return sines, own.sum(axis=0)

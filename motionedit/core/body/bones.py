@@ -69,18 +69,35 @@ def find_bones(motion: Motion, travel: int) -> Bones:
     at the joint that carries the `travel` and at all that do not hang on it. The same skeleton is returned for the same
     bones, so that what is read off it is read once in a batch.
     """
-    skeleton = motion.skeleton
-    offsets, heaped = skeleton.offsets.copy(), False
-    moved = [p for p, j in enumerate(skeleton.translated.tolist()) if below(skeleton, travel)[j] and j != travel]
-    if moved:
-        joints, bones = skeleton.translated[moved], median(motion.translations[:, moved])
-        heaped = _are_shifts(offsets[joints], bones)
-        if not heaped:
-            offsets[joints] = bones
+    skeleton, moved = motion.skeleton, _moved(motion.skeleton, travel)
+    if not moved:
+        return _as_offset(skeleton, travel)
+    offsets = skeleton.offsets.copy()
+    joints, bones = skeleton.translated[[*moved]], median(motion.translations[:, [*moved]])
+    heaped = _are_shifts(offsets[joints], bones)
+    if not heaped:
+        offsets[joints] = bones
+    return Bones(_with_bones(skeleton, travel, offsets), heaped)
+
+
+@lru_cache(maxsize=8)
+def _moved(skeleton: Skeleton, travel: int) -> tuple[int, ...]:
+    """Return the places, among `Skeleton.translated`, of joints with position channels that hang on the `travel`'s."""
+    carried = below(skeleton, travel)
+    return tuple(p for p, j in enumerate(skeleton.translated.tolist()) if carried[j] and j != travel)
+
+
+@lru_cache(maxsize=8)
+def _as_offset(skeleton: Skeleton, travel: int) -> Bones:
+    """Return the bones of a skeleton whose OFFSETs no position channel replaces but the `travel`'s."""
+    return Bones(_with_bones(skeleton, travel, skeleton.offsets.copy()), heaped=False)
+
+
+def _with_bones(skeleton: Skeleton, travel: int, offsets: FloatArray) -> Skeleton:
+    """Return a skeleton with other offsets (J, 3), nothing where no bone is: one for all clips that have the same."""
     offsets[~below(skeleton, travel)] = 0.0
     offsets[travel] = 0.0
-    same = np.array_equal(offsets, skeleton.offsets)
-    return Bones(skeleton if same else _with_offsets(skeleton, offsets.tobytes()), heaped)
+    return skeleton if np.array_equal(offsets, skeleton.offsets) else _with_offsets(skeleton, offsets.tobytes())
 
 
 def _are_shifts(offsets: FloatArray, places: FloatArray) -> bool:

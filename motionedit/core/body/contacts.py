@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
-from typing import TYPE_CHECKING, Any
+from functools import lru_cache
+from operator import itemgetter
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.again import LastFew, Same
 from motionedit.core.arrays import frozen, median
 from motionedit.core.body.in_one_loop import carried
 from motionedit.core.compiled import compiled
@@ -16,11 +17,11 @@ from motionedit.core.units import STANDARD_LEG
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from numpy.typing import NDArray
 
-    from motionedit.core.arrays import BoolArray, FloatArray, IntArray
+    from motionedit.core.arrays import BoolArray, FloatArray
     from motionedit.core.body.anatomy import Anatomy, Part
     from motionedit.core.kinematics import WorldPoses
 
@@ -68,69 +69,6 @@ class Plant:
         return self.stop - self.start + 1
 
 
-@dataclass(frozen=True, eq=False)
-class PlantFrames:
-    """The frames of P plants one after the other, so that all are measured at once.
-
-    Attributes
-    ----------
-    frames, points : shape (N,)
-        Each frame, and the point that stands there: N is the sum over the plants.
-    starts, counts : shape (P,)
-        Where each plant's frames begin among them, and how many there are.
-    """
-
-    frames: IntArray
-    points: IntArray
-    starts: IntArray
-    counts: IntArray
-
-    def of(self, values: FloatArray) -> FloatArray:
-        """Return a plant's values frame by frame, shape (N, ...), of values by frame and point, (F, points, ...)."""
-        return values[self.frames, self.points]
-
-    def means(self, values: FloatArray) -> FloatArray:
-        """Return each plant's mean of values frame by frame, shape (P, ...) of (N, ...)."""
-        counts = self.counts.reshape(-1, *(1,) * (values.ndim - 1))
-        means: FloatArray = np.add.reduceat(values, self.starts, axis=0) / counts
-        return means
-
-    def medians(self, values: FloatArray) -> FloatArray:
-        """Return each plant's median of values frame by frame, shape (P,) of (N,)."""
-        ordered = values[np.lexsort((values, np.repeat(np.arange(len(self.counts)), self.counts)))]
-        above = ordered[self.starts + self.counts // 2]
-        medians: FloatArray = np.where(
-            self.counts % 2 == 1, above, (ordered[self.starts + np.maximum(self.counts // 2 - 1, 0)] + above) / 2.0
-        )
-        return medians
-
-    def spread(self, values: NDArray[Any]) -> NDArray[Any]:
-        """Return a value of each plant at all its frames, shape (N, ...) of (P, ...)."""
-        return np.repeat(values, self.counts, axis=0)
-
-
-def frames_of(plants: Sequence[Plant]) -> PlantFrames | None:
-    """Return the frames of plants; None of none."""
-    if not plants:
-        return None
-    if not isinstance(plants, tuple):
-        return _frames_of(plants)
-    # A clip's own are asked for again and again; to compare them one by one would take longer.
-    key = Same(plants)
-    return _FRAMES.get(key) or _FRAMES.keep(key, _frames_of(plants))
-
-
-_FRAMES: LastFew[PlantFrames] = LastFew(2)
-
-
-def _frames_of(plants: Sequence[Plant]) -> PlantFrames:
-    starts, stops, points = np.array([(plant.start, plant.stop, plant.point) for plant in plants], dtype=np.intp).T
-    counts = stops - starts + 1
-    places = np.cumsum(counts) - counts
-    frames = np.arange(int(counts.sum())) + np.repeat(starts - places, counts)
-    return PlantFrames(frozen(frames), frozen(np.repeat(points, counts)), frozen(places), frozen(counts))
-
-
 @dataclass(frozen=True)
 class FootPlant:
     """A foot that stands from frame `start` to frame `stop`, both in, with the plants of its heel and its toe."""
@@ -158,15 +96,29 @@ def plants_of(tracks: FloatArray, anatomy: Anatomy, *, up: FloatArray, first: in
     first : int
         The first frame after a rest pose; earlier ones are never planted.
     """
+    return planted(anatomy, stands_of(tracks, anatomy, up=up, first=first, frame_time=frame_time))
+
+
+def planted(anatomy: Anatomy, stands: Iterable[Stand]) -> list[Plant]:
+    """Return the plants that stands are, in their order."""
     points = anatomy.sole_points
-    if not points or len(tracks) - first < 2 or anatomy.leg_length <= 0.0:
+    return [
+        Plant(points[p].foot, points[p].part, points[p].joint, p, start, stop, height)
+        for p, start, stop, height in stands
+    ]
+
+
+# The point of a plant, its first and last frame, and its height: most are cut before they become a `Plant`.
+Stand = tuple[int, int, int, float]
+
+
+def stands_of(tracks: FloatArray, anatomy: Anatomy, *, up: FloatArray, first: int, frame_time: float) -> list[Stand]:
+    """Return the plants of `plants_of` as plain numbers."""
+    if not anatomy.sole_points or len(tracks) - first < 2 or anatomy.leg_length <= 0.0:
         return []
     found = _stands_of_all(np.ascontiguousarray(tracks[first:]), anatomy, up, frame_time)
-    plants = [
-        Plant(points[p].foot, points[p].part, points[p].joint, p, first + start, first + stop, height)
-        for p, start, stop, height in found
-    ]
-    return sorted(plants, key=lambda plant: (plant.start, plant.foot, plant.point))
+    # A foot's points stand together, left before right.
+    return sorted([(p, first + start, first + stop, height) for p, start, stop, height in found], key=itemgetter(1, 0))
 
 
 def sole_tracks(poses: WorldPoses, anatomy: Anatomy) -> FloatArray:
@@ -174,19 +126,12 @@ def sole_tracks(poses: WorldPoses, anatomy: Anatomy) -> FloatArray:
     return carried(poses, *anatomy.soles)
 
 
-def _stands_of_all(
-    tracks: FloatArray, anatomy: Anatomy, up: FloatArray, frame_time: float
-) -> list[tuple[int, int, int, float]]:
-    """Return (point, first, last, height) of the stretches in which points stand, frames of `tracks` (F, P, 3)."""
+def _stands_of_all(tracks: FloatArray, anatomy: Anatomy, up: FloatArray, frame_time: float) -> list[Stand]:
+    """Return the stands of all points, point by point, frames of `tracks` (F, P, 3)."""
     points, metre, kernel = anatomy.sole_points, anatomy.leg_length / STANDARD_LEG, compiled()
     if kernel is not None:
-        feet = np.array([point.foot == points[0].foot for point in points], dtype=np.int64)
-        rules = (
-            *(_half(frame_time), round(_LOW_WHILE / frame_time), round(_LONGEST_GAP / frame_time)),
-            *(_shortest(frame_time), _top_while(frame_time)),
-            *(frame_time, _ENTERS, _LEAVES, _LOW, _SAME_PLACE, _TOP, _HELD / frame_time),
-        )
-        stands = kernel.stands(tracks, feet, up, len(tracks), len(points), metre, rules)
+        feet, sizes = _feet_of_points(anatomy), tracks.shape[:2]
+        stands = kernel.stands(tracks, feet, up, *sizes, metre, _rules(frame_time))
         return [(p, start, stop, metre * height) for p, start, stop, height in stands]
     heights_of_all, found = tracks @ up / metre, []
     for p, point in enumerate(points):
@@ -198,6 +143,22 @@ def _stands_of_all(
             for start, stop in _stands(places, heights, lowest, frame_time)
         ]
     return found
+
+
+@lru_cache(maxsize=8)
+def _feet_of_points(anatomy: Anatomy) -> NDArray[np.int64]:
+    """Return to which foot each of the sole points belongs, shape (P,): 0 is the left one."""
+    return frozen(np.array([point.foot != "left" for point in anatomy.sole_points], dtype=np.int64))
+
+
+@lru_cache(maxsize=8)
+def _rules(frame_time: float) -> tuple[float, ...]:
+    """Return by what the compiled part tells that a point stands."""
+    return (
+        *(_half(frame_time), round(_LOW_WHILE / frame_time), round(_LONGEST_GAP / frame_time)),
+        *(_shortest(frame_time), _top_while(frame_time)),
+        *(frame_time, _ENTERS, _LEAVES, _LOW, _SAME_PLACE, _TOP, _HELD / frame_time),
+    )
 
 
 def _half(frame_time: float) -> int:

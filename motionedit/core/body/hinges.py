@@ -58,7 +58,7 @@ def find_hinges(bends: Sequence[Bend]) -> list[Hinge]:
     What an edit adds to one is about the axis that it bends about, however noisy the input is about the others; it
     keeps within [min(3 degrees, the input's least), max(150 degrees, the input's largest)] of its bend.
     """
-    return [Hinge(each.joint, each.axis, each.upper, each.lower, _limits(each.angles, _LEAST_BEND)) for each in bends]
+    return [Hinge(each.joint, each.axis, each.upper, each.lower, _limits(*each.bent, _LEAST_BEND)) for each in bends]
 
 
 def plain_hinge(joint: int, axis: FloatArray, limits: tuple[float, float], off_axis: float = 0.0) -> Hinge:
@@ -110,11 +110,11 @@ def hinge_of(motion: Motion, joint: int, *, first: int) -> Hinge | None:
     if angles.sum() < 0.0:
         axis, angles = -axis, -angles
     off_axis = float(np.clip(1.0 - energies[-1] / total, 0.0, 1.0))
-    return plain_hinge(joint, axis, _limits(angles, 0.0), off_axis)
+    return plain_hinge(joint, axis, _limits(float(angles.min()), float(angles.max()), 0.0), off_axis)
 
 
-def _limits(angles: FloatArray, least: float) -> tuple[float, float]:
-    return min(least, float(angles.min())), max(FULL_BEND, float(angles.max()))
+def _limits(least: float, most: float, least_bend: float) -> tuple[float, float]:
+    return min(least_bend, least), max(FULL_BEND, most)
 
 
 def _square_to(axis: FloatArray) -> FloatArray:

@@ -15,12 +15,13 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
-from motionedit.core.body.bends import mean_direction, mean_directions
+from motionedit.core.body.bends import directions_of, mean_direction
 from motionedit.core.body.in_one_loop import read_off
+from motionedit.core.compiled import compiled
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Mapping
 
     from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.body.anatomy import Anatomy
@@ -74,30 +75,30 @@ class Limit:
 
 def human_limits(motion: Motion, poses: WorldPoses, anatomy: Anatomy, *, travel: int, first: int) -> list[Limit]:
     """Return the limits of neck, spine, clavicles, shoulders, hips, wrists and ankles that were found."""
-    wanted, halves = _wanted(motion.skeleton, anatomy, travel)
-    found: dict[int, Limit] = {}
+    joints, bones, halves = _wanted(motion.skeleton, anatomy, travel)
+    found = []
     # A few joints at a time: those of a long motion all at once would take several times its memory.
-    together = max(_BLOCK_POSES // len(motion), 1)
-    for start in range(0, len(halves), together):
+    together = len(joints) if compiled() else max(_BLOCK_POSES // len(motion), 1)
+    for start in range(0, len(joints), max(together, 1)):
         some = slice(start, start + together)
-        joints, tops, ends = wanted[:, some]
-        along = mean_directions(poses, tops, ends, seen_from=joints, first=first)
-        found.update({each.joint: each for each in _limits(motion, joints, along, halves[some], first)})
-    return [found[joint] for joint in sorted(found)]
+        along = directions_of(poses, bones[some], first=first)
+        found += _limits(motion, joints[some], along, halves[some], first)
+    return found
 
 
 @lru_cache(maxsize=8)
-def _wanted(skeleton: Skeleton, anatomy: Anatomy, travel: int) -> tuple[IntArray, tuple[Range, ...]]:
-    """Return the n joints that have limits and where their bones are, shape (3, n), with their half ranges."""
-    wanted: list[_Joint] = []
-    halves: list[Range] = []
+def _wanted(skeleton: Skeleton, anatomy: Anatomy, travel: int) -> tuple[IntArray, IntArray, FloatArray]:
+    """Return the n joints that have limits, (n,), their bones as `directions_of`, (n, 3), and half ranges, (n, 2)."""
+    wanted: dict[int, tuple[int, int, float, float]] = {}
     for region, joints in _regions(skeleton, anatomy, travel):
         # Of a region that n joints share each may do more than its nth part: not all of them are always asked.
         share = 1.0 / np.sqrt(len(joints))
-        half = Range(share * region.swing, share * region.twist)
-        wanted += joints
-        halves += [half] * len(joints)
-    return frozen(np.array(wanted, dtype=np.intp).reshape(-1, 3).T), tuple(halves)
+        half = math.radians(share * region.swing), math.radians(share * region.twist)
+        wanted.update({joint: (top, end, *half) for joint, top, end in joints})
+    rows = sorted((joint, *its) for joint, its in wanted.items())
+    which = np.array([row[0] for row in rows], dtype=np.int64)
+    bones = np.array([(top, end, joint) for joint, top, end, *_ in rows], dtype=np.int64).reshape(-1, 3)
+    return frozen(which), frozen(bones), frozen(np.array([row[3:] for row in rows]).reshape(-1, 2))
 
 
 def given_limits(motion: Motion, poses: WorldPoses, given: Mapping[int, Range], *, first: int) -> list[Limit]:
@@ -115,19 +116,16 @@ def given_limits(motion: Motion, poses: WorldPoses, given: Mapping[int, Range], 
 
 def limit_of(motion: Motion, joint: int, along: FloatArray, half: Range, *, first: int) -> Limit:
     """Return a joint's limit about its mean in a clip, not tighter than what the clip does after frame `first`."""
-    return _limits(motion, np.array([joint]), along[None], [half], first)[0]
+    halves = np.radians([[half.swing, half.twist]])
+    return _limits(motion, np.array([joint]), along[None], halves, first)[0]
 
 
-def _limits(motion: Motion, joints: IntArray, along: FloatArray, halves: Sequence[Range], first: int) -> list[Limit]:
-    """Return the limits of n joints whose bones are `along`, shape (n, 3)."""
-    centers, along = frozen(_means(motion, joints, first)), frozen(along)
-    widest = _widest(motion, joints, centers, along, first).tolist()
-    return [
-        Limit(joint, center, bone, max(math.radians(half.swing), swing), max(math.radians(half.twist), twist))
-        for joint, center, bone, half, (swing, twist) in zip(
-            joints.tolist(), centers, along, halves, widest, strict=True
-        )
-    ]
+def _limits(motion: Motion, joints: IntArray, along: FloatArray, halves: FloatArray, first: int) -> list[Limit]:
+    """Return the limits of n joints whose bones are `along`, (n, 3), no tighter than half ranges (n, 2), rad."""
+    centers, widest = _cones(motion, joints, along, first)
+    ranges = np.maximum(halves, widest).tolist()
+    rows = zip(joints.tolist(), frozen(centers), frozen(along), ranges, strict=True)
+    return [Limit(joint, center, bone, *half) for joint, center, bone, half in rows]
 
 
 def swing_and_twist(q: FloatArray, along: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -143,26 +141,24 @@ def swing_and_twist(q: FloatArray, along: FloatArray) -> tuple[FloatArray, Float
     return swing, twist
 
 
-def _widest(motion: Motion, joints: IntArray, centers: FloatArray, along: FloatArray, first: int) -> FloatArray:
-    """Return how far n joints swing bones (n, 3) from centers (n, 4), and twist about them, at most, shape (n, 2)."""
-    shape = (len(joints), 2)
-    widest = read_off("widest", None, motion.rotations, joints, centers, along, shape=shape, first=first)
-    if widest is None:
-        swing, twist = swing_and_twist(rot.between(centers, motion.rotations[first:, joints]), along)
-        widest = np.stack((swing.max(axis=0), np.abs(twist).max(axis=0)), axis=1)
-    return widest
+def _cones(motion: Motion, joints: IntArray, along: FloatArray, first: int) -> tuple[FloatArray, FloatArray]:
+    """Return the means of n joints' rotations, (n, 4), and how far these swing and twist bones (n, 3) there, (n, 2).
 
-
-def _means(motion: Motion, joints: IntArray, first: int) -> FloatArray:
-    """Return the means of n joints' rotations, (n, 4): first eigenvectors of sum q q^T, signed as the first frame's."""
-    products = read_off("products", None, motion.rotations, joints, shape=(len(joints), 4, 4), first=first)
+    A mean is the first eigenvector of sum q q^T, signed as the first frame's.
+    """
+    q, shape = motion.rotations, (len(joints), 4, 4)
+    products = read_off("products", None, q, joints, shape=shape, first=first)
     if products is None:
-        q = motion.rotations[first:, joints]
-        products = np.einsum("fni,fnj->nij", q, q)
+        products = np.einsum("fni,fnj->nij", q[first:, joints], q[first:, joints])
     _, vectors = np.linalg.eigh(products)
+    cones = read_off("cones", None, q, joints, vectors, along, shape=(len(joints), 6), first=first)
+    if cones is not None:
+        return cones[:, :4], cones[:, 4:]
     means: FloatArray = vectors[..., -1]
-    signs = np.sum(means * motion.rotations[first, joints], axis=-1, keepdims=True)
-    return np.where(signs < 0.0, -means, means)
+    signs = np.sum(means * q[first, joints], axis=-1, keepdims=True)
+    means = np.where(signs < 0.0, -means, means)
+    swing, twist = swing_and_twist(rot.between(means, q[first:, joints]), along)
+    return means, np.stack((swing.max(axis=0), np.abs(twist).max(axis=0)), axis=1)
 
 
 _Joint = tuple[int, int, int]  # a joint, and from where to where its bone is

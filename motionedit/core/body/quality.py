@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.body.contacts import frames_of
+from motionedit.core.body.plant_frames import frames_of, spans_of
 from motionedit.core.compiled import compiled
 from motionedit.dataclass import dataclass
 
@@ -123,6 +123,11 @@ def foot_slide_max(tracks: FloatArray, plants: Sequence[Plant], *, up: FloatArra
 
     `tracks` (F, P, 3) are those of `sole_tracks`. For an edit the plants are those of its input.
     """
+    kernel = compiled()
+    if kernel is not None:
+        spans = spans_of(plants)
+        farthest: float = kernel.foot_slide(np.ascontiguousarray(tracks), up, spans, *tracks.shape[:2], len(spans))
+        return farthest / frame_time
     down = frames_of(plants)
     if down is None:
         return 0.0
@@ -140,6 +145,11 @@ def foot_drift(before: FloatArray, after: FloatArray, plants: Sequence[Plant]) -
 
     Both are the tracks (F, P, 3) of the same points; the plants are those of the first.
     """
+    kernel = compiled()
+    if kernel is not None:
+        spans, own, other = spans_of(plants), np.ascontiguousarray(before), np.ascontiguousarray(after)
+        farthest: float = kernel.foot_drift(own, None, spans, *before.shape[:2], len(spans), other)
+        return farthest
     down = frames_of(plants)
     return 0.0 if down is None else float(rot.length(down.of(after) - down.of(before)).max())
 

@@ -11,12 +11,13 @@ from motionedit.core import rotations as rot
 from motionedit.core.again import LastFew, Same
 from motionedit.core.arrays import frozen
 from motionedit.core.body.bones import below
+from motionedit.core.body.in_one_loop import read_off
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from motionedit.core.arrays import BoolArray, FloatArray
+    from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.body.anatomy import Anatomy
     from motionedit.core.body.bends import Bend
     from motionedit.core.motion import Motion
@@ -119,15 +120,12 @@ def bent_back(
     before: Motion, after: Motion, anatomy: Anatomy, bends: Sequence[Bend], *, first: int, touched: BoolArray
 ) -> list[Beyond]:
     """Return the knees and elbows that an edit bends back further than the input does, by more than `BACK`."""
-    found, axes = [], {bend.joint: bend.axis for bend in bends}
-    for limb in _limbs(anatomy):
-        _, joint, end = limb
-        if joint not in axes or not touched[[limb[0], *_joints_between(before.skeleton, limb[0], end)]].any():
-            continue
-        bones = _bones(after, limb)
-        if (rot.cross(*bones)[first:] @ axes[joint] >= 0.0).all():
-            continue
-        taken = _bend(*bones, axes[joint])[first:]
+    axes = {bend.joint: bend.axis for bend in bends}
+    asked = [limb for limb in _limbs(anatomy) if limb[1] in axes and touched[_turning(before.skeleton, limb)].any()]
+    found = []
+    for limb in _back_at_all(after, tuple(asked), axes, first):
+        joint = limb[1]
+        taken = _bend(*_bones(after, limb), axes[joint])[first:]
         worst = int(np.argmin(taken))
         if taken[worst] >= -BACK:
             continue
@@ -138,9 +136,47 @@ def bent_back(
     return found
 
 
-def _limbs(anatomy: Anatomy) -> list[tuple[int, int, int]]:
+_Limb = tuple[int, int, int]  # its top, the joint that bends, its end
+
+
+@lru_cache(maxsize=8)
+def _limbs(anatomy: Anatomy) -> tuple[_Limb, ...]:
     legs = [(leg.thigh, leg.knee, leg.ankle) for leg in anatomy.legs or ()]
-    return legs + [(arm.shoulder, arm.elbow, arm.wrist) for arm in anatomy.arms or ()]
+    return (*legs, *((arm.shoulder, arm.elbow, arm.wrist) for arm in anatomy.arms or ()))
+
+
+@lru_cache(maxsize=32)
+def _turning(skeleton: Skeleton, limb: _Limb) -> IntArray:
+    """Return the joints that turn a limb, shape (n,)."""
+    top, _, end = limb
+    return frozen(np.array([top, *_joints_between(skeleton, top, end)], dtype=np.intp))
+
+
+def _back_at_all(motion: Motion, limbs: tuple[_Limb, ...], axes: dict[int, FloatArray], first: int) -> list[_Limb]:
+    """Return the limbs that bend back at any frame from `first` on."""
+    joints, bones = _fixed_bones(motion.skeleton, limbs)
+    given = (bones[0], bones[1], np.array([axes[joint] for joint in joints.tolist()]).reshape(-1, 3))
+    found = read_off("bent_back", None, motion.rotations, joints, *given, shape=joints.shape, first=first)
+    # What the compiled part does not know is looked at by itself.
+    back = {} if found is None else dict(zip(joints.tolist(), found.tolist(), strict=True))
+    return [limb for limb in limbs if back.get(limb[1], 1.0) and not _never_back(motion, limb, axes[limb[1]], first)]
+
+
+def _never_back(motion: Motion, limb: _Limb, axis: FloatArray, first: int) -> bool:
+    return bool((rot.cross(*_bones(motion, limb))[first:] @ axis >= 0.0).all())
+
+
+@lru_cache(maxsize=8)
+def _fixed_bones(skeleton: Skeleton, limbs: tuple[_Limb, ...]) -> tuple[IntArray, FloatArray]:
+    """Return the joints of limbs that are two OFFSETs alone, as most are, shape (n,), and these bones, (2, n, 3)."""
+    places = skeleton.translation_places
+    plain = [
+        (joint, end)
+        for top, joint, end in limbs
+        if skeleton.parents[joint] == top and skeleton.parents[end] == joint and max(places[joint], places[end]) < 0
+    ]
+    joints = np.array(plain, dtype=np.int64).reshape(-1, 2).T
+    return frozen(joints[0].copy()), frozen(skeleton.offsets[joints])
 
 
 def _wholes(anatomy: Anatomy) -> Iterator[tuple[int | None, int | None, float]]:
@@ -224,7 +260,7 @@ def _product(rotations: FloatArray, way: Sequence[int]) -> FloatArray:
     return product
 
 
-def _bones(motion: Motion, limb: tuple[int, int, int]) -> tuple[FloatArray, FloatArray]:
+def _bones(motion: Motion, limb: _Limb) -> tuple[FloatArray, FloatArray]:
     """Return the upper bone of a limb, shape (F, 3) or (3,), and the lower one, (F, 3), seen by its joint's parent."""
     top, joint, end = limb
     skeleton = motion.skeleton

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.arrays import percentile
+from motionedit.core.arrays import frozen, percentile
 
 if TYPE_CHECKING:
+    from motionedit.core.arrays import IntArray
     from motionedit.core.body.anatomy import Anatomy
     from motionedit.core.motion import Motion
 
 _STEP = 0.6  # rad between two frames, at the least
+_COSINE = float(np.cos(0.5 * _STEP)) + 1e-6  # of half the step; more by far than rounding
 _LONGEST = 3  # frames
 # A jump is an outlier: so many times the joint's step right after it, and its own steps over the clip but the fastest.
 _ABOVE_NEXT = 3.0
@@ -30,8 +33,11 @@ def rest_pose_frames(motion: Motion, anatomy: Anatomy) -> int:
     A clip of two frames has none: either could be the take.
     """
     count = len(motion)
-    joints = np.array([j for j in range(len(motion.skeleton)) if j not in anatomy.digits], dtype=np.intp)
+    joints = _seen(anatomy, len(motion.skeleton))
     q = motion.rotations[: _LONGEST + 2, joints]
+    # A cosine of half the step costs less than the step, and nearly all clips are let off by it.
+    if len(q) < 2 or rot.half_cosines(q[:-1], q[1:]).min(initial=1.0) > _COSINE:
+        return 0
     steps = rot.angle_between(q[:-1], q[1:])
     jumps = np.argwhere(steps[:_LONGEST] > _STEP)
     if not len(jumps) or count < 3:
@@ -48,3 +54,9 @@ def rest_pose_frames(motion: Motion, anatomy: Anatomy) -> int:
         if jump > _ABOVE_NEXT * after and jump > _ABOVE_USUAL * usual:
             found = max(found, frame + 1)
     return found
+
+
+@lru_cache(maxsize=4)
+def _seen(anatomy: Anatomy, joints: int) -> IntArray:
+    """Return which of so many joints make a rest pose, shape (n,)."""
+    return frozen(np.array([j for j in range(joints) if j not in anatomy.digits], dtype=np.intp))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from math import sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,9 +12,12 @@ from motionedit.core.arrays import frozen, median
 from motionedit.core.body.bones import below, hanging
 from motionedit.core.body.ground import axis_name, axis_vector
 from motionedit.core.body.limbs import zero_pose
+from motionedit.core.compiled import compiled
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.body.anatomy import Anatomy
     from motionedit.core.kinematics import WorldPoses
@@ -113,16 +117,16 @@ def _along(way: FloatArray) -> dict[str, float]:
 
 def _stance(anatomy: Anatomy, positions: FloatArray) -> FloatArray | None:
     """Return the way a body stands: the mean of hips over feet and head over hips, each of length 1, shape (3,)."""
-    ways = [_unit(median(top - low)) for low, top in _pairs(anatomy, positions)]
-    stance: FloatArray = np.mean(ways, axis=0) if ways else np.zeros(3)
-    return stance if np.any(stance) else None
+    ways = [_unit(way) for way in _ways_up(anatomy, positions)]
+    stance: FloatArray = sum(ways[1:], ways[0]) / len(ways) if ways else np.zeros(3)
+    return stance if stance.any() else None
 
 
 @lru_cache(maxsize=4)
 def _clear_offsets(bones: Skeleton, anatomy: Anatomy) -> FloatArray | None:
     """Return the way the OFFSETs stand, shape (3,); None where they only fold bones away, each along its own axis."""
     places = zero_pose(bones)
-    ways = [_unit(median(top - low)) for low, top in _pairs(anatomy, places[None])]
+    ways = [_unit(way) for way in _ways_up(anatomy, places[None])]
     if not ways:
         return None
     if anatomy.legs is not None:
@@ -133,21 +137,33 @@ def _clear_offsets(bones: Skeleton, anatomy: Anatomy) -> FloatArray | None:
     return ways[0] if clear else None
 
 
-def _pairs(anatomy: Anatomy, positions: FloatArray) -> list[tuple[FloatArray, FloatArray]]:
-    """Return the (lower, upper) points (F, 3) that stand over each other: feet and hips, then hips and head."""
+def _ways_up(anatomy: Anatomy, positions: FloatArray) -> FloatArray:
+    """Return the median ways from what is below to what stands over it, shape (n, 3), of positions (F, J, 3)."""
+    joints, kernel = _one_over_another(anatomy), compiled()
+    if kernel is not None:
+        ways = np.empty((len(joints), 3))
+        kernel.median_ways(np.ascontiguousarray(positions), *positions.shape[:2], joints, len(joints), ways)
+        return ways
+    low, top = (positions[:, one] + positions[:, other] for one, other in (joints.T[:2], joints.T[2:]))
+    return median(top / 2.0 - low / 2.0)
+
+
+@lru_cache(maxsize=4)
+def _one_over_another(anatomy: Anatomy) -> NDArray[np.int64]:
+    """Return two joints, and two whose middle is over theirs, shape (n, 4): feet and hips, then hips and head."""
     top = anatomy.head if anatomy.head is not None else anatomy.chest
-    pairs = []
+    found: list[tuple[int, int, int, int]] = []
     if anatomy.legs is not None:
         left, right = anatomy.legs
-        hips = (positions[:, left.thigh] + positions[:, right.thigh]) / 2.0
-        pairs.append(((positions[:, left.ankle] + positions[:, right.ankle]) / 2.0, hips))
+        hips = left.thigh, right.thigh
+        found.append((left.ankle, right.ankle, *hips))
         if top is not None and top != anatomy.pelvis:
-            pairs.append((hips, positions[:, top]))
+            found.append((*hips, top, top))
     elif top is not None and anatomy.chest is not None and top != anatomy.chest:
-        pairs.append((positions[:, anatomy.chest], positions[:, top]))
-    return pairs
+        found.append((anatomy.chest, anatomy.chest, top, top))
+    return frozen(np.array(found, dtype=np.int64).reshape(-1, 4))
 
 
 def _unit(vector: FloatArray) -> FloatArray:
-    length = float(np.linalg.norm(vector))
+    length = sqrt(vector.dot(vector))
     return vector / length if length > 0.0 else np.zeros(3)

@@ -4,7 +4,7 @@ from motionedit.core.bvh.adapter import VerifyResult, check_with_bvhio, from_bvh
 from motionedit.core.bvh.read import Clip, parse_clip, read_clip
 from motionedit.core.bvh.splice import edited_bytes, edited_pieces
 from motionedit.core.bvh.text import BvhText
-from motionedit.core.bvh.write import new_bytes, resampled_bytes, unedited_bytes
+from motionedit.core.bvh.write import new_bytes, other_rows_pieces, resampled_bytes, unedited_bytes
 from motionedit.core.euler import joint_angles
 
 __all__ = [
@@ -17,6 +17,7 @@ __all__ = [
     "from_bvhio",
     "joint_angles",
     "new_bytes",
+    "other_rows_pieces",
     "parse_clip",
     "read_clip",
     "resampled_bytes",

@@ -80,6 +80,10 @@ def _shared_hierarchy(text: bytes) -> tuple[Skeleton, int]:
     return parser.hierarchy(), parser.at
 
 
+# The last such text, with what is returned of it: a file that begins with it need not be searched for the word.
+_LAST: list[tuple[bytes, Skeleton, int]] = []
+
+
 class _Parser:
     def __init__(self, data: bytes, label: str) -> None:
         self.data = data
@@ -116,13 +120,19 @@ class _Parser:
 
     def shared_hierarchy(self) -> Skeleton | None:
         """Return the skeleton by way of the last files', None where this file has to be parsed by itself."""
+        for text, skeleton, end in _LAST:
+            if self.data.startswith(text):
+                self.at = end
+                return skeleton
         motion = _MOTION.search(self.data, 0, _SHARED_BYTES)
         if motion is None:
             return None
+        text = self.data[: motion.end()]
         try:
-            skeleton, self.at = _shared_hierarchy(self.data[: motion.end()])
+            skeleton, self.at = _shared_hierarchy(text)
         except BvhError:  # to be said with this file's name
             return None
+        _LAST[:] = [(text, skeleton, self.at)]
         return skeleton
 
     def hierarchy(self) -> Skeleton:

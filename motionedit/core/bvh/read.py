@@ -109,6 +109,15 @@ class Clip:
         """Return the clip of other bytes; lenient, as the input may have been."""
         return parse_clip(data, label=self.label, lenient=True, source=self.source)
 
+    def without_rows(self) -> Clip:
+        """Return the clip with nothing of its file but what stands above the rows, and its first values.
+
+        So much is what `other_rows_pieces` needs of it; it takes a third of the memory.
+        """
+        text, above = self.text, self.text.header.rows_start + len(b"\r\n")
+        first = frozen(text.values_between(0, 1).copy())
+        return replace(self, text=replace(text, file=FileBytes(text.data[:above]), values=first))
+
     @cached_property
     def sha256(self) -> str:
         """SHA-256 of the file's bytes, hexadecimal."""
@@ -158,11 +167,13 @@ def parse_clip(data: bytes, *, label: str, lenient: bool = False, source: Path |
 
     def take(first: int, values: FloatArray) -> None:
         block = slice(first, first + len(values))
-        if kept is not None:
+        if kept is not None and values.base is not kept:
             kept[block] = values
         write_poses(skeleton, values, rotations=rotations[block], translations=translations[block])
 
-    rows = read_rows(data, start, columns=columns, expected=header.frames, label=label, lenient=lenient, take=take)
+    rows = read_rows(
+        data, start, columns=columns, expected=header.frames, label=label, lenient=lenient, take=take, room=kept
+    )
     warnings = _row_count_warnings(data, header, rows, label=label, lenient=lenient)
     frames = len(rows.starts)
     _refuse_far_places(data, rows, translations[:frames], label=label)

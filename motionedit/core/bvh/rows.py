@@ -68,7 +68,15 @@ def row_capacity(data: bytes, start: int, *, columns: int, expected: int, lenien
 
 
 def read_rows(
-    data: bytes, start: int, *, columns: int, expected: int, label: str, lenient: bool, take: TakeRows
+    data: bytes,
+    start: int,
+    *,
+    columns: int,
+    expected: int,
+    label: str,
+    lenient: bool,
+    take: TakeRows,
+    room: FloatArray | None = None,
 ) -> Rows:
     """Read the rows from byte `start` on and return where they stand.
 
@@ -82,6 +90,8 @@ def read_rows(
         Whether a last row with too few values is left out instead of refused, and more rows than declared are read.
     take : callable
         Is given each block's first frame and values, shape (n, C), which are overwritten afterwards.
+    room : shape (capacity, C), optional
+        Where the values of a file of one block are put, if they are all that is in it; they stay there.
 
     Raises
     ------
@@ -96,11 +106,14 @@ def read_rows(
         if not lenient and count > expected:
             surplus += _rows_within(data, begin, end)
             continue
-        # A value and its blank take two bytes.
-        room = (end - begin + 1) // 2 // columns + 1
-        if len(scratch) < room:
-            scratch = np.empty((room, columns))
-        block = _whole_rows(data, begin, end, scratch)
+        block = None if room is None or end - begin < len(data) - start else _whole_rows(data, begin, end, room)
+        if room is not None and block is not None:
+            scratch = room
+        else:
+            # A value and its blank take two bytes.
+            most = (end - begin + 1) // 2 // columns + 1
+            scratch = scratch if len(scratch) >= most else np.empty((most, columns))
+            block = _whole_rows(data, begin, end, scratch)
         if block is None:
             words = _words(data, begin, end, columns, label, frame=count)
             block = _read_block(data, begin, end, words, scratch, label, frame=count, lenient=lenient)

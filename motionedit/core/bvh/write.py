@@ -43,11 +43,18 @@ def resampled_bytes(clip: Written, motion: Motion) -> bytes:
     where a value is not finite.
     """
     values = joint_angles(motion, start=clip.text.values_between(0, 1)[0])
+    return _whole(other_rows_pieces(clip, values, frame_time=motion.frame_time), values)
+
+
+def other_rows_pieces(clip: Written, values: FloatArray, *, frame_time: float) -> Iterator[bytes | memoryview]:
+    """Yield what `resampled_bytes` returns, piece by piece, given its channel values (F, C).
+
+    The first piece is what stands above the rows.
+    """
     check_finite(clip, values)
-    data, header = clip.text.data, clip.text.header
-    head = head_bytes(clip, frames=len(values), frame_time=motion.frame_time)
-    ending = _line_ending(data, header.rows_start)
-    return _with_rows(head + ending, values, decimals=decimals_of_edits(clip), ending=ending)
+    ending = _line_ending(clip.text.data, clip.text.header.rows_start)
+    yield head_bytes(clip, frames=len(values), frame_time=frame_time) + ending
+    yield from rows_pieces(values, decimals=decimals_of_edits(clip), ending=ending)
 
 
 def new_bytes(motion: Motion, *, decimals: int = FEWEST_DECIMALS) -> bytes:
@@ -63,7 +70,7 @@ def new_bytes(motion: Motion, *, decimals: int = FEWEST_DECIMALS) -> bytes:
     lines = [*hierarchy_lines(skeleton, decimals), "MOTION", f"Frames: {len(values)}"]
     lines.append(f"Frame Time: {plain_number(motion.frame_time)}")
     head = "".join(f"{line}\n" for line in lines).encode()
-    return _with_rows(head, values, decimals=decimals, ending=b"\n")
+    return _whole(chain((head,), rows_pieces(values, decimals=decimals, ending=b"\n")), values)
 
 
 def plain_number(value: float) -> str:
@@ -111,10 +118,9 @@ def joined(pieces: Iterable[bytes | memoryview], *, about: int) -> bytes:
     return stream.getvalue()
 
 
-def _with_rows(head: bytes, values: FloatArray, *, decimals: int, ending: bytes) -> bytes:
-    """Return a head with rows of values below it, as `rows_pieces` has them."""
-    pieces = rows_pieces(values, decimals=decimals, ending=ending)
-    first = next(pieces, b"")
+def _whole(pieces: Iterator[bytes | memoryview], values: FloatArray) -> bytes:
+    """Return a head and rows of values below it, as `rows_pieces` has them, in one."""
+    head, first = next(pieces), next(pieces, b"")
     return joined(chain((head, first), pieces), about=len(head) + len(first) * -(-len(values) // _rows_at_once(values)))
 
 

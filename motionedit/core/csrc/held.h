@@ -51,6 +51,17 @@ static inline int has_size(const Py_buffer *buffer, int64_t count, size_t bytes,
     return 0;
 }
 
+/* Whether a joint turns about three different axes; an error where it does not. */
+static inline int are_three_axes(const int *axes)
+{
+    for (int i = 0; i < 3; i++)
+        if (axes[i] < 0 || axes[i] > 2 || axes[i] == axes[(i + 1) % 3]) {
+            PyErr_SetString(PyExc_ValueError, "three different axes are 0, 1 and 2 in some order");
+            return 0;
+        }
+    return 1;
+}
+
 static inline void release(Py_buffer *buffers, int count)
 {
     for (int i = 0; i < count; i++)

@@ -5,12 +5,14 @@ The floor is the plane up = 0 of the file.
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.body.contacts import frames_of
+from motionedit.core.arrays import frozen
+from motionedit.core.body.plant_frames import frames_of, spans_of
 from motionedit.core.compiled import compiled
 from motionedit.core.units import STANDARD_LEG
 from motionedit.dataclass import dataclass
@@ -18,9 +20,10 @@ from motionedit.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from motionedit.core.arrays import FloatArray, IntArray
+    from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.body.anatomy import Anatomy
-    from motionedit.core.body.contacts import Plant, PlantFrames
+    from motionedit.core.body.contacts import Plant
+    from motionedit.core.body.plant_frames import PlantFrames
 
 _NEAR_FLOOR = 0.05  # m: a toe below it should not move (Kimodo)
 _SKATES = 0.2  # m/s: a toe near the floor that is faster skates (Kimodo)
@@ -74,17 +77,20 @@ def foot_measures(
     points = anatomy.sole_points
     if not points or anatomy.leg_length <= 0.0 or len(tracks) - first < 2:
         return FootMeasures(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    toes = [point.part == "toe" for point in points]
-    toes = toes if any(toes) else [True] * len(points)
-    down, scale, kernel = frames_of(plants), STANDARD_LEG / anatomy.leg_length, compiled()
+    toes, scale, kernel = _toes(anatomy), STANDARD_LEG / anatomy.leg_length, compiled()
     if kernel is not None:
-        none = np.zeros(0, dtype=np.int64)
-        at, of, counts = (none, none, none) if down is None else (down.frames, down.points[down.starts], down.counts)
-        given = tracks, up, np.array(toes), at, of, counts
-        rules = scale, frame_time, _NEAR_FLOOR, _SKATES, _SLIDES, _UNDER
-        sizes = len(tracks), len(points), first, len(counts), len(at)
-        return FootMeasures(*kernel.foot_figures(*map(np.ascontiguousarray, given), *sizes, rules))
-    return _measured(tracks * scale, down, np.flatnonzero(toes), up=up, first=first, frame_time=frame_time)
+        spans, rules = spans_of(plants), (scale, frame_time, _NEAR_FLOOR, _SKATES, _SLIDES, _UNDER)
+        sizes = *tracks.shape[:2], len(spans)
+        return FootMeasures(*kernel.foot_figures(np.ascontiguousarray(tracks), up, spans, *sizes, toes, first, rules))
+    places, down = tracks * scale, frames_of(plants)
+    return _measured(places, down, np.flatnonzero(toes), up=up, first=first, frame_time=frame_time)
+
+
+@lru_cache(maxsize=8)
+def _toes(anatomy: Anatomy) -> BoolArray:
+    """Return which sole points count as toes, shape (P,): heels where no foot has one."""
+    toes = [point.part == "toe" for point in anatomy.sole_points]
+    return frozen(np.array(toes if any(toes) else [True] * len(toes)))
 
 
 def _measured(

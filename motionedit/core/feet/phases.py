@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from functools import lru_cache
+from operator import itemgetter
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.arrays import frozen
+from motionedit.core.body.contacts import planted
 from motionedit.core.compiled import compiled
-from motionedit.core.feet.reach import ROUNDING, reach_of, released
-from motionedit.core.feet.settled import settled
-from motionedit.core.feet.stance import FootPath, feet_of, foot_path, spans_of, stance_of
+from motionedit.core.feet.reach import REACH, ROUNDING, reach_of, released
+from motionedit.core.feet.settled import settled, settling_rules
+from motionedit.core.feet.stance import FootPath, feet_of, foot_path, stance_of
+from motionedit.core.units import STANDARD_LEG
 from motionedit.dataclass import replace
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
 
     from motionedit.core.arrays import FloatArray
     from motionedit.core.body.anatomy import Anatomy
-    from motionedit.core.body.contacts import Plant
+    from motionedit.core.body.contacts import Plant, Stand
     from motionedit.core.kinematics import WorldPoses
 
 _ROUNDS = 6
@@ -26,9 +33,9 @@ _SHORTEST = 0.05  # s: what is left of a heel's plant, with its toe down for a p
 
 def find_phases(
     tracks: FloatArray,
-    legs: Sequence[LegPath],
+    legs: FloatArray,
     anatomy: Anatomy,
-    plants: Sequence[Plant],
+    stands: Sequence[Stand],
     *,
     up: FloatArray,
     frame_time: float,
@@ -39,65 +46,87 @@ def find_phases(
     ----------
     tracks : shape (F, P, 3)
         Those of `sole_tracks`.
-    legs : sequence of LegPath
+    legs : shape (F, n, 14)
         Of the feet in the order of `feet_of`, by `leg_paths`.
+    stands : sequence of Stand
+        Those of `stands_of`.
     """
-    calm = settled(plants, tracks, anatomy, up=up, frame_time=frame_time)
-    return sorted(kept(calm, legs, anatomy, frame_time), key=lambda plant: (plant.start, plant.foot, plant.point))
+    if stands and compiled() is not None:
+        return planted(anatomy, _phases_at_once(tracks, legs, anatomy, stands, up=up, frame_time=frame_time))
+    calm = settled(planted(anatomy, stands), tracks, anatomy, up=up, frame_time=frame_time)
+    found = kept(calm, legs, anatomy, frame_time)
+    return sorted(found, key=lambda plant: (plant.start, plant.foot, plant.point))
 
 
-class LegPath(NamedTuple):
-    """How a leg goes: ankle (F, 3), its turn (F, 4), the toe in its frame (F, 3), hip (F, 3), and `reach_of` (F,)."""
+def leg_paths(poses: WorldPoses, anatomy: Anatomy) -> FloatArray:
+    """Return how the legs of n feet go in a motion, in the order of `feet_of`, shape (F, n, 14).
 
-    ankle: FloatArray
-    turn: FloatArray
-    toe: FloatArray
-    hip: FloatArray
-    reach: FloatArray
-
-
-def leg_paths(poses: WorldPoses, anatomy: Anatomy) -> list[LegPath]:
-    """Return how the legs of the feet go in a motion, in the order of `feet_of`."""
+    That is at each frame: the ankle, its turn, the toe in its frame, the hip, and `reach_of`.
+    """
+    kernel, (frames, joints) = compiled(), poses.rotations.shape[:2]
+    if kernel is not None:
+        legs, toes = _legs_of(anatomy)
+        paths = np.empty((frames, len(legs), 14))
+        given = np.ascontiguousarray(poses.positions), np.ascontiguousarray(poses.rotations), frames, joints
+        kernel.leg_paths(*given, legs, toes, len(legs), REACH, paths)
+        return paths
     found = []
     for foot in feet_of(anatomy):
-        path, hip = foot_path(poses, foot), poses.positions[:, foot.leg.thigh]
-        found.append(LegPath(path.ankle, path.turn, path.toe, hip, reach_of(poses, foot)))
-    return found
+        path, hip, reach = foot_path(poses, foot), poses.positions[:, foot.leg.thigh], reach_of(poses, foot)
+        found.append(np.concatenate((path.ankle, path.turn, path.toe, hip, reach[:, None]), axis=1))
+    return np.stack(found, axis=1) if found else np.empty((frames, 0, 14))
 
 
-def kept(plants: Sequence[Plant], legs: Sequence[LegPath], anatomy: Anatomy, frame_time: float) -> list[Plant]:
+@lru_cache(maxsize=8)
+def _legs_of(anatomy: Anatomy) -> tuple[NDArray[np.int64], FloatArray]:
+    """Return the joints of n legs, thigh, knee, ankle and the toe's, -1 without one, (n, 4), and toes in its frame."""
+    joints, toes = [], []
+    for foot in feet_of(anatomy):
+        joint, offset = (-1, (0.0, 0.0, 0.0)) if foot.toe is None else (foot.toe.joint, foot.toe.offset)
+        joints.append((foot.leg.thigh, foot.leg.knee, foot.leg.ankle, joint))
+        toes.append(offset)
+    return frozen(np.array(joints, np.int64).reshape(-1, 4)), frozen(np.array(toes, np.float64).reshape(-1, 3))
+
+
+@lru_cache(maxsize=8)
+def _parts_of(anatomy: Anatomy) -> tuple[tuple[int, bool], ...]:
+    """Return the foot of each of the sole points, by its place, and whether it is a toe."""
+    places = {"left": 0, "right": 1}
+    return tuple((places[point.foot], point.part == "toe") for point in anatomy.sole_points)
+
+
+def _phases_at_once(
+    tracks: FloatArray,
+    legs: FloatArray,
+    anatomy: Anatomy,
+    stands: Sequence[Stand],
+    *,
+    up: FloatArray,
+    frame_time: float,
+) -> list[Stand]:
+    """Return what is left of stands as the compiled part finds it: `settled` and `kept` in one call."""
+    kernel, parts = compiled(), _parts_of(anatomy)
+    spans = np.array([(*parts[p], p, start, stop) for p, start, stop, _ in stands], dtype=np.int64)
+    sizes, metre = (*tracks.shape[:2], legs.shape[1], len(stands)), anatomy.leg_length / STANDARD_LEG
+    rules = settling_rules(frame_time), (_shortest(frame_time), _ROUNDS, ROUNDING)
+    kernel.phases(np.ascontiguousarray(tracks), up, legs, spans, *sizes, metre, frame_time, *rules)
+    cut = zip(stands, spans[:, 3:].tolist(), strict=True)
+    left = [(p, start, stop, height) for (p, _, _, height), (start, stop) in cut if stop >= 0]
+    return sorted(left, key=itemgetter(1, 0))
+
+
+def kept(plants: Sequence[Plant], legs: FloatArray, anatomy: Anatomy, frame_time: float) -> list[Plant]:
     """Return plants whose heels come up once the leg cannot hold them in one place any more (`released`)."""
     found: list[Plant] = []
-    shortest, kernel = max(2, round(_SHORTEST / frame_time)), compiled()
-    for foot, leg in zip(feet_of(anatomy), legs, strict=True):
+    for foot, leg in zip(feet_of(anatomy), legs.swapaxes(0, 1), strict=True):
         own = [plant for plant in plants if plant.foot == foot.side]
-        path, hip, reach = FootPath(leg.ankle, leg.turn, leg.toe), leg.hip, leg.reach
-        if kernel is not None:
-            found += _kept_at_once(kernel.kept, own, path, shortest, hip=hip, reach=reach)
-        else:
-            found += _kept_in_rounds(own, path, shortest, hip=hip, reach=reach)
+        path = FootPath(leg[:, :3], leg[:, 3:7], leg[:, 7:10])
+        found += _kept_in_rounds(own, path, _shortest(frame_time), hip=leg[:, 10:13], reach=leg[:, 13])
     return found
 
 
-def _kept_at_once(
-    work: Callable[..., None],
-    plants: Sequence[Plant],
-    path: FootPath,
-    shortest: int,
-    *,
-    hip: FloatArray,
-    reach: FloatArray,
-) -> list[Plant]:
-    """Return the plants of a foot that are left as the compiled part finds them: `_kept_in_rounds` in one call."""
-    spans = spans_of(plants)
-    given = (path.ankle, path.toe_place, path.turn, path.toe, hip, reach)
-    work(*(np.ascontiguousarray(each) for each in given), spans, len(hip), len(plants), shortest, _ROUNDS, ROUNDING)
-    stops = spans[:, 2].tolist()
-    return [
-        plant if stop == plant.stop else replace(plant, stop=stop)
-        for plant, stop in zip(plants, stops, strict=True)
-        if stop >= 0
-    ]
+def _shortest(frame_time: float) -> int:
+    return max(2, round(_SHORTEST / frame_time))
 
 
 def _kept_in_rounds(

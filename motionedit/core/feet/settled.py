@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.body.contacts import frames_of
-from motionedit.core.compiled import compiled
+from motionedit.core.body.plant_frames import frames_of
 from motionedit.core.units import STANDARD_LEG
 from motionedit.dataclass import replace
 
@@ -17,7 +16,8 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.body.anatomy import Anatomy
-    from motionedit.core.body.contacts import Plant, PlantFrames
+    from motionedit.core.body.contacts import Plant
+    from motionedit.core.body.plant_frames import PlantFrames
 
 # m/s, at a leg of `STANDARD_LEG`: a point that has settled is no faster than the plant's own median, which is how fast
 # the whole foot slides, by more than this;
@@ -52,17 +52,21 @@ def settled(
     return cut
 
 
+def settling_rules(frame_time: float) -> tuple[int, int, float, float, float]:
+    """Return by what the compiled part tells that a point has settled: as `settled`."""
+    return _half(frame_time), _FEWEST, _FASTER, _ABOVE, _SHORTEST
+
+
+def _half(frame_time: float) -> int:
+    return max(1, round(_HALF / frame_time))
+
+
 def _calm_spans(down: PlantFrames, places: FloatArray, up: FloatArray, frame_time: float) -> IntArray:
     """Return each plant's first and last frame that has settled, from its own first on, shape (n, 2); -1 without any.
 
     `places` (N, 3) are those of the plants' frames, metres.
     """
-    kernel, half = compiled(), max(1, round(_HALF / frame_time))
-    spans = np.full((len(down.counts), 2), -1, dtype=np.int64)
-    if kernel is not None:
-        counts = down.counts.astype(np.int64, copy=False)
-        kernel.settled(places, up, counts, spans, len(places), len(spans), half, frame_time, _FASTER, _ABOVE)
-        return spans
+    half, spans = _half(frame_time), np.full((len(down.counts), 2), -1, dtype=np.intp)
     first = down.spread(down.starts)
     at = np.arange(len(first))
     before, after = np.maximum(at - half, first), np.minimum(at + half, first + down.spread(down.counts) - 1)

@@ -145,7 +145,7 @@ def stance_of(path: FootPath, plants: Sequence[Plant]) -> Stance:
 def _stance_at_once(work: Callable[..., None], path: FootPath, plants: Sequence[Plant]) -> Stance:
     """Return the stance as the compiled part finds it: `stance_of` in one call."""
     frames = len(path.ankle)
-    spans = spans_of(plants)
+    spans = _spans_of(plants)
     down = np.empty((2, frames), dtype=np.bool_)
     places, turn, whole = np.empty((2, frames, 3)), np.empty((frames, 4)), np.empty(frames, dtype=np.int64)
     given = (np.ascontiguousarray(each) for each in (path.ankle, path.toe_place, path.turn, path.toe, spans))
@@ -153,7 +153,7 @@ def _stance_at_once(work: Callable[..., None], path: FootPath, plants: Sequence[
     return Stance(down[0], down[1], places[0], places[1], turn, whole.astype(np.intp, copy=False))
 
 
-def spans_of(plants: Sequence[Plant]) -> NDArray[np.int64]:
+def _spans_of(plants: Sequence[Plant]) -> NDArray[np.int64]:
     """Return plants as the compiled part has them, shape (n, 3): whether it is a toe's, first and last frame."""
     spans = [(plant.part == "toe", plant.start, plant.stop) for plant in plants]
     return np.array(spans, dtype=np.int64).reshape(-1, 3)

@@ -65,12 +65,15 @@ class FitSettings:
         Joints of the first clip that stay out of the model, and are copied through by edits.
     components : ComponentCount
         How many are kept.
+    threads : int
+        The model is the same for any number of them.
     """
 
     representation: Representation = "centred"
     root_weight: float = 1.0
     excluded: frozenset[int] = frozenset()
     components: ComponentCount = ALL
+    threads: int = 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,7 +122,7 @@ def build_model(
         scale = STANDARD_LEG / leg_length
         skeleton, space, clips = _gather(database, vectors, travel=travel, scale=scale, settings=settings)
         strays = make_consistent(vectors, space.references, frames=timeline.frames)
-        components, streamed = _components(vectors, settings.components)
+        components, streamed = _components(vectors, settings)
     windings = [
         OtherWinding(clips[m].name, skeleton.names[space.joints[k]], float(np.degrees(stray))) for m, k, stray in strays
     ]
@@ -157,12 +160,12 @@ def _gather(
 
 
 def _components(
-    vectors: VectorsInMemory | VectorsInFile, count: ComponentCount
+    vectors: VectorsInMemory | VectorsInFile, settings: FitSettings
 ) -> tuple[PrincipalComponents, Streamed | None]:
     mean = sum(block.sum(axis=0) for _, block in vectors.blocks()) / vectors.count
     if isinstance(vectors, VectorsInFile):
-        streamed = stream_components(CentredVectors(vectors, mean), count=count)
+        streamed = stream_components(CentredVectors(vectors, mean), count=settings.components)
         return streamed.components, streamed
     X = vectors.matrix
     X -= mean
-    return fit_centred(X, mean, count=count), None
+    return fit_centred(X, mean, count=settings.components, threads=settings.threads), None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from typing import TYPE_CHECKING, BinaryIO, Protocol, Self
 
 import numpy as np
@@ -92,6 +91,8 @@ class VectorsInFile:
     """
 
     def __init__(self) -> None:
+        import tempfile
+
         self._file: BinaryIO = tempfile.TemporaryFile(prefix="motionedit-")  # noqa: SIM115
         self._size = self._filled = 0
 
@@ -114,6 +115,8 @@ class VectorsInFile:
             self._file.write(np.ascontiguousarray(block).data.cast("B"))
             self._file.flush()
         except OSError as error:
+            import tempfile
+
             message = f"no room for the scratch file ({error.strerror or error}); TMPDIR names another folder"
             raise ClipError(message, file=tempfile.gettempdir()) from error
         self._filled = max(self._filled, first + len(block))

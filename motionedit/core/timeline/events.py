@@ -42,15 +42,15 @@ def find_event(
     values = _signal(path, search.quantity, up=up, frame_time=frame_time, to=to)
     if search.extreme == "maximum":
         values = -values
-    k = search.start + int(np.argmin(values[search.start : search.stop + 1]))
+    k = search.start + int(values[search.start : search.stop + 1].argmin())
     if not 0 < k < len(values) - 1:
         return float(k)
-    before, here, after = values[k - 1 : k + 2]
+    before, here, after = values[k - 1 : k + 2].tolist()
     bend = before - 2.0 * here + after
     if bend <= 0.0:
         return float(k)
     offset = 0.5 * (before - after) / bend
-    return k + float(np.clip(offset, -0.5, 0.5))
+    return float(k + min(max(offset, -0.5), 0.5))
 
 
 def _signal(

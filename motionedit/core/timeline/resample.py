@@ -11,7 +11,7 @@ from motionedit.core.arrays import frozen
 from motionedit.core.motion import Motion
 
 if TYPE_CHECKING:
-    from motionedit.core.arrays import FloatArray
+    from motionedit.core.arrays import FloatArray, IntArray
 
 
 def resample(motion: Motion, at: FloatArray, *, frame_time: float) -> Motion:
@@ -19,11 +19,15 @@ def resample(motion: Motion, at: FloatArray, *, frame_time: float) -> Motion:
 
     At a whole frame the sample is that frame.
     """
-    last = len(motion) - 1
-    i = np.clip(np.floor(at).astype(np.intp), 0, max(last - 1, 0))
-    j = np.minimum(i + 1, last)
-    t = at - i
+    i, t = frames_before(motion, at)
+    j = np.minimum(i + 1, len(motion) - 1)
     rotations = rot.slerp_frames(motion.rotations, i, t)
     a, b = motion.translations[i], motion.translations[j]
     translations = a + t[:, None, None] * (b - a)
     return Motion(motion.skeleton, frozen(rotations), frozen(translations), frame_time)
+
+
+def frames_before(motion: Motion, at: FloatArray) -> tuple[IntArray, FloatArray]:
+    """Return the frames at or before `at` (N,), the last one never, and the parts of a frame from there."""
+    frames = np.minimum(np.maximum(np.floor(at).astype(np.intp), 0), max(len(motion) - 2, 0))
+    return frames, at - frames

@@ -157,11 +157,12 @@ def find_clips(clips: Sequence[Path], *, leave_out: Path | None = None) -> list[
 
 def folder_clips(folder: Path, *, leave_out: Path | None = None) -> list[ClipTask]:
     """Return the clips of one folder as `find_clips` does, none where it has none."""
-    found = sorted(_clips_below(folder, leave_out), key=lambda clip: clip.relative_to(folder).as_posix())
+    found = sorted((clip.relative_to(folder).as_posix(), clip) for clip in _clips_below(folder, leave_out))
     if leave_out is not None and not leave_out.is_dir():
         # An output of an earlier run inside the folder is no clip, unless it is all there is: then it is refused.
-        found = [clip for clip in found if identity(clip) != identity(leave_out)] or found
-    return [ClipTask(clip, str(clip), None, clip.relative_to(folder).as_posix()) for clip in found]
+        left_out = identity(leave_out)
+        found = [(name, clip) for name, clip in found if identity(clip) != left_out] or found
+    return [ClipTask(clip, str(clip), None, name) for name, clip in found]
 
 
 def shared_out(tasks: list[ClipTask], shard: Shard | None) -> list[ClipTask]:
@@ -187,6 +188,7 @@ def plan(
     depends: Sequence[Path] = (),
     writes: Sequence[tuple[str, Path]] = (),
     verdicts: Verdicts | None = None,
+    found: list[ClipTask] | None = None,
 ) -> list[ClipTask]:
     """Return one task per clip, every rule about files checked before any work.
 
@@ -202,6 +204,8 @@ def plan(
         What the run writes beside clips, pages and report: what it is, and its file.
     verdicts
         What is known of earlier outputs: with `update` those of which nothing is are made again.
+    found
+        What `find_clips` found of the clips, where that was asked already.
 
     Raises
     ------
@@ -210,7 +214,8 @@ def plan(
         `overwrite` is off; `update` or `shard` with standard input or output; `scheduler` with standard input;
         `preview` with standard output.
     """
-    found = find_clips(clips, leave_out=None if output == "-" else Path(output))
+    if found is None:
+        found = find_clips(clips, leave_out=None if output == "-" else Path(output))
     if options.update and (output == "-" or any(task.source is None for task in found)):
         raise UsageError("--update compares the times of files: it does not go with '-'")
     if options.scheduler is not None and any(task.source is None for task in found):

@@ -3,6 +3,7 @@
 Not the library's pools: these join a queue that all workers share, and wait for ever where a worker was ended in the
 middle of a result. Here a worker's end closes its own pipe, and the parent ends workers without waiting for answers.
 The function, with all that is common to the items, goes to each worker once. Workers that stay take another one.
+Items go in messages: short ones several at a time, since to wake a process costs as much as a short clip's tenth.
 """
 
 from __future__ import annotations
@@ -13,8 +14,10 @@ import os
 import signal
 import sys
 import threading
+import time
 from collections import deque
 from multiprocessing.connection import wait
+from multiprocessing.reduction import ForkingPickler
 from typing import TYPE_CHECKING, Any, NamedTuple, Self, TypeVar
 
 from motionedit.jobs.batch.no_result import Raised, WorkerDiedError
@@ -30,8 +33,13 @@ Result = TypeVar("Result")
 
 # Items that are begun, for each worker, before the results of those before are taken: results that wait take memory.
 AHEAD = 16
-# Items that a worker has at once: the one it works on, and the next, so that it need not wait for its parent.
+# Messages that a worker has at once: the one it works on, and the next, so that it need not wait for its parent.
 IN_HAND = 2
+_AT_ONCE = AHEAD // IN_HAND  # items of one message, at most
+# Of one message, at most: that both sides of a pipe write at once, and neither reads, must not be. And its items take
+# about so long.
+_MOST_BYTES = 1 << 15
+_SECONDS_A_MESSAGE = 0.02
 # Windows answers Ctrl-C only between waits.
 SECONDS_WITHOUT_CTRL_C = 0.2
 _SECONDS_TO_END = 5.0
@@ -79,12 +87,19 @@ class _Turn(NamedTuple):
     function: Callable[[Any], Any]
 
 
+class _Answer(NamedTuple):
+    """The results of one message, and how long they took."""
+
+    results: list[Any]
+    seconds: float
+
+
 class _Worker:
-    """A process, its pipe, and the places of the items that it has, the one it works on first."""
+    """A process, its pipe, and the places of the items of each message that it has, the one it works on first."""
 
     def __init__(self, context: BaseContext, function: Callable[[Any], Any] | None) -> None:
         self.pipe, other = context.Pipe()
-        self.in_hand: deque[int] = deque()
+        self.in_hand: deque[list[int]] = deque()
         self.process: BaseProcess = context.Process(target=_work, args=(function, other), daemon=True)  # type: ignore[attr-defined]
         with _interrupts_held_back():
             self.process.start()
@@ -104,6 +119,9 @@ class Crew:
         self._function: Callable[[Any], Any] | None = None
         self._count = 0
         self._workers: list[_Worker] = []
+        # Items of a message: as many as are worked on in its time, as fit into it, and whether it is one in any case.
+        self._at_once, self._fit = 1, 1
+        self._one_by_one = False
 
     def __enter__(self) -> Self:
         return self
@@ -113,7 +131,7 @@ class Crew:
 
     def turn_to(self, function: Callable[[Any], Any], count: int) -> None:
         """Take a function for so many workers; those that are there get it, a new one is born with it."""
-        self._function, self._count = function, count
+        self._function, self._count, self._at_once, self._one_by_one = function, count, 1, False
         for worker in self._workers:
             # As in `begin`.
             with contextlib.suppress(BrokenPipeError, ConnectionError):
@@ -132,25 +150,42 @@ class Crew:
             worker = min(self._workers, key=lambda one: len(one.in_hand))
             if len(worker.in_hand) >= IN_HAND:
                 return
-            place = waiting.popleft()
-            worker.in_hand.append(place)
-            # A worker that is gone is seen where its result is awaited.
+            # Fewer towards the end, so that all end together.
+            most = max(1, min(self._at_once, self._fit, len(waiting) // (IN_HAND * self._count)))
+            places = [waiting.popleft() for _ in range(min(most, before - waiting[0]))]
+            worker.in_hand.append(places)
+            message = ForkingPickler.dumps([items[place] for place in places])
+            self._fit = _MOST_BYTES * len(places) // len(message)
+            # A worker that is gone is seen where its results are awaited.
             with contextlib.suppress(BrokenPipeError, ConnectionError):
-                worker.pipe.send(items[place])
+                worker.pipe.send_bytes(message)
 
     def collect(self, results: dict[int, Any], waiting: deque[int]) -> None:
         """Wait a moment for results; of a worker that died its item is lost, and what it had not begun waits again."""
         ready = wait([worker.pipe for worker in self._workers], timeout=SECONDS_WITHOUT_CTRL_C)
         for worker in [worker for worker in self._workers if worker.pipe in ready]:
             try:
-                results[worker.in_hand[0]] = worker.pipe.recv()
-                worker.in_hand.popleft()
+                answer: _Answer = worker.pipe.recv()
             except (EOFError, OSError):
                 self._workers.remove(worker)
                 worker.end()
-                if worker.in_hand:
-                    results[worker.in_hand.popleft()] = WorkerDiedError(_DIED)
-                waiting.extendleft(reversed(worker.in_hand))
+                self._take_back(worker.in_hand, results, waiting)
+            else:
+                places = worker.in_hand.popleft()
+                results.update(zip(places, answer.results, strict=True))
+                each = answer.seconds / len(places)
+                self._at_once = 1 if self._one_by_one else int(min(_AT_ONCE, max(1.0, _SECONDS_A_MESSAGE / each)))
+
+    def _take_back(self, in_hand: deque[list[int]], results: dict[int, Any], waiting: deque[int]) -> None:
+        """Let the items of a worker that died wait again, but the one that it died of.
+
+        Which of several that is nobody knows: from then on they go one by one.
+        """
+        if in_hand and len(in_hand[0]) == 1:
+            results[in_hand.popleft()[0]] = WorkerDiedError(_DIED)
+        elif in_hand:
+            self._at_once, self._one_by_one = 1, True
+        waiting.extendleft(reversed([place for places in in_hand for place in places]))
 
     def end(self) -> None:
         """End all workers, whatever they are at."""
@@ -181,17 +216,22 @@ def _work(function: Callable[[Any], Any], pipe: Connection[Any, Any]) -> None:
     threading.Thread(target=_end_with_parent, daemon=True).start()
     while True:
         try:
-            item = pipe.recv()
+            message = pipe.recv()
         except (EOFError, OSError):
             return
-        if isinstance(item, _Turn):
-            function = item.function
+        if isinstance(message, _Turn):
+            function = message.function
             continue
-        try:
-            result: Any = function(item)
-        except Exception as error:  # noqa: BLE001  it is raised where the results are taken
-            result = Raised(error)
-        pipe.send(result)
+        start = time.perf_counter()
+        results = [_result_of(function, one) for one in message]
+        pipe.send(_Answer(results, time.perf_counter() - start))
+
+
+def _result_of(function: Callable[[Any], Any], item: Any) -> Any:  # noqa: ANN401  any function of in_processes
+    try:
+        return function(item)
+    except Exception as error:  # noqa: BLE001  it is raised where the results are taken
+        return Raised(error)
 
 
 def _end_with_parent() -> None:

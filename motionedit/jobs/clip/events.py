@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from functools import lru_cache
 from pathlib import PurePosixPath
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from motionedit.core.again import LastFew, Same
 from motionedit.core.kinematics import effector_positions
 from motionedit.core.timeline.events import Quantity, Search, find_event
 from motionedit.jobs.clip import resolve
@@ -15,11 +16,20 @@ from motionedit.jobs.clip import resolve
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
+    from motionedit.core.kinematics import Effector
+    from motionedit.core.skeleton import Skeleton
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.jobs.clip.resolve import Place
     from motionedit.spec.document import Document
     from motionedit.spec.events import DetectRule, EventSpec
     from motionedit.spec.load import LoadedSpec
+
+
+_QUANTITIES: dict[str, Quantity] = {"height": "height", "speed": "speed", "distance": "distance"}
+# Parts of a path that name nothing.
+_NO_NAMES = frozenset(("", "."))
+# Of each rule and skeleton of a run: mostly one of each.
+_EFFECTORS: LastFew[Effector] = LastFew(16)
 
 
 def explicit_events(loaded: LoadedSpec[Document], relative: str, *, others: Collection[str] = ()) -> dict[str, float]:
@@ -57,6 +67,23 @@ def event_frames(
 ) -> dict[str, float]:
     """Return the frame of every event of a clip that is known or has a rule; found ones to a part of a frame.
 
+    Arguments and errors are those of `found_events`.
+    """
+    return found_events(specs, facts, place, known=known).frames
+
+
+class FoundEvents(NamedTuple):
+    """The `frames` of a clip's events, and the first and last frame of the `windows` that rules looked in."""
+
+    frames: dict[str, float]
+    windows: dict[str, tuple[int, int]]
+
+
+def found_events(
+    specs: Mapping[str, EventSpec], facts: ClipFacts, place: Place, *, known: Mapping[str, float]
+) -> FoundEvents:
+    """Return `event_frames`, and where the events were looked for that needed a rule.
+
     Parameters
     ----------
     specs : mapping
@@ -71,7 +98,8 @@ def event_frames(
     SpecError
         Where a known frame is outside the clip, or a rule names what the clip lacks.
     """
-    frames = dict(known)
+    frames: dict[str, float] = dict(known)
+    windows: dict[str, tuple[int, int]] = {}
     for name, frame in known.items():
         if not facts.first <= frame <= facts.last:
             message = (
@@ -83,8 +111,11 @@ def event_frames(
     while waiting:
         ready = [name for name, rule in waiting.items() if not _waits_for(rule) & waiting.keys()]
         for name in ready:
-            frames[name] = _found(waiting.pop(name), facts, place.at(name).at("detect"), events=frames)
-    return frames
+            rule, where = waiting.pop(name), place.at(name).at("detect")
+            effector = _effector(rule, facts.clip.motion.skeleton, where)
+            windows[name] = _window(rule, facts, where, events=frames)
+            frames[name] = _found(rule, effector, facts, windows[name])
+    return FoundEvents(frames, {name: windows[name] for name in specs if name in windows})
 
 
 def _waits_for(rule: DetectRule) -> set[str]:
@@ -92,46 +123,33 @@ def _waits_for(rule: DetectRule) -> set[str]:
     return {name for name in (rule.after, *(time.event for time in times)) if name is not None}
 
 
-def _found(rule: DetectRule, facts: ClipFacts, place: Place, *, events: Mapping[str, float]) -> float:
-    motion = facts.clip.motion
-    effector = resolve.effector(rule.effector, motion.skeleton, place.at("effector"))
-    start, stop = _window(rule, facts, place, events=events)
-    to = None if rule.to is None else np.array(rule.to)
+def _effector(rule: DetectRule, skeleton: Skeleton, place: Place) -> Effector:
+    """Return the point that a rule is about: the same of all clips that share a skeleton."""
+    key = Same(rule), skeleton
+    known = _EFFECTORS.get(key)
+    if known is None:
+        known = _EFFECTORS.keep(key, resolve.effector(rule.effector, skeleton, place.at("effector")))
+    return known
+
+
+def _found(rule: DetectRule, effector: Effector, facts: ClipFacts, window: tuple[int, int]) -> float:
     return find_event(
         effector_positions(facts.poses, effector),
-        Search("minimum" if rule.is_minimum else "maximum", _quantity(rule), start, stop),
+        Search("minimum" if rule.is_minimum else "maximum", _QUANTITIES[rule.measure], *window),
         up=facts.up,
-        frame_time=motion.frame_time,
-        to=to,
+        frame_time=facts.clip.motion.frame_time,
+        to=None if rule.to is None else np.array(rule.to),
     )
 
 
-def events_at_edge(
-    specs: Mapping[str, EventSpec],
-    facts: ClipFacts,
-    place: Place,
-    *,
-    frames: Mapping[str, float],
-    known: Collection[str],
-) -> list[str]:
-    """Return a line for each event that was found at an end of where it was looked for: the extreme may lie beyond.
-
-    Parameters
-    ----------
-    frames, known
-        All events' frames, and the events that no rule was needed for.
-    """
-    lines = []
-    for name, spec in specs.items():
-        if spec.detect is None or name in known or name not in frames:
-            continue
-        window = _window(spec.detect, facts, place.at(name).at("detect"), events=frames)
-        if window[0] < window[1] and any(abs(frames[name] - edge) < 0.5 for edge in window):
-            lines.append(
-                f"event '{name}' lies at the edge of its window, frame {frames[name]:g} of {window[0]} to {window[1]}: "
-                "widen between: or after:, or give its frame"
-            )
-    return lines
+def events_at_edge(found: FoundEvents) -> list[str]:
+    """Return a line for each event that was found at an end of where it was looked for: the extreme may lie beyond."""
+    return [
+        f"event '{name}' lies at the edge of its window, frame {found.frames[name]:g} of {window[0]} to {window[1]}: "
+        "widen between: or after:, or give its frame"
+        for name, window in found.windows.items()
+        if window[0] < window[1] and any(abs(found.frames[name] - edge) < 0.5 for edge in window)
+    ]
 
 
 def _window(rule: DetectRule, facts: ClipFacts, place: Place, *, events: Mapping[str, float]) -> tuple[int, int]:
@@ -147,11 +165,6 @@ def _window(rule: DetectRule, facts: ClipFacts, place: Place, *, events: Mapping
             raise place.at("after").error(f"in {place.clip}: event '{rule.after}' has no frame")
         start = int(events[rule.after]) + 1
     return min(max(start, facts.first), stop), stop
-
-
-def _quantity(rule: DetectRule) -> Quantity:
-    quantities: dict[str, Quantity] = {"height": "height", "speed": "speed", "distance": "distance"}
-    return quantities[rule.measure]
 
 
 def _clip_key(by_clip: Mapping[str, int], relative: str, others: Collection[str], place: Place) -> str | None:
@@ -194,12 +207,13 @@ def _paths_by_name(others: tuple[str, ...]) -> dict[str, list[str]]:
 
 
 def _names(path: str) -> tuple[str, str]:
-    name = PurePosixPath(path).name
+    name = path.rpartition("/")[2]
     return name, _without_suffix(name)
 
 
 def _posix(path: str) -> str:
-    return str(PurePosixPath(path.replace("\\", "/")))
+    path = path.replace("\\", "/")
+    return path if _NO_NAMES.isdisjoint(path.split("/")) else str(PurePosixPath(path))
 
 
 def _without_suffix(path: str) -> str:

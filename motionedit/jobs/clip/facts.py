@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import cached_property
-from itertools import chain
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -13,11 +12,11 @@ from motionedit.core.arrays import frozen
 from motionedit.core.body import ground
 from motionedit.core.body.anatomy import NOTHING_GIVEN, Anatomy, GivenBody, find_anatomy
 from motionedit.core.body.bones import find_bones, travel_joint
-from motionedit.core.body.contacts import plants_of, sole_tracks
+from motionedit.core.body.contacts import planted, plants_of, sole_tracks, stands_of
 from motionedit.core.body.rest_pose import rest_pose_frames
 from motionedit.core.body.steps import own_steps
 from motionedit.core.body.up import find_up
-from motionedit.core.feet.phases import LegPath, find_phases, leg_paths
+from motionedit.core.feet.phases import find_phases, leg_paths
 from motionedit.core.trace import BLOCK_FRAMES, frame_blocks
 from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from motionedit.core.arrays import FloatArray
-    from motionedit.core.body.contacts import Plant
+    from motionedit.core.body.contacts import Plant, Stand
     from motionedit.core.body.steps import Steps
     from motionedit.core.bvh import Clip
     from motionedit.core.kinematics import WorldPoses
@@ -114,22 +113,22 @@ class ClipFacts:
         return frozen(tracks)
 
     @cached_property
-    def plants(self) -> tuple[Plant, ...]:
-        """When heels and toes stand, as `plants_of`."""
+    def sole_stands(self) -> tuple[Stand, ...]:
+        """When heels and toes stand, as `stands_of`."""
         frame_time = self.clip.motion.frame_time
-        return tuple(plants_of(self.tracks, self.anatomy, up=self.up, first=self.first, frame_time=frame_time))
+        return tuple(stands_of(self.tracks, self.anatomy, up=self.up, first=self.first, frame_time=frame_time))
+
+    @cached_property
+    def plants(self) -> tuple[Plant, ...]:
+        """The same as plants, as `plants_of`."""
+        return tuple(planted(self.anatomy, self.sole_stands))
 
     @cached_property
     def phases(self) -> tuple[Plant, ...]:
         """The plants cut to what a foot can be held for in one place, as `find_phases`."""
         anatomy, frame_time = self.anatomy, self.clip.motion.frame_time
-
-        def read(poses: WorldPoses) -> list[FloatArray]:
-            return [*chain.from_iterable(leg_paths(poses, anatomy))]
-
-        plants, arrays = self.plants, self.world.gathered(read)
-        legs = [LegPath(*arrays[i : i + 5]) for i in range(0, len(arrays), 5)]
-        return tuple(find_phases(self.tracks, legs, anatomy, plants, up=self.up, frame_time=frame_time))
+        (legs,) = self.world.gathered(lambda poses: [leg_paths(poses, anatomy)])
+        return tuple(find_phases(self.tracks, legs, anatomy, self.sole_stands, up=self.up, frame_time=frame_time))
 
     @cached_property
     def steps(self) -> Steps:

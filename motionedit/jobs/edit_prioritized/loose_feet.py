@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.body.contacts import frames_of
+from motionedit.core.body.plant_frames import frames_of
+from motionedit.core.body.quality import foot_drift
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -33,14 +34,14 @@ def loose_feet(sized: SizedClip, constraints: Sequence[Constraint], before: Trac
     before, after : Trace
         By `feet_of`.
     """
-    facts, down = sized.facts, frames_of(sized.facts.phases)
+    facts, down = sized.facts, None
+    # Most edits move no planted foot at all.
+    if foot_drift(before.tracks, after.tracks, facts.phases) * sized.scale > _LOOSE:
+        down = frames_of(facts.phases)
     if down is None:
         return []
     ways = rot.length(down.of(after.tracks) - down.of(before.tracks))
     lines: list[str] = []
-    # Most edits move no planted foot at all.
-    if ways.max() * sized.scale <= _LOOSE:
-        return lines
     for foot, leg in zip(("left", "right"), facts.anatomy.legs or (), strict=False):
         own = np.array([point.foot == foot for point in facts.anatomy.sole_points])[down.points]
         loose = np.where(own & ~_placed(sized, constraints, leg)[down.frames], ways, 0.0)

@@ -11,7 +11,7 @@ from motionedit.core.pca.model import DatabaseClip
 from motionedit.core.skeleton_match import match_joints
 from motionedit.dataclass import dataclass, replace
 from motionedit.errors import ClipError, ModelError, MotionEditError, UsageError, together
-from motionedit.jobs.batch.files import bytes_of, place
+from motionedit.jobs.batch.files import Places, bytes_of
 from motionedit.jobs.batch.one_clip import read_task
 from motionedit.jobs.batch.plan import ClipTask
 from motionedit.jobs.batch.run import values_in_order
@@ -63,11 +63,12 @@ def database_in(folder: Path) -> Database:
 def _refuse_strangers(normalization: Normalization, folder: Path) -> None:
     """Raise a ModelError where a clip is listed twice, or is none of the folder's."""
     found: set[str] = set()
+    places = Places()
     for each in normalization.clips:
         path = PurePath(each.clip)
         if path.is_absolute() or ".." in path.parts:
             raise ModelError(f"lists {each.clip}, which is not below its folder", file=str(folder / NAME))
-        name = place(folder / path)
+        name = places.of(folder / path)
         if name in found:
             raise ModelError(f"lists {each.clip} twice; run 'motionedit normalize' again", file=str(folder / NAME))
         found.add(name)

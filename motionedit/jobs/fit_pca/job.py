@@ -17,6 +17,7 @@ from motionedit.errors import ModelError
 from motionedit.jobs.batch.files import clean_leftovers
 from motionedit.jobs.batch.one_clip import write_file
 from motionedit.jobs.batch.outputs import refuse_clashes
+from motionedit.jobs.batch.pool import threads_within
 from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.kept_rules import body_said, kept_body, with_body
 from motionedit.jobs.fit_pca.database import database_in, motions_of
@@ -89,6 +90,7 @@ def fit(database: Database, loaded: LoadedSpec[FitPcaSpec] | None, *, options: R
                 root_weight=spec.root_weight,
                 excluded=_excluded(loaded, first, database.label),
                 components=ComponentCount(spec.components, spec.explained_variance),
+                threads=threads_within(1, options),
             ),
             rules=with_body(normalization.rules, spec.body),
         )

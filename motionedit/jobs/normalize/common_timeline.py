@@ -78,7 +78,7 @@ def _rate(loaded: LoadedSpec[NormalizeSpec], measures: Sequence[ClipMeasure], wa
             fastest = f"{measures[fast].label} {rates[fast]:.4g} Hz"
             message = f"the clips' rates differ: {slowest}, {fastest}; set frame_rate: {rates[slow]:.4g}"
             raise loaded.error(("frame_rate",), message)
-        return float(np.median(rates))
+        return float(median(rates))
     if rate > (1.0 + RATE_TOLERANCE) * rates[slow]:
         warnings.append(
             f"frame_rate {rate:.4g} is finer than a clip ({slowest}): the corners between its frames will show in "

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 
 # Bytes of files whose clips are held from the first phase to the second, when one process does both: their motions are
-# some four times as large.
+# about as large.
 _MOST_KEPT = 1 << 26
 
 
@@ -62,10 +62,13 @@ def run(loaded: LoadedSpec[NormalizeSpec], clips: Sequence[Path], output: Path, 
     """
     writes = [(NAME, output / NAME)]
     # One clip more or less moves the means.
-    listed = [(task.relative, task.label) for task in find_clips(clips, leave_out=output)]
+    found = find_clips(clips, leave_out=output)
+    listed = [(task.relative, task.label) for task in found]
     key = run_key("normalize", loaded.data, files=loaded.model.event_files, more=[listed, options.lenient])
     verdicts = verdicts_in(str(output), key, update=options.update, dry_run=options.dry_run)
-    tasks = plan(clips, str(output), options=options, depends=loaded.files, writes=writes, verdicts=verdicts)
+    tasks = plan(
+        clips, str(output), options=options, depends=loaded.files, writes=writes, verdicts=verdicts, found=found
+    )
     if any(task.source is None for task in tasks):
         raise UsageError("'-' is not for normalize, which reads each clip twice; give files")
     if all(task.current for task in tasks) and (output / NAME).exists():
@@ -138,7 +141,7 @@ def _both_phases(
     lines = [measure.lines[line] for measure in used]
     alignments = align_each(lines, heading=align.heading, position=align.position)
     works = [
-        ResampleClip(measure, timeline, alignment, loaded.model.unit)
+        ResampleClip(measure, timeline, alignment, loaded.model.unit, options.verify)
         for measure, alignment in zip(used, alignments, strict=True)
     ]
     given = [replace(task, clip=task.clip or by_label[task.label].read) for task in good]

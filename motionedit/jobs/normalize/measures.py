@@ -11,7 +11,7 @@ from motionedit.errors import ClipError, MotionEditError
 from motionedit.jobs.batch.one_clip import read_task
 from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.crop import cropped
-from motionedit.jobs.clip.events import event_frames, events_at_edge, explicit_events
+from motionedit.jobs.clip.events import events_at_edge, explicit_events, found_events
 from motionedit.jobs.clip.facts import facts_of
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ class ClipMeasure:
 
     `first` and `last` are the frames that count, after a rest pose and within the spec's crop; `travel` is the joint
     that carries the travel; `stands` says whether both feet stand side by side where clips are aligned, `lines` by what
-    they may be; `read` holds the clip where the second phase need not read it again.
+    they may be; `read` holds the clip, without its rows, where the second phase need not read it again.
     """
 
     label: str
@@ -74,6 +74,7 @@ class MeasureClip:
         """Return the clip's measure."""
         spec = self.loaded.model
         clip = read_task(task, lenient=self.lenient)
+        digest = clip.sha256  # while the processor has the bytes at hand
         given = resolve.body(spec.body, clip.motion.skeleton, resolve.Place(self.loaded, ("body",), task.label))
         facts = facts_of(clip, up=spec.up, keep_rest_pose=spec.rest_pose == "keep", given=given)
         facts.refuse_one_frame()
@@ -85,7 +86,7 @@ class MeasureClip:
         return ClipMeasure(
             label=task.label,
             clip=task.relative,
-            digest=clip.sha256,
+            digest=digest,
             frames=len(clip.motion),
             frame_time=clip.motion.frame_time,
             first=first,
@@ -98,7 +99,7 @@ class MeasureClip:
             stands=facts.stands(at),
             lines=lines,
             warnings=(*facts.warnings, *warnings),
-            read=clip if self.keep else None,
+            read=clip.without_rows() if self.keep else None,
         )
 
 
@@ -111,11 +112,11 @@ def _events(
     """Return the frames of all events of a clip, and what is odd about them."""
     known = explicit_events(loaded, task.relative, others=others)
     place = resolve.Place(loaded, ("events",), task.label)
-    frames = event_frames(loaded.model.events, facts, place, known=known)
+    found = found_events(loaded.model.events, facts, place, known=known)
     for name in loaded.model.events:
-        if name not in frames:
+        if name not in found.frames:
             raise place.at(name).error(f"no frame for {task.label}; add it to frames, or give detect")
-    return frames, events_at_edge(loaded.model.events, facts, place, frames=frames, known=known)
+    return found.frames, events_at_edge(found)
 
 
 def sound_measures(

@@ -8,14 +8,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from motionedit.core.body.quality import find_defects
-from motionedit.core.bvh import resampled_bytes
+from motionedit.core.bvh import other_rows_pieces
 from motionedit.core.timeline.alignment import aligned
 from motionedit.core.timeline.resample import resample
+from motionedit.core.timeline.sampled_rows import sampled_rows
 from motionedit.core.timeline.warp import make_warp
 from motionedit.dataclass import dataclass
 from motionedit.jobs.batch.one_clip import Outcome
 
 if TYPE_CHECKING:
+    from motionedit.core.arrays import FloatArray
     from motionedit.core.bvh import Clip
     from motionedit.core.motion import Motion
     from motionedit.core.timeline.alignment import Alignment
@@ -27,37 +29,46 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ResampleClip:
-    """The work on the clip of one measure: onto the common timeline, and into its alignment."""
+    """The work on the clip of one measure: onto the common timeline, and into its alignment.
+
+    With `verify` the outcome says what motion the written clip is to be.
+    """
 
     measure: ClipMeasure
     timeline: Timeline
     alignment: Alignment
     unit: Unit | None
+    verify: bool = False
 
     def __call__(self, clip: Clip, task: ClipTask) -> Outcome:
         """Return the normalized clip."""
         del task
         measure = self.measure
-        motion = self._resampled(clip)
+        warp = make_warp(
+            self.timeline, first=measure.first, last=measure.last, events=measure.events, label=measure.label
+        )
+        at = warp.to_source(np.arange(self.timeline.frames, dtype=np.float64))
+        frame_time = 1.0 / self.timeline.frame_rate
+        first = clip.text.values_between(0, 1)[0]
+        rows = sampled_rows(clip.motion, at, self.alignment, travel=measure.travel, start=first)
         places = ", ".join(f"{name} {frame:.2f}" for name, frame in measure.events.items())
         line = f"frames {measure.first} to {measure.last} -> {self.timeline.frames}; {places}"
-        content = resampled_bytes(clip, motion)
-        digest = hashlib.sha256(content).hexdigest()
+        content, sha256 = list(other_rows_pieces(clip, rows, frame_time=frame_time)), hashlib.sha256()
+        for piece in content:
+            sha256.update(piece)
+        digest = sha256.hexdigest()
         return Outcome(
             content,
             {**self._record(), "clip_sha256": digest},
             warnings=(*measure.warnings, *_defects(clip.motion, first=measure.first)),
-            motion=motion,
+            motion=self._resampled(clip, at, frame_time=frame_time) if self.verify else None,
             details=(line.rstrip("; "),),
             digest=digest,
         )
 
-    def _resampled(self, clip: Clip) -> Motion:
-        measure, timeline = self.measure, self.timeline
-        warp = make_warp(timeline, first=measure.first, last=measure.last, events=measure.events, label=measure.label)
-        at = warp.to_source(np.arange(timeline.frames, dtype=np.float64))
-        resampled = resample(clip.motion, at, frame_time=1.0 / timeline.frame_rate)
-        return aligned(resampled, self.alignment, travel=measure.travel)
+    def _resampled(self, clip: Clip, at: FloatArray, *, frame_time: float) -> Motion:
+        resampled = resample(clip.motion, at, frame_time=frame_time)
+        return aligned(resampled, self.alignment, travel=self.measure.travel)
 
     def _record(self) -> dict[str, Any]:
         return {

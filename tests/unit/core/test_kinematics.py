@@ -61,6 +61,17 @@ def test_blocks_of_frames_make_no_difference(monkeypatch):
     np.testing.assert_allclose(forward(motion).rotations, whole.rotations, atol=1e-13)
 
 
+@pytest.mark.compiled
+@pytest.mark.parametrize("frames", [1, 2, 3, 8])
+def test_a_frame_is_the_same_to_the_bit_beside_any_others(frames):
+    motion = random_motion(frames)
+    whole = forward(motion)
+    for f in range(frames):
+        alone = forward(motion.at([f]))
+        np.testing.assert_array_equal(alone.positions[0], whole.positions[f])
+        np.testing.assert_array_equal(alone.rotations[0], whole.rotations[f])
+
+
 def test_one_joint_alone_is_where_all_together_are():
     motion = random_motion(5)
     poses = forward(motion)

@@ -143,25 +143,6 @@ def test_compiled_places_between_frames_are_those_of_numpy_to_the_bit(rng, monke
     np.testing.assert_array_equal(compiled, rot.slerp_frames(q, frames, t), strict=True)
 
 
-@pytest.mark.skipif(solver_name() == "numpy", reason="nothing compiled here")
-def test_frames_that_there_are_not_and_wrong_sizes_are_errors_and_no_crash():
-    q, at, cosines, out = np.zeros((2, 3, 4)), np.array([1]), np.zeros((1, 3)), np.zeros((1, 3, 4))
-    for frames, joints, results in (
-        (np.array([2]), 3, cosines),
-        (np.array([-1]), 3, cosines),
-        (at, 5, cosines),
-        (at, 3, out),
-    ):
-        with pytest.raises(ValueError, match=r"frames|rotations|cosines"):
-            compiled().arc_cosines(q, frames, joints, results)
-    good = (np.zeros(1), cosines, np.zeros((3, 1, 3)), 0.0, out)
-    for k, wrong in enumerate((np.zeros(2), np.zeros(2), cosines)):
-        with pytest.raises(ValueError, match=r"fractions|cosines|tangents"):
-            compiled().slerp(q, at, 3, *good[:k], wrong, *good[k + 1 :])
-    with pytest.raises(ValueError, match="turns"):
-        compiled().slerp(q, at, 3, *good[:4], cosines)
-
-
 def test_the_mean_is_scipys_whatever_the_signs(rng):
     q = rot.multiply(random_quaternions(rng, 1), rot.exp(0.4 * rng.normal(size=(60, 3))))
     q *= rng.choice([-1.0, 1.0], size=(60, 1))
@@ -202,6 +183,20 @@ def test_what_is_compiled_is_that_of_numpy_to_the_bit(work, leading, monkeypatch
     for (found, lengths), pair in zip(compiled, pairs, strict=True):
         np.testing.assert_array_equal(found, work(*pair), strict=True)
         np.testing.assert_array_equal(lengths, rot.length(pair[0][..., :3]), strict=True)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("leading", [(), (0,), (7,), (5, 3)])
+@pytest.mark.parametrize("lies", LYING)
+def test_compiled_rotation_vectors_are_those_of_numpy_to_the_bit(leading, lies, monkeypatch):
+    rng = np.random.default_rng(6)
+    v = rng.normal(size=(*leading, 3)) * rng.choice([0.0, 1e-9, 1e-4, 1.0, 3.0], size=(*leading, 1))
+    q = rot.exp(v) * rng.choice([-1.0, 1.0], size=(*leading, 1))
+    v, q = (lies(each) if leading else each for each in (v, q))
+    compiled = rot.exp(v), rot.log(q)
+    monkeypatch.setenv("MOTIONEDIT_SOLVER", "numpy")
+    for found, work, given in zip(compiled, (rot.exp, rot.log), (v, q), strict=True):
+        np.testing.assert_array_equal(found, work(given.astype(np.float64)), strict=True)
 
 
 @pytest.mark.skipif(solver_name() == "numpy", reason="nothing compiled here")

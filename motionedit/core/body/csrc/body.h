@@ -5,6 +5,12 @@
 
 #include <stdint.h>
 
+/* World transforms of a motion: positions (F, J, 3) and rotations (F, J, 4). */
+typedef struct {
+    int64_t frames, joints;
+    const double *positions, *rotations;
+} Poses;
+
 /* By what a point is taken to stand: contacts.py says what each is. Times are in frames, lengths in metres. */
 typedef struct {
     int64_t half, low_while, longest_gap, shortest, top_while;
@@ -26,38 +32,64 @@ int64_t find_stands(const double *tracks, int64_t frames, int64_t points, const 
 /* The median of values, of which there are some; `room` is for as many. */
 double median(const double *values, int64_t count, double *room);
 
-/* How P points of feet go along tracks (F, P, 3), at `scale` metres a unit, from frame `first` on: `toes` (P,) says
-   which count as toes. They stand at `stood` frames of n plants, one after the other, `counts` (n,) of each. */
+/* The medians over frames of the ways from the middle of two joints to that of two others, which may be one: n times
+   four joints, (n, 4), to `out` (n, 3). -1 where memory ran out. */
+int find_median_ways(const Poses *poses, const int64_t *joints, int64_t count, double *out);
+
+/* A point of a foot that stands from one frame to another, both in. */
 typedef struct {
-    int64_t frames, points, first, plants, stood;
+    int64_t point, start, stop;
+} PlantFrames;
+
+/* How P points of feet go along tracks (F, P, 3), and which of them stand when: n plants. */
+typedef struct {
+    int64_t frames, points, plants;
     const double *tracks, *up;
-    const uint8_t *toes;
-    const int64_t *at, *point, *counts;
-    double scale, frame_time, near_floor, skates, slides, under;
+    const PlantFrames *stands;
 } FootTracks;
+
+/* By what feet are measured, measures.py says what each is: at `scale` metres a unit, from frame `first` on; `toes` (P,)
+   says which points count as toes. */
+typedef struct {
+    int64_t first;
+    const uint8_t *toes;
+    double scale, frame_time, near_floor, skates, slides, under;
+} FootRules;
 
 /* As measures.FootMeasures. */
 typedef struct {
     double skate_mean, skate_ratio, sliding_share, penetration_share, penetration_max, drift_max, floating_max;
 } FootFigures;
 
-void measure_feet(const FootTracks *feet, FootFigures *figures);
+void measure_feet(const FootTracks *feet, const FootRules *rules, FootFigures *figures);
 
-/* World transforms of a motion: positions (F, J, 3) and rotations (F, J, 4). */
-typedef struct {
-    int64_t frames, joints;
-    const double *positions, *rotations;
-} Poses;
+/* How far a planted point goes on the level from a frame to the next, at most. */
+double farthest_slide(const FootTracks *feet);
 
-/* The sums over frames from `first` on of the ways from joints to others, seen from third ones: n triples, (n, 3). */
-void sum_ways(const Poses *poses, int64_t first, const int64_t *triples, int64_t count, double *out);
+/* How far a planted point is from where other tracks (F, P, 3) have it, at most. */
+double farthest_drift(const FootTracks *feet, const double *other);
+
+static inline const double *joint_place(const Poses *poses, int64_t frame, int64_t joint)
+{
+    return poses->positions + 3 * (frame * poses->joints + joint);
+}
+
+static inline const double *joint_turn(const Poses *poses, int64_t frame, int64_t joint)
+{
+    return poses->rotations + 4 * (frame * poses->joints + joint);
+}
+
+/* The mean directions, over frames from `first` on, from joints to others, seen from third ones: n triples, (n, 3); unit
+   vectors, (n, 3). */
+void find_directions(const Poses *poses, int64_t first, const int64_t *triples, int64_t count, double *out);
 
 /* Sum q q^T over frames from `first` on, of n joints' rotations: shape (n, 4, 4). */
 void sum_products(const Poses *poses, int64_t first, const int64_t *joints, int64_t count, double *out);
 
-/* How far n joints swing bones `along` (n, 3) from where centers (n, 4) have them, and twist about them, at most, from
-   frame `first` on: (n, 2), rad. */
-void widest_turns(const Poses *poses, int64_t first, const int64_t *joints, const double *centers, const double *along,
+/* The cones of n joints, of which the eigenvectors of sum q q^T are known, (n, 4, 4), and the bones `along` (n, 3): the
+   last vector, signed as the rotation at frame `first`, is a cone's center, and how far the joint swings its bone from
+   there, and twists about it, at most, from that frame on, its ranges: (n, 6), rad. */
+void find_cones(const Poses *poses, int64_t first, const int64_t *joints, const double *vectors, const double *along,
     int64_t count, double *out);
 
 /* Where points (n, 3) in the frames of n joints are in the world at each frame: shape (F, n, 3). */
@@ -68,11 +100,28 @@ void carry(const Poses *poses, const int64_t *joints, const double *points, int6
 void largest_steps(const double *before, const double *after, int64_t frames, int64_t joints, int64_t first,
     double *angles, int64_t *into);
 
-/* How n limbs bend, each a top, a joint, an end and the joint's parent, (n, 4): upper x lower of their unit bones has
-   the `sines` (F, n); what it is in the parent's frame is summed to the `axes` (n, 3) over frames from `first` on in
-   which the sine is above `bent`. Whether there are any is `shown` (n,). */
-void bent_sides(const Poses *poses, int64_t first, const int64_t *limbs, double bent, int64_t count, double *sines,
-    double *axes, uint8_t *shown);
+/* n limbs, each a top, a joint, an end and the joint's parent, (n, 4): bent above one sine, straight below the other. */
+typedef struct {
+    int64_t count;
+    const int64_t *joints;
+    double bent, straight;
+} Limbs;
+
+/* How they bend, as bends.Bend: in which frames they are `straight` (n, F), about which unit `axes` (n, 3), and their
+   unit bones, upper and lower, (n, 2, 3). And what the angle about the axis is found from at each frame: the `lower`
+   bone in the parent's frame, (F, n, 3), and with the upper one its sine about the axis and its cosine, (2, n, F). */
+typedef struct {
+    uint8_t *straight;
+    double *axes, *bones, *lower, *turns;
+} BendsFound;
+
+/* Find how limbs bend in the frames from `first` on; 0 where one of them is bent in none of them. */
+int find_bends(const Poses *poses, int64_t first, const Limbs *limbs, const BendsFound *found);
+
+/* Whether the joints of n limbs, whose bones are the same at all frames, `upper` (n, 3) in the frame of a joint's parent
+   and `lower` (n, 3) in its own, bend back about `axes` (n, 3) at any frame from `first` on: to `back` (n,). */
+void find_bent_back(const Poses *poses, int64_t first, const int64_t *joints, const double *upper, const double *lower,
+    const double *axes, int64_t count, double *back);
 
 /* Let those frames be the `same` (F,) that were, and whose numbers (F, width) are equal in both. */
 void same_frames(const double *one, const double *other, int64_t frames, int64_t width, uint8_t *same);

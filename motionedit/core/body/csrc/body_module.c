@@ -59,8 +59,8 @@ static int take_joints(const OnJoints *of, PyObject *arguments, Held *held, Pose
         !poses_of(held, positions, rotations, frames, joint_count, poses))
         return 0;
     *first = begin, *count = items;
-    if (begin < 0 || items < 0 || (of->needs_positions && poses->positions == NULL) ||
-        (of->needs_rotations && poses->rotations == NULL)) {
+    if (begin < 0 || items < 0 || (begin >= frames && !of->by_frame) ||
+        (of->needs_positions && poses->positions == NULL) || (of->needs_rotations && poses->rotations == NULL)) {
         PyErr_SetString(PyExc_ValueError, "no such frames, or no positions or rotations");
         return 0;
     }
@@ -94,11 +94,11 @@ static PyObject *on_joints(const OnJoints *of, PyObject *arguments)
     Py_RETURN_NONE;
 }
 
-static void ways_work(
+static void directions_work(
     const Poses *poses, int64_t first, const int64_t *joints, const double **arrays, int64_t count, double *out)
 {
     (void)arrays;
-    sum_ways(poses, first, joints, count, out);
+    find_directions(poses, first, joints, count, out);
 }
 
 static void products_work(
@@ -108,10 +108,16 @@ static void products_work(
     sum_products(poses, first, joints, count, out);
 }
 
-static void widest_work(
+static void cones_work(
     const Poses *poses, int64_t first, const int64_t *joints, const double **arrays, int64_t count, double *out)
 {
-    widest_turns(poses, first, joints, arrays[0], arrays[1], count, out);
+    find_cones(poses, first, joints, arrays[0], arrays[1], count, out);
+}
+
+static void back_work(
+    const Poses *poses, int64_t first, const int64_t *joints, const double **arrays, int64_t count, double *out)
+{
+    find_bent_back(poses, first, joints, arrays[0], arrays[1], arrays[2], count, out);
 }
 
 static void carry_work(
@@ -121,10 +127,10 @@ static void carry_work(
     carry(poses, joints, arrays[0], count, out);
 }
 
-static PyObject *ways(PyObject *self, PyObject *arguments)
+static PyObject *directions(PyObject *self, PyObject *arguments)
 {
     (void)self;
-    return on_joints(&(const OnJoints){ways_work, 3, {0}, 3, 0, 1, 1}, arguments);
+    return on_joints(&(const OnJoints){directions_work, 3, {0}, 3, 0, 1, 1}, arguments);
 }
 
 static PyObject *products(PyObject *self, PyObject *arguments)
@@ -133,10 +139,16 @@ static PyObject *products(PyObject *self, PyObject *arguments)
     return on_joints(&(const OnJoints){products_work, 1, {0}, 16, 0, 0, 1}, arguments);
 }
 
-static PyObject *widest(PyObject *self, PyObject *arguments)
+static PyObject *cones(PyObject *self, PyObject *arguments)
 {
     (void)self;
-    return on_joints(&(const OnJoints){widest_work, 1, {4, 3}, 2, 0, 0, 1}, arguments);
+    return on_joints(&(const OnJoints){cones_work, 1, {16, 3}, 6, 0, 0, 1}, arguments);
+}
+
+static PyObject *bent_back(PyObject *self, PyObject *arguments)
+{
+    (void)self;
+    return on_joints(&(const OnJoints){back_work, 1, {3, 3, 3}, 1, 0, 0, 1}, arguments);
 }
 
 static PyObject *carried(PyObject *self, PyObject *arguments)
@@ -195,39 +207,74 @@ static PyObject *steps(PyObject *self, PyObject *arguments)
 static PyObject *bends(PyObject *self, PyObject *arguments)
 {
     Held held = {.count = 0};
-    PyObject *positions, *rotations, *limbs, *results[3];
+    PyObject *positions, *rotations, *joints_of_limbs, *given[5], *shown = NULL;
     long long frames, joints, first, count;
-    double bent;
+    Limbs limbs;
     Poses poses;
-    int fits = 0;
     (void)self;
-    if (!PyArg_ParseTuple(arguments, "OOLLLOLdOOO", &positions, &rotations, &frames, &joints, &first, &limbs, &count,
-            &bent, results, results + 1, results + 2))
+    if (!PyArg_ParseTuple(arguments, "OOLLLOLddOOOOO", &positions, &rotations, &frames, &joints, &first,
+            &joints_of_limbs, &count, &limbs.bent, &limbs.straight, given, given + 1, given + 2, given + 3, given + 4))
         return NULL;
-    if (poses_of(&held, positions, rotations, frames, joints, &poses)) {
-        const int64_t *which = joints_of(&held, limbs, 4 * count, &poses);
-        double *sines = which == NULL ? NULL : items_of(&held, results[0], frames * count, sizeof *sines, 1, "sines");
-        double *axes = sines == NULL ? NULL : items_of(&held, results[1], 3 * count, sizeof *axes, 1, "axes");
-        uint8_t *shown = axes == NULL ? NULL : items_of(&held, results[2], count, 1, 1, "limbs");
-        fits = shown != NULL && poses.positions != NULL && poses.rotations != NULL;
-        if (fits)
-            bent_sides(&poses, first, which, bent, count, sines, axes, shown);
-        else if (!PyErr_Occurred())
-            PyErr_SetString(PyExc_ValueError, "no positions or rotations");
+    if (positions == Py_None || rotations == Py_None || first < 0)
+        return PyErr_Format(PyExc_ValueError, "no positions or rotations, or no such frames");
+    if (poses_of(&held, positions, rotations, frames, joints, &poses) &&
+        (limbs.joints = joints_of(&held, joints_of_limbs, 4 * count, &poses)) != NULL) {
+        static const struct {
+            const char *name;
+            int64_t width, by_frame;
+            size_t bytes;
+        } items[] = {
+            {"straight", 1, 1, 1}, {"axes", 3, 0, 8}, {"bones", 6, 0, 8}, {"lower", 3, 1, 8}, {"turns", 2, 1, 8}};
+        void *at[5];
+        int taken = 0;
+        for (int64_t many; taken < 5; taken++) {
+            many = items[taken].width * count * (items[taken].by_frame ? frames : 1);
+            at[taken] = items_of(&held, given[taken], many, items[taken].bytes, 1, items[taken].name);
+            if (at[taken] == NULL)
+                break;
+        }
+        limbs.count = count;
+        const BendsFound found = {at[0], at[1], at[2], at[3], at[4]};
+        if (taken == 5)
+            shown = PyBool_FromLong(find_bends(&poses, first, &limbs, &found));
     }
     let_go(&held);
-    if (!fits)
+    return shown;
+}
+
+static PyObject *median_ways(PyObject *self, PyObject *arguments)
+{
+    Held held = {.count = 0};
+    PyObject *positions, *joints_given, *results;
+    long long frames, joints, count;
+    Poses poses;
+    int status = -2;
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "OLLOLO", &positions, &frames, &joints, &joints_given, &count, &results))
+        return NULL;
+    if (positions == Py_None || frames < 1)
+        return PyErr_Format(PyExc_ValueError, "no positions, or no frames");
+    if (poses_of(&held, positions, Py_None, frames, joints, &poses)) {
+        const int64_t *which = joints_of(&held, joints_given, 4 * count, &poses);
+        double *out = which == NULL ? NULL : items_of(&held, results, 3 * count, sizeof *out, 1, "results");
+        if (out != NULL && (status = find_median_ways(&poses, which, count, out)) < 0)
+            PyErr_NoMemory();
+    }
+    let_go(&held);
+    if (status < 0)
         return NULL;
     Py_RETURN_NONE;
 }
 
 PyMethodDef body_methods[] = {
-    {"ways", ways, METH_VARARGS, "Write sums of ways between joints, seen from others."},
+    {"directions", directions, METH_VARARGS, "Write mean directions between joints, seen from others."},
     {"products", products, METH_VARARGS, "Write sums of products of joints' rotations."},
-    {"widest", widest, METH_VARARGS, "Write how far joints swing and twist about their centers."},
+    {"cones", cones, METH_VARARGS, "Write the cones of joints about their means, which are eigenvectors."},
+    {"bent_back", bent_back, METH_VARARGS, "Write which limbs bend back at any frame: 1 or 0."},
     {"carried", carried, METH_VARARGS, "Write where points in joints' frames are at each frame."},
     {"steps", steps, METH_VARARGS, "Write the largest step of each joint, and the frames into which these lead."},
     {"bends", bends, METH_VARARGS, "Write how much limbs are bent at each frame, and about which axes."},
+    {"median_ways", median_ways, METH_VARARGS, "Write median ways between the middles of joints."},
     {"jerks", jerks, METH_VARARGS, "Write squared third differences; return the largest, its frame and joint."},
     {NULL, NULL, 0, NULL},
 };

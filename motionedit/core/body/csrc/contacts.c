@@ -74,19 +74,6 @@ static void rolling_minimum(double *padded, int64_t frames, int64_t width)
     }
 }
 
-static int compare(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-double median(const double *values, int64_t count, double *room)
-{
-    memcpy(room, values, sizeof *room * (size_t)count);
-    qsort(room, (size_t)count, sizeof *room, compare);
-    return count % 2 ? room[count / 2] : (room[count / 2 - 1] + room[count / 2]) / 2.0;
-}
-
 /* Put runs together where fewer frames part them than a gap has and the point stays at its place; how many. */
 static int64_t close_gaps(Run *runs, int64_t count, const double *places, const StandRules *rules)
 {
@@ -180,9 +167,9 @@ static int64_t stands_of(const Room *room, int64_t frames, const StandRules *rul
     return kept;
 }
 
-static double height_of(const double *place, const double *up, double metre)
+static double height_of(const double *place, const double *up)
 {
-    return (place[0] * up[0] + place[1] * up[1] + place[2] * up[2]) / metre;
+    return place[0] * up[0] + place[1] * up[1] + place[2] * up[2];
 }
 
 int64_t find_stands(const double *tracks, int64_t frames, int64_t points, const int64_t *feet, const double *up,
@@ -197,11 +184,13 @@ int64_t find_stands(const double *tracks, int64_t frames, int64_t points, const 
             const double *places = tracks + 3 * f * points;
             for (int a = 0; a < 3; a++)
                 room.places[3 * f + a] = places[3 * p + a] / metre;
-            room.heights[f] = height_of(places + 3 * p, up, metre), room.lowest[f] = INFINITY;
-            for (int64_t q = 0; q < points; q++) {
-                const double height = feet[q] == feet[p] ? INFINITY : height_of(places + 3 * q, up, metre);
-                room.lowest[f] = height < room.lowest[f] ? height : room.lowest[f];
-            }
+            double lowest = INFINITY;
+            for (int64_t q = 0; q < points; q++)
+                if (feet[q] != feet[p]) {
+                    const double height = height_of(places + 3 * q, up);
+                    lowest = height < lowest ? height : lowest;
+                }
+            room.heights[f] = height_of(places + 3 * p, up) / metre, room.lowest[f] = lowest / metre;
         }
         const int64_t more = stands_of(&room, frames, rules);
         Stand *stands = realloc(*found, sizeof *stands * (size_t)(count + more + 1));

@@ -54,47 +54,57 @@ static PyObject *stands(PyObject *self, PyObject *arguments)
     return list;
 }
 
-/* Whether plants are at frames, and of points, that there are. */
-static int are_plants(const FootTracks *feet)
+/* Take tracks, up, which may be None, and plants that a call is given; whether these are at frames, and of points, that
+   there are. */
+static int take_feet(
+    Held *held, PyObject **given, long long frames, long long points, long long plants, FootTracks *feet)
 {
-    int64_t sum = 0;
-    for (int64_t k = 0; k < feet->plants && sum >= 0; k++)
-        sum = feet->counts[k] < 1 || feet->counts[k] > feet->stood - sum || feet->point[k] < 0 ||
-                      feet->point[k] >= feet->points
-                  ? -1
-                  : sum + feet->counts[k];
-    for (int64_t i = 0; i < feet->stood && sum >= 0; i++)
-        if (feet->at[i] < 0 || feet->at[i] >= feet->frames)
-            sum = -1;
-    if (sum != feet->stood)
-        PyErr_SetString(PyExc_ValueError, "plants are at no frames, or of no points");
-    return sum == feet->stood;
+    *feet = (FootTracks){.frames = frames, .points = points, .plants = plants};
+    if (frames < 0 || points < 0) {
+        PyErr_SetString(PyExc_ValueError, "no such frames or points");
+        return 0;
+    }
+    if ((feet->tracks = items_of(held, given[0], 3 * frames * points, sizeof(double), 0, "tracks")) == NULL ||
+        (given[1] != Py_None && (feet->up = items_of(held, given[1], 3, sizeof(double), 0, "up")) == NULL) ||
+        (feet->stands = items_of(held, given[2], plants, sizeof(PlantFrames), 0, "plants")) == NULL)
+        return 0;
+    for (int64_t k = 0; k < plants; k++) {
+        const PlantFrames *plant = feet->stands + k;
+        if (plant->point < 0 || plant->point >= points || plant->start < 0 || plant->start > plant->stop ||
+            plant->stop >= frames) {
+            PyErr_Format(PyExc_ValueError, "plant %lld is at no frames, or of no point", (long long)k);
+            return 0;
+        }
+    }
+    return 1;
+}
+
+static int has_up(const FootTracks *feet)
+{
+    if (feet->up == NULL)
+        PyErr_SetString(PyExc_ValueError, "no up");
+    return feet->up != NULL;
 }
 
 static PyObject *foot_figures(PyObject *self, PyObject *arguments)
 {
     Held held = {.count = 0};
-    PyObject *given[6], *found = NULL;
-    FootTracks feet = {0};
+    PyObject *given[4], *found = NULL;
+    FootTracks feet;
+    FootRules rules;
     FootFigures figures;
-    long long frames, points, first, plants, stood;
+    long long frames, points, plants, first;
     (void)self;
-    if (!PyArg_ParseTuple(arguments, "OOOOOOLLLLL(dddddd)", given, given + 1, given + 2, given + 3, given + 4,
-            given + 5, &frames, &points, &first, &plants, &stood, &feet.scale, &feet.frame_time, &feet.near_floor,
-            &feet.skates, &feet.slides, &feet.under))
+    if (!PyArg_ParseTuple(arguments, "OOOLLLOL(dddddd)", given, given + 1, given + 2, &frames, &points, &plants,
+            given + 3, &first, &rules.scale, &rules.frame_time, &rules.near_floor, &rules.skates, &rules.slides,
+            &rules.under))
         return NULL;
-    feet.frames = frames, feet.points = points, feet.first = first, feet.plants = plants, feet.stood = stood;
-    if (frames < 0 || points < 0 || first < 0) {
-        PyErr_SetString(PyExc_ValueError, "no such frames or points");
-        return NULL;
-    }
-    if ((feet.tracks = items_of(&held, given[0], 3 * frames * points, sizeof(double), 0, "tracks")) != NULL &&
-        (feet.up = items_of(&held, given[1], 3, sizeof(double), 0, "up")) != NULL &&
-        (feet.toes = items_of(&held, given[2], points, 1, 0, "toes")) != NULL &&
-        (feet.at = items_of(&held, given[3], stood, sizeof(int64_t), 0, "frames")) != NULL &&
-        (feet.point = items_of(&held, given[4], plants, sizeof(int64_t), 0, "points")) != NULL &&
-        (feet.counts = items_of(&held, given[5], plants, sizeof(int64_t), 0, "counts")) != NULL && are_plants(&feet)) {
-        measure_feet(&feet, &figures);
+    rules.first = first;
+    if (first < 0)
+        return PyErr_Format(PyExc_ValueError, "no such frames");
+    if (take_feet(&held, given, frames, points, plants, &feet) &&
+        (rules.toes = items_of(&held, given[3], points, 1, 0, "toes")) != NULL && has_up(&feet)) {
+        measure_feet(&feet, &rules, &figures);
         found = Py_BuildValue("ddddddd", figures.skate_mean, figures.skate_ratio, figures.sliding_share,
             figures.penetration_share, figures.penetration_max, figures.drift_max, figures.floating_max);
     }
@@ -102,37 +112,37 @@ static PyObject *foot_figures(PyObject *self, PyObject *arguments)
     return found;
 }
 
-static PyObject *settled(PyObject *self, PyObject *arguments)
+static PyObject *foot_slide(PyObject *self, PyObject *arguments)
 {
     Held held = {.count = 0};
-    PyObject *given[4];
-    long long frames, plants, half;
-    double frame_time, faster, above;
-    int status = -2;
+    PyObject *given[3], *found = NULL;
+    FootTracks feet;
+    long long frames, points, plants;
     (void)self;
-    if (!PyArg_ParseTuple(arguments, "OOOOLLLddd", given, given + 1, given + 2, given + 3, &frames, &plants, &half,
-            &frame_time, &faster, &above))
+    if (!PyArg_ParseTuple(arguments, "OOOLLL", given, given + 1, given + 2, &frames, &points, &plants))
         return NULL;
-    const double *places = items_of(&held, given[0], 3 * frames, sizeof *places, 0, "places");
-    const double *up = places == NULL ? NULL : items_of(&held, given[1], 3, sizeof *up, 0, "up");
-    const int64_t *counts = up == NULL ? NULL : items_of(&held, given[2], plants, sizeof *counts, 0, "counts");
-    int64_t *spans = counts == NULL ? NULL : items_of(&held, given[3], 2 * plants, sizeof *spans, 1, "spans");
-    if (spans != NULL) {
-        int64_t sum = 0;
-        for (long long k = 0; k < plants && sum >= 0; k++)
-            sum = counts[k] < 1 || counts[k] > frames - sum ? -1 : sum + counts[k];
-        if (sum != frames || half < 1)
-            PyErr_SetString(PyExc_ValueError, "counts are not those of the places");
-        else {
-            status = find_settled(places, up, counts, plants, half, frame_time, faster, above, spans);
-            if (status < 0)
-                PyErr_NoMemory();
-        }
+    if (take_feet(&held, given, frames, points, plants, &feet) && has_up(&feet))
+        found = PyFloat_FromDouble(farthest_slide(&feet));
+    let_go(&held);
+    return found;
+}
+
+static PyObject *foot_drift(PyObject *self, PyObject *arguments)
+{
+    Held held = {.count = 0};
+    PyObject *given[4], *found = NULL;
+    FootTracks feet;
+    long long frames, points, plants;
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "OOOLLLO", given, given + 1, given + 2, &frames, &points, &plants, given + 3))
+        return NULL;
+    if (take_feet(&held, given, frames, points, plants, &feet)) {
+        const double *other = items_of(&held, given[3], 3 * frames * points, sizeof *other, 0, "other tracks");
+        if (other != NULL)
+            found = PyFloat_FromDouble(farthest_drift(&feet, other));
     }
     let_go(&held);
-    if (status < 0)
-        return NULL;
-    Py_RETURN_NONE;
+    return found;
 }
 
 /* An array of a foot's frames, or of its plants. */
@@ -191,39 +201,11 @@ static PyObject *stance(PyObject *self, PyObject *arguments)
     Py_RETURN_NONE;
 }
 
-static PyObject *kept(PyObject *self, PyObject *arguments)
-{
-    enum { ANKLE, TOE_PLACE, TURN, TOE, HIP, REACH, PLANTS, COUNT };
-    static const Item items[COUNT] = {{"ankle", 8, 3}, {"toe place", 8, 3}, {"turn", 8, 4}, {"toe", 8, 3},
-        {"hip", 8, 3}, {"reach", 8, 1}, {"plants", 8, 3}};
-    Held held = {.count = 0};
-    PyObject *given[COUNT];
-    void *at[COUNT];
-    long long frames, plants, shortest, rounds;
-    double rounding;
-    int status = -2;
-    (void)self;
-    if (!PyArg_ParseTuple(arguments, "OOOOOOOLLLLd", given, given + 1, given + 2, given + 3, given + 4, given + 5,
-            given + 6, &frames, &plants, &shortest, &rounds, &rounding))
-        return NULL;
-    if (take_foot(&held, given, items, COUNT, PLANTS, PLANTS, frames, plants, at)) {
-        const FootTrack track = {frames, at[ANKLE], at[TOE_PLACE], at[TURN], at[TOE]};
-        const HipReach leg = {at[HIP], at[REACH], rounding};
-        status = keep_plants(&track, &leg, shortest, rounds, at[PLANTS], plants);
-        if (status < 0)
-            PyErr_NoMemory();
-    }
-    let_go(&held);
-    if (status < 0)
-        return NULL;
-    Py_RETURN_NONE;
-}
-
 PyMethodDef feet_methods[] = {
     {"stands", stands, METH_VARARGS, "Return the stretches in which points of feet stand."},
     {"foot_figures", foot_figures, METH_VARARGS, "Return how well feet stand, in seven figures."},
-    {"settled", settled, METH_VARARGS, "Write which frames of plants are the first and the last that have settled."},
+    {"foot_slide", foot_slide, METH_VARARGS, "Return how far a planted point slides from a frame to the next at most."},
+    {"foot_drift", foot_drift, METH_VARARGS, "Return how far a planted point is from other tracks at most."},
     {"stance", stance, METH_VARARGS, "Write where a foot stands, from the plants of its heel and its toe."},
-    {"kept", kept, METH_VARARGS, "Cut plants of a foot to what its leg can hold in one place."},
     {NULL, NULL, 0, NULL},
 };

@@ -10,39 +10,36 @@
 
 #define PI 3.14159265358979323846
 
-static const double *place_of(const Poses *poses, int64_t frame, int64_t joint)
+void find_directions(const Poses *poses, int64_t first, const int64_t *triples, int64_t count, double *out)
 {
-    return poses->positions + 3 * (frame * poses->joints + joint);
-}
-
-static const double *turn_of(const Poses *poses, int64_t frame, int64_t joint)
-{
-    return poses->rotations + 4 * (frame * poses->joints + joint);
-}
-
-void sum_ways(const Poses *poses, int64_t first, const int64_t *triples, int64_t count, double *out)
-{
-    memset(out, 0, 3 * sizeof *out * (size_t)count);
-    for (int64_t f = first; f < poses->frames; f++)
-        for (int64_t i = 0; i < count; i++) {
-            const double *start = place_of(poses, f, triples[3 * i]), *stop = place_of(poses, f, triples[3 * i + 1]);
+    for (int64_t i = 0; i < count; i++, triples += 3, out += 3) {
+        double sum[3] = {0.0};
+        for (int64_t f = first; f < poses->frames; f++) {
+            const double *start = joint_place(poses, f, triples[0]), *stop = joint_place(poses, f, triples[1]);
             const double way[3] = {stop[0] - start[0], stop[1] - start[1], stop[2] - start[2]};
             double inverse[4], own[3];
-            q_conjugate(turn_of(poses, f, triples[3 * i + 2]), inverse);
+            q_conjugate(joint_turn(poses, f, triples[2]), inverse);
             q_turn(inverse, way, own);
-            add(out + 3 * i, own);
+            add(sum, own);
         }
+        const double size = sqrt(dot(sum, sum)), length = size > DBL_MIN ? size : DBL_MIN;
+        for (int a = 0; a < 3; a++)
+            out[a] = sum[a] / length;
+    }
 }
 
 void sum_products(const Poses *poses, int64_t first, const int64_t *joints, int64_t count, double *out)
 {
-    memset(out, 0, 16 * sizeof *out * (size_t)count);
-    for (int64_t f = first; f < poses->frames; f++)
-        for (int64_t i = 0; i < count; i++) {
-            const double *q = turn_of(poses, f, joints[i]);
-            for (int a = 0; a < 16; a++)
-                out[16 * i + a] += q[a / 4] * q[a % 4];
+    for (int64_t i = 0; i < count; i++, out += 16) {
+        double sum[4][4] = {{0.0}};
+        for (int64_t f = first; f < poses->frames; f++) {
+            const double *q = joint_turn(poses, f, joints[i]);
+            for (int a = 0; a < 4; a++)
+                for (int b = 0; b < 4; b++)
+                    sum[a][b] += q[a] * q[b];
         }
+        memcpy(out, sum, sizeof sum);
+    }
 }
 
 /* Tangents are compared as quotients of what is not negative: no arc is needed but of the largest. */
@@ -65,26 +62,44 @@ static double twist_of(const Arc *arc, double sign)
     return fabs((twist < 0.0 ? twist + whole : twist) - PI);
 }
 
-void widest_turns(const Poses *poses, int64_t first, const int64_t *joints, const double *centers, const double *along,
+/* Of a cosine or its square: more by far than its rounding, so that what is let off by it turns less. */
+#define SURELY 1e-12
+
+/* How far a joint swings a bone from its center and twists about it, at most: rad, to `widest` (2,). */
+static void find_widest(
+    const Poses *poses, int64_t first, int64_t joint, const double *center, const double *bone, double *widest)
+{
+    /* To both sides by themselves, as they are rounded. */
+    Arc swing = {0.0, 1.0}, twists[2] = {{0.0, 1.0}, {0.0, 1.0}};
+    double inverse[4], least = 1.0;
+    q_conjugate(center, inverse);
+    for (int64_t f = first; f < poses->frames; f++) {
+        double turn[4], turned_bone[3], across[3];
+        q_multiply(inverse, joint_turn(poses, f, joint), turn);
+        const double sine = dot(turn + 1, bone);
+        lengthen(twists + ((sine < 0.0) != (turn[0] < 0.0)), fabs(sine), fabs(turn[0]));
+        /* The squared cosine of half the swing: what is left of it costs as much as all before. */
+        const double square = turn[0] * turn[0] + sine * sine;
+        if (square > least + SURELY)
+            continue;
+        least = square < least ? square : least;
+        q_turn(turn, bone, turned_bone);
+        cross(bone, turned_bone, across);
+        lengthen(&swing, sqrt(dot(across, across)), dot(turned_bone, bone));
+    }
+    const double one = twist_of(twists, 1.0), other = twist_of(twists + 1, -1.0);
+    widest[0] = atan2(swing.sine, swing.cosine), widest[1] = one > other ? one : other;
+}
+
+void find_cones(const Poses *poses, int64_t first, const int64_t *joints, const double *vectors, const double *along,
     int64_t count, double *out)
 {
-    for (int64_t i = 0; i < count; i++) {
-        const double *bone = along + 3 * i;
-        /* To both sides by themselves, as they are rounded. */
-        Arc swing = {0.0, 1.0}, twists[2] = {{0.0, 1.0}, {0.0, 1.0}};
-        double inverse[4];
-        q_conjugate(centers + 4 * i, inverse);
-        for (int64_t f = first; f < poses->frames; f++) {
-            double turn[4], turned_bone[3], across[3];
-            q_multiply(inverse, turn_of(poses, f, joints[i]), turn);
-            q_turn(turn, bone, turned_bone);
-            cross(bone, turned_bone, across);
-            lengthen(&swing, sqrt(dot(across, across)), dot(turned_bone, bone));
-            const double sine = dot(turn + 1, bone);
-            lengthen(twists + ((sine < 0.0) != (turn[0] < 0.0)), fabs(sine), fabs(turn[0]));
-        }
-        const double one = twist_of(twists, 1.0), other = twist_of(twists + 1, -1.0);
-        out[2 * i] = atan2(swing.sine, swing.cosine), out[2 * i + 1] = one > other ? one : other;
+    for (int64_t i = 0; i < count; i++, vectors += 16, along += 3, out += 6) {
+        const double *q = joint_turn(poses, first, joints[i]);
+        const double cosine = vectors[3] * q[0] + vectors[7] * q[1] + vectors[11] * q[2] + vectors[15] * q[3];
+        for (int a = 0; a < 4; a++)
+            out[a] = cosine < 0.0 ? -vectors[4 * a + 3] : vectors[4 * a + 3];
+        find_widest(poses, first, joints[i], out, along, out + 4);
     }
 }
 
@@ -92,22 +107,45 @@ void carry(const Poses *poses, const int64_t *joints, const double *points, int6
 {
     for (int64_t f = 0; f < poses->frames; f++)
         for (int64_t i = 0; i < count; i++, out += 3) {
-            q_turn(turn_of(poses, f, joints[i]), points + 3 * i, out);
-            add(out, place_of(poses, f, joints[i]));
+            q_turn(joint_turn(poses, f, joints[i]), points + 3 * i, out);
+            add(out, joint_place(poses, f, joints[i]));
         }
 }
 
 /* Beside the largest arc others may be larger by their rounding: only these are taken as angles. */
 #define NEARLY (1.0 - 1e-12)
 
+/* A joint's largest step so far. */
+typedef struct {
+    Arc arc;
+    double angle;
+    int64_t into;
+} Step;
+
+/* Take the step from one turn to the next, into a frame, where it is the largest. */
+static void take_step(const double *last, const double *next, int64_t frame, Step *largest)
+{
+    const double cosine = fabs(last[0] * next[0] + last[1] * next[1] + last[2] * next[2] + last[3] * next[3]);
+    double inverse[4], turn[4];
+    if (cosine > largest->arc.cosine + SURELY)
+        return;
+    q_conjugate(last, inverse);
+    q_multiply(inverse, next, turn);
+    const double sine = sqrt(dot(turn + 1, turn + 1));
+    if (sine * largest->arc.cosine > largest->arc.sine * cosine * NEARLY) {
+        const double angle = 2.0 * atan2(sine, cosine);
+        if (angle > largest->angle)
+            *largest = (Step){{sine, cosine}, angle, frame};
+    }
+}
+
 void largest_steps(const double *before, const double *after, int64_t frames, int64_t joints, int64_t first,
     double *angles, int64_t *into)
 {
     for (int64_t j = 0; j < joints; j++) {
-        Arc largest = {0.0, 1.0};
-        double last[4] = {0.0}, inverse[4], turn[4];
+        Step largest = {{0.0, 1.0}, 0.0, first + 1};
+        double last[4] = {0.0}, inverse[4];
         int differ = before == NULL;
-        angles[j] = 0.0, into[j] = first + 1;
         for (int64_t f = first; f < frames; f++) {
             const double *q = after + 4 * (f * joints + j);
             double change[4];
@@ -118,48 +156,12 @@ void largest_steps(const double *before, const double *after, int64_t frames, in
                 q_conjugate(own, inverse);
                 q_multiply(inverse, q, change);
             }
-            if (f > first) {
-                q_conjugate(last, inverse);
-                q_multiply(inverse, change, turn);
-                const double sine = sqrt(dot(turn + 1, turn + 1)), cosine = fabs(turn[0]);
-                if (sine * largest.cosine > largest.sine * cosine * NEARLY) {
-                    const double angle = 2.0 * atan2(sine, cosine);
-                    if (angle > angles[j])
-                        angles[j] = angle, into[j] = f, largest = (Arc){sine, cosine};
-                }
-            }
+            if (f > first)
+                take_step(last, change, f, &largest);
             memcpy(last, change, sizeof last);
         }
-        if (!differ)
-            angles[j] = 0.0, into[j] = first + 1;
+        angles[j] = differ ? largest.angle : 0.0, into[j] = differ ? largest.into : first + 1;
     }
-}
-
-void bent_sides(const Poses *poses, int64_t first, const int64_t *limbs, double bent, int64_t count, double *sines,
-    double *axes, uint8_t *shown)
-{
-    memset(axes, 0, 3 * sizeof *axes * (size_t)count);
-    memset(shown, 0, (size_t)count);
-    for (int64_t f = 0; f < poses->frames; f++)
-        for (int64_t i = 0; i < count; i++, sines++) {
-            const double *top = place_of(poses, f, limbs[4 * i]), *joint = place_of(poses, f, limbs[4 * i + 1]);
-            const double *end = place_of(poses, f, limbs[4 * i + 2]);
-            const double upper[3] = {joint[0] - top[0], joint[1] - top[1], joint[2] - top[2]};
-            const double lower[3] = {end[0] - joint[0], end[1] - joint[1], end[2] - joint[2]};
-            const double both = sqrt(dot(upper, upper)) * sqrt(dot(lower, lower));
-            const double lengths = both > DBL_MIN ? both : DBL_MIN;
-            double side[3], inverse[4], own[3];
-            cross(upper, lower, side);
-            for (int a = 0; a < 3; a++)
-                side[a] /= lengths;
-            *sines = sqrt(dot(side, side));
-            if (f < first || !(*sines > bent))
-                continue;
-            shown[i] = 1;
-            q_conjugate(turn_of(poses, f, limbs[4 * i + 3]), inverse);
-            q_turn(inverse, side, own);
-            add(axes + 3 * i, own);
-        }
 }
 
 void same_frames(const double *one, const double *other, int64_t frames, int64_t width, uint8_t *same)

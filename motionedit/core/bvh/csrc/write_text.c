@@ -49,60 +49,99 @@ static int write_number(double value, int decimals, char *out)
     return length + decimals;
 }
 
+/* Numbers that are written together, as whole parts and decimals, both integers. */
+enum { TOGETHER = 64 };
+typedef struct {
+    uint32_t whole[TOGETHER], fraction[TOGETHER];
+} Split;
+
 #ifdef LOW_BYTE_FIRST
 enum { MOST_SHORT = 999, MOST_SHORT_DECIMALS = 6 };
 
-/* Every three digits, and a point. */
-#define THREE(n) (('0' + (n) / 100) | ('0' + (n) / 10 % 10) << 8 | ('0' + (n) % 10) << 16 | '.' << 24)
-#define TEN(n)                                                                                                         \
-    THREE(n), THREE(n + 1), THREE(n + 2), THREE(n + 3), THREE(n + 4), THREE(n + 5), THREE(n + 6), THREE(n + 7),        \
-        THREE(n + 8), THREE(n + 9)
-#define HUNDRED(n)                                                                                                     \
-    TEN(n), TEN(n + 10), TEN(n + 20), TEN(n + 30), TEN(n + 40), TEN(n + 50), TEN(n + 60), TEN(n + 70), TEN(n + 80),    \
-        TEN(n + 90)
-static const uint32_t THREES[1000] = {HUNDRED(0), HUNDRED(100), HUNDRED(200), HUNDRED(300), HUNDRED(400), HUNDRED(500),
-    HUNDRED(600), HUNDRED(700), HUNDRED(800), HUNDRED(900)};
+/* Every three digits, the first one in the lowest byte, and as whole parts: without zeros before them, a point after them,
+   and in the upper half how many characters these are. */
+#define DIGITS(n) (('0' + (n) / 100) | ('0' + (n) / 10 % 10) << 8 | ('0' + (n) % 10) << 16)
+#define SPARE(n) (((n) < 10) + ((n) < 100))
+#define WHOLE(n) ((DIGITS(n) | '.' << 24) >> 8 * SPARE(n) | (uint64_t)(4 - SPARE(n)) << 32)
+#define TEN(of, n)                                                                                                     \
+    of(n), of(n + 1), of(n + 2), of(n + 3), of(n + 4), of(n + 5), of(n + 6), of(n + 7), of(n + 8), of(n + 9)
+#define HUNDRED(of, n)                                                                                                 \
+    TEN(of, n), TEN(of, n + 10), TEN(of, n + 20), TEN(of, n + 30), TEN(of, n + 40), TEN(of, n + 50), TEN(of, n + 60),  \
+        TEN(of, n + 70), TEN(of, n + 80), TEN(of, n + 90)
+#define THOUSAND(of)                                                                                                   \
+    {HUNDRED(of, 0), HUNDRED(of, 100), HUNDRED(of, 200), HUNDRED(of, 300), HUNDRED(of, 400), HUNDRED(of, 500),         \
+        HUNDRED(of, 600), HUNDRED(of, 700), HUNDRED(of, 800), HUNDRED(of, 900)}
+static const uint32_t THREES[1000] = THOUSAND(DIGITS);
+static const uint64_t WHOLES[1000] = THOUSAND(WHOLE);
 
-/* Write a number as `write_number` does, with at most MOST_SHORT_DECIMALS, and perhaps more bytes after them, but without
-   a branch: neither signs nor how many digits there are can be foretold. Returns 0 where the number is not below
-   MOST_SHORT, so that with a carry, too, it has three digits. */
-static inline int write_short(double value, int decimals, char *out)
+/* Split numbers into whole parts and so many decimals, several at once. Beside 2^52 a double has no bits for parts: what is
+   added to it is rounded as by `lrint`, and stands in its lowest bits. Of a number that is not below MOST_SHORT that is
+   the whole part. */
+static void split_numbers(const double *values, int64_t count, int decimals, Split *split)
 {
-    const double size = fabs(value);
-    if (!(size < MOST_SHORT))
-        return 0;
-    uint32_t whole = (uint32_t)(int32_t)size;
-    uint32_t fraction = (uint32_t)lrint((size - (double)(int32_t)whole) * POWERS[decimals]);
+    const double power = POWERS[decimals], large = 4503599627370496.0;
+    for (int64_t i = 0; i < count; i++) {
+        const double size = fabs(values[i]) < MOST_SHORT ? fabs(values[i]) : MOST_SHORT;
+        const int32_t whole = (int32_t)size;
+        const double rounded = (size - (double)whole) * power + large;
+        uint64_t bits;
+        memcpy(&bits, &rounded, sizeof bits);
+        split->whole[i] = (uint32_t)whole, split->fraction[i] = (uint32_t)bits;
+    }
+}
+
+/* Write a number, split as it is, as `write_number` does, and perhaps more bytes after it, but without a branch: neither
+   signs nor how many digits there are can be foretold. Returns 0 where it is not below MOST_SHORT. */
+static inline int write_short(double value, uint32_t whole, uint32_t fraction, int decimals, char *out)
+{
     const uint32_t carry = fraction >= (uint32_t)LARGER[decimals];
     whole += carry;
     fraction = carry ? 0 : fraction;
-    /* A minus or none, the digits, a point. */
-    const unsigned minus = (value < 0.0) & ((whole | fraction) != 0), spare = (whole < 10) + (whole < 100);
-    const uint32_t digits = THREES[whole] >> 8 * spare;
+    if (whole >= MOST_SHORT)
+        return 0;
+    /* A minus or none, the digits and a point, the decimals. */
+    const int minus = (value < 0.0) & ((whole | fraction) != 0), length = (int)(WHOLES[whole] >> 32) + minus;
+    const uint32_t first = (uint32_t)WHOLES[whole];
     *out = '-';
-    out += minus;
-    memcpy(out, &digits, sizeof digits);
-    out += 4 - spare;
+    memcpy(out + minus, &first, sizeof first);
     fraction *= (uint32_t)LARGER[MOST_SHORT_DECIMALS - decimals];
-    memcpy(out, &THREES[fraction / 1000], sizeof *THREES);
-    memcpy(out + 3, &THREES[fraction % 1000], sizeof *THREES);
-    return (int)(4 - spare + minus) + decimals;
+    const uint64_t rest = THREES[fraction / 1000] | (uint64_t)THREES[fraction % 1000] << 24;
+    memcpy(out + length, &rest, sizeof rest);
+    return length + decimals;
 }
 #else
 enum { MOST_SHORT_DECIMALS = 0 };
 
-static int write_short(double value, int decimals, char *out)
+static void split_numbers(const double *values, int64_t count, int decimals, Split *split)
 {
-    (void)value, (void)decimals, (void)out;
+    (void)values, (void)count, (void)decimals, (void)split;
+}
+
+static int write_short(double value, uint32_t whole, uint32_t fraction, int decimals, char *out)
+{
+    (void)value, (void)whole, (void)fraction, (void)decimals, (void)out;
     return 0;
 }
 #endif
 
-/* As `write_number`. */
-static inline int write_any(double value, int decimals, char *out)
+/* Write numbers as `write_number` does, a blank after each; returns the end, or NULL where one is too large. */
+static char *write_numbers(const double *values, int64_t count, int decimals, char *out)
 {
-    const int length = decimals <= MOST_SHORT_DECIMALS ? write_short(value, decimals, out) : 0;
-    return length > 0 ? length : write_number(value, decimals, out);
+    const int is_short = decimals <= MOST_SHORT_DECIMALS;
+    Split split;
+    for (int64_t start = 0; start < count; start += TOGETHER, values += TOGETHER) {
+        const int64_t many = count - start < TOGETHER ? count - start : TOGETHER;
+        if (is_short)
+            split_numbers(values, many, decimals, &split);
+        for (int64_t i = 0; i < many; i++) {
+            int length = is_short ? write_short(values[i], split.whole[i], split.fraction[i], decimals, out) : 0;
+            if (length == 0 && (length = write_number(values[i], decimals, out)) < 0)
+                return NULL;
+            out += length;
+            *out++ = ' ';
+        }
+    }
+    return out;
 }
 
 int64_t write_rows(
@@ -110,13 +149,8 @@ int64_t write_rows(
 {
     char *at = out;
     for (int64_t row = 0; row < rows; row++) {
-        for (int64_t column = 0; column < columns; column++) {
-            const int length = write_any(values[row * columns + column], decimals, at);
-            if (length < 0)
-                return -1;
-            at += length;
-            *at++ = ' ';
-        }
+        if ((at = write_numbers(values + row * columns, columns, decimals, at)) == NULL)
+            return -1;
         memcpy(--at, ending, after);
         at += after;
     }
@@ -157,10 +191,9 @@ int64_t splice_words(const char *text, int64_t length, const uint8_t *cells, con
         if (word == count)
             return -1;
         if (cells[word]) {
-            const int written = write_any(values[word], decimals, to);
-            if (written < 0)
+            if ((to = write_numbers(values + word, 1, decimals, to)) == NULL)
                 return -1;
-            to += written;
+            to--; /* what stands between words is copied */
         } else {
             memcpy(to, first, at - first);
             to += at - first;

@@ -2,49 +2,12 @@
 
 #include "stance.h"
 
-#include "../../body/csrc/body.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define ONE_LANE
 #include "../../priorities/csrc/rotations.h"
-
-/* Which of a plant's frames are the first and the last that are calm, -1 where none is: `speeds` and `heights` (n,). */
-static void find_calm(const double *speeds, const double *heights, int64_t frames, double faster, double above,
-    double *room, int64_t *span)
-{
-    const double fast = median(speeds, frames, room) + faster, middle = median(heights, frames, room);
-    span[0] = span[1] = -1;
-    for (int64_t f = 0; f < frames; f++)
-        if (speeds[f] <= fast && fabs(heights[f] - middle) <= above)
-            span[0] = span[0] < 0 ? f : span[0], span[1] = f;
-}
-
-int find_settled(const double *places, const double *up, const int64_t *counts, int64_t count, int64_t half,
-    double frame_time, double faster, double above, int64_t *spans)
-{
-    int64_t most = 1;
-    for (int64_t k = 0; k < count; k++)
-        most = counts[k] > most ? counts[k] : most;
-    double *speeds = malloc(3 * sizeof *speeds * (size_t)most), *heights = speeds + most;
-    if (speeds == NULL)
-        return -1;
-    for (int64_t k = 0; k < count; places += 3 * counts[k++]) {
-        for (int64_t f = 0; f < counts[k]; f++) {
-            const int64_t before = f > half ? f - half : 0, after = f + half < counts[k] ? f + half : counts[k] - 1;
-            const double *from = places + 3 * before, *to = places + 3 * after;
-            const double way[3] = {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
-            /* A plant of one frame, which is too short to be cut, has no speed. */
-            speeds[f] = sqrt(dot(way, way)) / ((double)(after > before ? after - before : 1) * frame_time);
-            heights[f] = dot(places + 3 * f, up);
-        }
-        find_calm(speeds, heights, counts[k], faster, above, heights + most, spans + 2 * k);
-    }
-    free(speeds);
-    return 0;
-}
 
 /* A frame at which a heel and a toe are down. */
 typedef struct {
@@ -190,10 +153,15 @@ static void place_plants(
 static int64_t find_both(const int64_t *down, int64_t frames, Both *both)
 {
     int64_t count = 0;
+    int sorted = 1; /* as they are where plants are in the order of their frames */
     for (int64_t f = 0; f < frames; f++)
-        if (down[f] >= 0 && down[frames + f] >= 0)
-            both[count++] = (Both){down[f], down[frames + f], f};
-    qsort(both, (size_t)count, sizeof *both, in_order);
+        if (down[f] >= 0 && down[frames + f] >= 0) {
+            both[count] = (Both){down[f], down[frames + f], f};
+            sorted = sorted && (count == 0 || in_order(both + count - 1, both + count) < 0);
+            count++;
+        }
+    if (!sorted)
+        qsort(both, (size_t)count, sizeof *both, in_order);
     return count;
 }
 

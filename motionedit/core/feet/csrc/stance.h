@@ -10,13 +10,6 @@ typedef struct {
     int64_t is_toe, start, stop;
 } PlantSpan;
 
-/* When points that stand at places (N, 3), plant after plant, `counts` (n,) frames each, have settled: to `spans` (n, 2)
-   the first and last such frame of each, from its own first on; -1 where none has. -1 where memory ran out.
-
-   half: frames over twice which speed is measured; faster, above: than each plant's median, in units. */
-int find_settled(const double *places, const double *up, const int64_t *counts, int64_t count, int64_t half,
-    double frame_time, double faster, double above, int64_t *spans);
-
 /* How a foot goes: its ankle and its toe in the world (F, 3), its turn (F, 4), and the toe in its frame (F, 3). */
 typedef struct {
     int64_t frames;

@@ -96,6 +96,24 @@ void turn_all(
     }
 }
 
+void scale_vectors(
+    const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out, int64_t apart)
+{
+    (void)apart;
+    for (int64_t i = 0; i < count; i++, a += a_step, b += b_step, out += 4)
+        out[1] = *b * a[0], out[2] = *b * a[1], out[3] = *b * a[2];
+}
+
+void scale_shorter(
+    const double *a, int64_t a_step, const double *b, int64_t b_step, int64_t count, double *out, int64_t apart)
+{
+    (void)apart;
+    for (int64_t i = 0; i < count; i++, a += a_step, b += b_step, out += 3) {
+        const double scale = a[0] < 0.0 ? -*b : *b;
+        out[0] = scale * a[1], out[1] = scale * a[2], out[2] = scale * a[3];
+    }
+}
+
 void from_tangents(const double *tangents, const int *axes, int64_t count, double *out)
 {
     const int i = 1 + axes[0], j = 1 + axes[1], k = 1 + axes[2];
@@ -110,44 +128,6 @@ void from_tangents(const double *tangents, const int *axes, int64_t count, doubl
     }
 }
 
-/* The rotations of a frame, and of the one after it, which the last one is itself. */
-static const double *pair_at(
-    const double *rotations, int64_t frames, int64_t joints, int64_t frame, const double **after)
-{
-    *after = rotations + 4 * joints * (frame + 1 < frames ? frame + 1 : frame);
-    return rotations + 4 * joints * frame;
-}
-
-void arc_cosines(const double *rotations, int64_t frames, int64_t joints, const int64_t *at, int64_t count, double *out)
-{
-    for (int64_t n = 0; n < count; n++) {
-        const double *b, *a = pair_at(rotations, frames, joints, at[n], &b);
-        for (int64_t j = 0; j < joints; j++, a += 4, b += 4)
-            *out++ = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
-    }
-}
-
-void slerp_all(const Arcs *arcs, double *out)
-{
-    const int64_t all = arcs->count * arcs->joints;
-    const double *cosine = arcs->cosines, *tangent = arcs->tangents;
-    for (int64_t n = 0; n < arcs->count; n++) {
-        const double *b, *a = pair_at(arcs->rotations, arcs->frames, arcs->joints, arcs->at[n], &b), t = arcs->t[n];
-        for (int64_t j = 0; j < arcs->joints; j++, a += 4, b += 4, cosine++, tangent++) {
-            const double whole = tangent[0], rest = tangent[all], way = tangent[2 * all];
-            double first = 1.0 - t, second = t;
-            if (!(whole < arcs->straight)) {
-                const double sine = whole / (1.0 + whole * whole);
-                first = rest / (1.0 + rest * rest) / sine;
-                second = way / (1.0 + way * way) / sine;
-            }
-            second = copysign(second, *cosine);
-            for (int part = 0; part < 4; part++)
-                *out++ = first * a[part] + second * b[part];
-        }
-    }
-}
-
 /* The lengths of pairs of numbers: apart from what else is done to them, so that several are taken at once. */
 static void lengths_of(const double *one, const double *other, int64_t count, double *out)
 {
@@ -155,25 +135,28 @@ static void lengths_of(const double *one, const double *other, int64_t count, do
         out[i] = sqrt(one[i] * one[i] + other[i] * other[i]);
 }
 
-void euler_sums(const double *rotations, int64_t step, const int64_t *joints, int64_t count, int64_t frames,
-    const int *axes, double *out)
+void sums_of_turns(const double *q, int64_t step, int64_t frames, const int *axes, double *sums, int64_t all)
 {
     const int i = 1 + axes[0], j = 1 + axes[1], k = 1 + axes[2];
     const double sign = (axes[1] - axes[0] + 3) % 3 == 1 ? 1.0 : -1.0;
-    const int64_t all = count * frames;
+    for (int64_t f = 0; f < frames; f++, q += step) {
+        const double z = sign * q[k];
+        sums[f] = q[i] + z, sums[all + f] = q[0] + q[j];
+        sums[2 * all + f] = q[i] - z, sums[3 * all + f] = q[0] - q[j];
+    }
+    lengths_of(sums, sums + all, frames, sums + 4 * all);
+    lengths_of(sums + 2 * all, sums + 3 * all, frames, sums + 5 * all);
+}
+
+void euler_sums(const double *rotations, int64_t step, const int64_t *joints, int64_t count, int64_t frames,
+    const int *axes, double *out)
+{
     /* A few frames at a time: they stay near the processor for all joints. */
     for (int64_t start = 0; start < frames; start += TILE)
         for (int64_t n = 0; n < count; n++) {
             const int64_t many = frames - start < TILE ? frames - start : TILE;
-            const double *q = rotations + start * step + 4 * joints[n];
-            double *sums = out + n * frames + start;
-            for (int64_t f = 0; f < many; f++, q += step) {
-                const double z = sign * q[k];
-                sums[f] = q[i] + z, sums[all + f] = q[0] + q[j];
-                sums[2 * all + f] = q[i] - z, sums[3 * all + f] = q[0] - q[j];
-            }
-            lengths_of(sums, sums + all, many, sums + 4 * all);
-            lengths_of(sums + 2 * all, sums + 3 * all, many, sums + 5 * all);
+            sums_of_turns(
+                rotations + start * step + 4 * joints[n], step, many, axes, out + n * frames + start, count * frames);
         }
 }
 

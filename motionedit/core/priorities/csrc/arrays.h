@@ -20,33 +20,22 @@ RowWork dot_all;         /* out = a . b, one number each */
 RowWork length_all;      /* out = |b|, one number each */
 RowWork half_cosine_all; /* out = |a . b|, of quaternions, one number each */
 RowWork turn_all;        /* of a^-1 b sine and cosine of half the angle, apart from each other */
+RowWork scale_vectors;   /* the vectors of quaternions out = b a, of vectors; their first numbers stay */
+RowWork scale_shorter; /* out = b times the vectors of quaternions a, with the sign that turns by half a turn at most */
 
 /* Quaternions of `count` products of three turns about the axes, 0 to 2 and different, each by the tangent of half its
    angle: first all of the first turns, then of the second, of the third. */
 void from_tangents(const double *tangents, const int *axes, int64_t count, double *out);
-
-/* The cosines between the rotations (F, J, 4) of n frames and those of the frames after, of the last one with itself:
-   (n, J). */
-void arc_cosines(
-    const double *rotations, int64_t frames, int64_t joints, const int64_t *at, int64_t count, double *out);
-
-/* The rotations (n, J, 4) at fractions t (n,) of the ways from n frames to the ones after, by the cosines between these
-   and the tangents (3, n, J) of half the arcs, of what is left of them and of the ways; `straight` is the tangent below
-   which an arc is a line. */
-typedef struct {
-    const double *rotations, *t, *cosines, *tangents;
-    const int64_t *at;
-    int64_t frames, joints, count;
-    double straight;
-} Arcs;
-
-void slerp_all(const Arcs *arcs, double *out);
 
 /* What the Euler angles of rotations about three axes are arc tangents of, shape (6, joints, frames): sine and cosine of
    half the sum of the outer angles, of half their difference, and the lengths of both pairs. The frames begin at
    `rotations`, and are `step` numbers apart; `joints` are the places of those that are wanted. */
 void euler_sums(const double *rotations, int64_t step, const int64_t *joints, int64_t count, int64_t frames,
     const int *axes, double *out);
+
+/* The same of one joint's rotations q, `step` numbers apart: its part of each of the six planes, which begin `all` numbers
+   apart. */
+void sums_of_turns(const double *q, int64_t step, int64_t frames, const int *axes, double *sums, int64_t all);
 
 /* Write `count` tracks, shape (count, frames), times a factor as columns of rows that are so many numbers wide. */
 void rows_of_tracks(const double *tracks, const int64_t *columns, int64_t count, int64_t frames, double factor,

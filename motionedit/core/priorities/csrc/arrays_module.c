@@ -132,16 +132,8 @@ ON_ROWS(dot_rows, dot_all, 3, 3, 1, 1)
 ON_ROWS(length, length_all, 3, 3, 1, 1)
 ON_ROWS(half_cosine, half_cosine_all, 4, 4, 1, 1)
 ON_ROWS(turn, turn_all, 4, 4, 1, 2)
-
-static int are_three_axes(const int *axes)
-{
-    for (int i = 0; i < 3; i++)
-        if (axes[i] < 0 || axes[i] > 2 || axes[i] == axes[(i + 1) % 3]) {
-            PyErr_SetString(PyExc_ValueError, "three different axes are 0, 1 and 2 in some order");
-            return 0;
-        }
-    return 1;
-}
+ON_ROWS(scaled_vectors, scale_vectors, 3, 1, 4, 1)
+ON_ROWS(scaled_shorter, scale_shorter, 4, 1, 3, 1)
 
 static PyObject *turns_from_tangents(PyObject *self, PyObject *arguments)
 {
@@ -159,76 +151,6 @@ static PyObject *turns_from_tangents(PyObject *self, PyObject *arguments)
         Py_END_ALLOW_THREADS
     }
     release(b, 2);
-    if (!fits)
-        return NULL;
-    Py_RETURN_NONE;
-}
-
-/* Whether `count` frames are among so many. */
-static int are_frames(const int64_t *at, int64_t count, int64_t frames)
-{
-    for (int64_t i = 0; i < count; i++)
-        if (at[i] < 0 || at[i] >= frames) {
-            PyErr_Format(PyExc_ValueError, "there are %lld frames", (long long)frames);
-            return 0;
-        }
-    return 1;
-}
-
-/* What is given of rotations and frames: the arcs from these to the ones after. */
-static int take_arcs(Py_buffer *rotations, Py_buffer *at, long long joints, Arcs *arcs)
-{
-    const Py_ssize_t number = sizeof(double);
-    *arcs = (Arcs){.rotations = rotations->buf, .at = at->buf, .joints = joints};
-    arcs->count = at->len / (Py_ssize_t)sizeof(int64_t);
-    arcs->frames = joints > 0 ? rotations->len / number / 4 / joints : 0;
-    return has_size(rotations, arcs->frames * joints * 4, sizeof(double), "rotations") &&
-           has_size(at, arcs->count, sizeof(int64_t), "frames") && are_frames(arcs->at, arcs->count, arcs->frames);
-}
-
-static PyObject *cosines_of_arcs(PyObject *self, PyObject *arguments)
-{
-    Py_buffer b[3] = {{0}};
-    long long joints;
-    Arcs arcs;
-    (void)self;
-    if (!PyArg_ParseTuple(arguments, "y*y*Lw*", b, b + 1, &joints, b + 2))
-        return NULL;
-    const int fits =
-        take_arcs(b, b + 1, joints, &arcs) && has_size(b + 2, arcs.count * arcs.joints, sizeof(double), "cosines");
-    if (fits) {
-        Py_BEGIN_ALLOW_THREADS arc_cosines(arcs.rotations, arcs.frames, arcs.joints, arcs.at, arcs.count, b[2].buf);
-        Py_END_ALLOW_THREADS
-    }
-    release(b, 3);
-    if (!fits)
-        return NULL;
-    Py_RETURN_NONE;
-}
-
-static PyObject *slerp(PyObject *self, PyObject *arguments)
-{
-    enum { ROTATIONS, AT, T, COSINES, TANGENTS, OUT, COUNT };
-    Py_buffer b[COUNT] = {{0}};
-    long long joints;
-    double straight;
-    Arcs arcs;
-    (void)self;
-    if (!PyArg_ParseTuple(
-            arguments, "y*y*Ly*y*y*dw*", b, b + AT, &joints, b + T, b + COSINES, b + TANGENTS, &straight, b + OUT))
-        return NULL;
-    int fits = take_arcs(b, b + AT, joints, &arcs);
-    const int64_t all = fits ? arcs.count * arcs.joints : 0;
-    fits = fits && has_size(b + T, arcs.count, sizeof(double), "fractions") &&
-           has_size(b + COSINES, all, sizeof(double), "cosines") &&
-           has_size(b + TANGENTS, 3 * all, sizeof(double), "tangents") &&
-           has_size(b + OUT, 4 * all, sizeof(double), "turns");
-    if (fits) {
-        arcs.t = b[T].buf, arcs.cosines = b[COSINES].buf, arcs.tangents = b[TANGENTS].buf, arcs.straight = straight;
-        Py_BEGIN_ALLOW_THREADS slerp_all(&arcs, b[OUT].buf);
-        Py_END_ALLOW_THREADS
-    }
-    release(b, COUNT);
     if (!fits)
         return NULL;
     Py_RETURN_NONE;
@@ -345,13 +267,14 @@ PyMethodDef array_methods[] = {
     {"length", length, METH_VARARGS, "Write the lengths of vectors, the second given; False as `multiply`."},
     {"half_cosine", half_cosine, METH_VARARGS, "Write |a . b| of quaternions; False as `multiply`."},
     {"turn", turn, METH_VARARGS, "Write sines and cosines of half the turns between rotations; False as `multiply`."},
+    {"scaled_vectors", scaled_vectors, METH_VARARGS,
+        "Write vectors, each times a number, into quaternions whose first numbers stay; False as `multiply`."},
+    {"scaled_shorter", scaled_shorter, METH_VARARGS,
+        "Write the vectors of quaternions, each times a number and of the shorter way; False as `multiply`."},
     {"from_tangents", turns_from_tangents, METH_VARARGS,
         "Write the quaternions of three turns, given the tangents of half their angles."},
     {"euler_sums", sums_of_euler, METH_VARARGS,
         "Write the sines, cosines and lengths that the Euler angles of some joints are arc tangents of."},
-    {"arc_cosines", cosines_of_arcs, METH_VARARGS,
-        "Write the cosines between rotations of frames and of the ones after."},
-    {"slerp", slerp, METH_VARARGS, "Write rotations at fractions of the ways from frames to the ones after."},
     {"rows_of_tracks", lay_rows, METH_VARARGS, "Write tracks, times a factor, as columns of rows."},
     {"nearest_angles", make_continuous, METH_VARARGS, "Make runs of Euler angles continuous, in place."},
     {NULL, NULL, 0, NULL},

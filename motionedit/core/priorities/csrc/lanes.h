@@ -23,8 +23,13 @@ typedef int64_t Mask;
 #endif
 
 /* One lane of a V or a Mask, to read or to write. */
-#define LANE(v, lane) (((double *)&(v))[lane])
-#define MASK_LANE(m, lane) (((int64_t *)&(m))[lane])
+#ifdef WIDTH
+#define LANE(v, lane) ((v)[lane])
+#define MASK_LANE(m, lane) ((m)[lane])
+#else
+#define LANE(v, lane) ((&(v))[lane])
+#define MASK_LANE(m, lane) ((&(m))[lane])
+#endif
 
 #ifdef WIDTH
 static inline V all(double x)

@@ -127,7 +127,7 @@ int solve_frames_avx2(const Problem *problem, int64_t begin, int64_t end);
 int has_avx512(void);
 int solve_frames_avx512(const Problem *problem, int64_t begin, int64_t end);
 
-/* motion.c: whole motions */
+/* world_poses.c, motion.c: whole motions */
 void world_poses(const int64_t *parents, const int64_t *places, const double *offsets, int64_t frames, int64_t joints,
     int64_t translated, const double *rotations, const double *translations, double *positions, double *world);
 int low_passed_rows(const double *rows, int64_t frames, int64_t width, int64_t radius, const double *taps, double *out);

@@ -1,4 +1,4 @@
-/* Whole motions, frame by frame: forward kinematics, and the low-passed displacement between passes. */
+/* Whole motions: the low-passed displacement between passes. */
 
 #define ONE_LANE
 #include "layered.h"
@@ -11,32 +11,6 @@
 #define PI 3.14159265358979323846
 /* Radians: a rotation vector as short as this has no direction to add a turn along. */
 #define NO_LENGTH 1e-9
-
-/* World transforms of every joint: p_j = p_parent + R_parent t_j, q_j = q_parent q_local.
-
-   parents: shape (J,), -1 for the root. places: shape (J,), a joint's row of the translations, or -1. offsets: (J, 3).
-   rotations: (N, J, 4), translations: (N, P, 3). Out: positions (N, J, 3), world (N, J, 4). */
-void world_poses(const int64_t *parents, const int64_t *places, const double *offsets, int64_t frames, int64_t joints,
-    int64_t translated, const double *rotations, const double *translations, double *positions, double *world)
-{
-    for (int64_t f = 0; f < frames; f++, rotations += 4 * joints, translations += 3 * translated)
-        for (int64_t j = 0; j < joints; j++) {
-            const double *own = places[j] < 0 ? offsets + 3 * j : translations + 3 * places[j];
-            double *p = positions + 3 * (f * joints + j), *q = world + 4 * (f * joints + j);
-            if (parents[j] < 0) {
-                memcpy(p, own, 3 * sizeof *p), memcpy(q, rotations + 4 * j, 4 * sizeof *q);
-                continue;
-            }
-            const double *above = world + 4 * (f * joints + parents[j]);
-            double t[3], s[3];
-            cross(above + 1, own, t); /* v + 2 w (u x v) + 2 u x (u x v) */
-            t[0] *= 2.0, t[1] *= 2.0, t[2] *= 2.0;
-            cross(above + 1, t, s);
-            for (int a = 0; a < 3; a++)
-                p[a] = positions[3 * (f * joints + parents[j]) + a] + own[a] + above[0] * t[a] + s[a];
-            q_multiply(above, rotations + 4 * j, q);
-        }
-}
 
 /* One column of numbers through a symmetric filter, with odd reflection at the ends: about where a line through what is
    near to an end, weighted as the filter is, has it.

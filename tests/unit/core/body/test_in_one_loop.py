@@ -15,6 +15,7 @@ from motionedit.core.body.limits import human_limits
 from motionedit.core.body.quality import squared_jerks
 from motionedit.core.body.ranges import bent_back, beyond_range, regions_of
 from motionedit.core.body.steps import change_steps, own_steps
+from motionedit.core.body.up import _ways_up
 from motionedit.core.compiled import compiled, solver_name
 from motionedit.core.kinematics import forward
 
@@ -47,6 +48,7 @@ def read(motion, first):
     back = bent_back(motion, other, BODY, bends, **touched)
     return [
         *(each for bend in bends for each in (bend.axis, bend.straight, bend.upper, bend.lower, bend.angles)),
+        *(np.array(bend.bent) for bend in bends),
         *(np.array([*limit.center, *limit.along, limit.swing, limit.twist]) for limit in limits),
         *(center_of_mass(poses, find_masses(SKELETON, BODY)), squares, np.array(worst)),
         np.array([(each.joint, each.frame, each.degrees) for each in (*beyond, *back)]),
@@ -79,6 +81,17 @@ def test_a_limb_that_is_never_bent_is_found_beside_one_that_is(monkeypatch):
     np.testing.assert_array_equal([bend.axis for bend in found], [bend.axis for bend in other])
 
 
+@pytest.mark.compiled
+@pytest.mark.parametrize("frames", [1, 2, 29, 30])
+def test_which_way_a_body_stands_is_that_of_numpy_to_the_bit(frames, monkeypatch):
+    positions = forward(moving(frames, 0.5)).positions[:frames].round(2)
+    bodies = [BODY, replace(BODY, head=None), replace(BODY, legs=None)]
+    found = [_ways_up(body, positions) for body in bodies]
+    monkeypatch.setenv("MOTIONEDIT_SOLVER", "numpy")
+    for one, body in zip(found, bodies, strict=True):
+        np.testing.assert_array_equal(one, _ways_up(body, positions), strict=True)
+
+
 @pytest.mark.parametrize("frames", range(4))
 def test_so_few_frames_have_no_jerk(frames):
     squares, largest, _, _ = squared_jerks(np.ones((frames, 3, 3)))
@@ -104,13 +117,25 @@ def test_joints_and_arrays_that_are_none_are_an_error_and_no_crash():
         compiled().jerks(places, 2, 2, np.zeros(0))
     with pytest.raises(ValueError, match="results: 8 bytes do not fit"):
         compiled().jerks(places, 5, 2, np.zeros(1))
-    limbs, out = np.zeros((1, 4), int), (np.zeros(5), np.zeros(3), np.zeros(1, bool))
-    with pytest.raises(ValueError, match="no positions or rotations"):
-        compiled().bends(places, None, 5, 2, 0, limbs, 1, 0.1, *out)
-    with pytest.raises(ValueError, match="sines: 8 bytes do not fit"):
-        compiled().bends(places, turns, 5, 2, 0, limbs, 1, 0.1, np.zeros(1), *out[1:])
+    with pytest.raises(ValueError, match="no such frames"):
+        read_off("products", None, turns, np.array([0]), shape=(1, 4, 4), first=5)
+    limbs, how = np.zeros((1, 4), int), (1, 0.1, 0.1)
+    out = [np.zeros((1, 5), bool), *map(np.zeros, (3, 6, 15, 10))]
+    for given, first in (((places, None), 0), ((places, turns), -1)):
+        with pytest.raises(ValueError, match="no positions or rotations, or no such frames"):
+            compiled().bends(*given, 5, 2, first, limbs, *how, *out)
+    for i, name in enumerate(("straight", "axes", "bones", "lower", "turns")):
+        with pytest.raises(ValueError, match=f"{name}: 0 bytes do not fit"):
+            compiled().bends(places, turns, 5, 2, 0, limbs, *how, *out[:i], np.zeros(0), *out[i + 1 :])
     with pytest.raises(ValueError, match="no joint 2"):
-        compiled().bends(places, turns, 5, 2, 0, limbs + 2, 1, 0.1, *out)
+        compiled().bends(places, turns, 5, 2, 0, limbs + 2, *how, *out)
+    for given, frames in ((None, 5), (places, 0)):
+        with pytest.raises(ValueError, match="no positions, or no frames"):
+            compiled().median_ways(given, frames, 2, limbs, 1, np.zeros(3))
+    with pytest.raises(ValueError, match="no joint 2"):
+        compiled().median_ways(places, 5, 2, limbs + 2, 1, np.zeros(3))
+    with pytest.raises(ValueError, match="results: 16 bytes do not fit"):
+        compiled().median_ways(places, 5, 2, limbs, 1, np.zeros(2))
     with pytest.raises(ValueError, match="numbers of other frames"):
         compiled().same(turns, turns[:4], places, places, 5, np.zeros(5, bool))
     with pytest.raises(ValueError, match="frames: 4 bytes do not fit"):

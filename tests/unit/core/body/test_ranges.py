@@ -117,6 +117,25 @@ def test_a_knee_that_the_input_bends_back_is_seen_beyond_that():
     assert back(before, turned(before, "LeftLeg", -20.0))["LeftLeg"].degrees == pytest.approx(10.0)
 
 
+@pytest.mark.compiled
+@pytest.mark.parametrize("bones", [BONES, WITH_TWISTS])
+def test_limbs_that_are_let_off_at_once_are_not_bent_back(bones, monkeypatch):
+    before = turned(standing(skeleton_of(bones)), "LeftLeg", 30.0, slice(0, 5))
+    afters = [
+        turned(turned(before, "LeftLeg", knee, [place]), "RightForeArm", elbow, [19])
+        for knee, elbow, place in ((-8.0, 20.0, 0), (40.0, -60.0, 3), (-6.0, -70.0, 19), (0.0, 9.0, 12))
+    ]
+    seen = [back(before, after) for after in afters]
+    assert any(seen)
+    assert not all(seen)
+    monkeypatch.setenv("MOTIONEDIT_SOLVER", "numpy")
+    for found, after in zip(seen, afters, strict=True):
+        other = back(before, after)
+        assert found.keys() == other.keys()
+        for name, one in found.items():
+            assert one.degrees == pytest.approx(other[name].degrees, rel=1e-12)
+
+
 def test_an_elbow_that_the_input_keeps_straight_is_bent_back_where_bodies_do_not_bend():
     # Arms hang: the hand comes to the front by turns about -x.
     before = standing(skeleton_of())

@@ -7,6 +7,7 @@ from human import skeleton_of
 from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.contacts import Plant
 from motionedit.core.body.ground import axis_vector
+from motionedit.core.body.quality import foot_drift, foot_slide_max
 from motionedit.core.compiled import compiled, solver_name
 from motionedit.core.feet.measures import foot_measures
 
@@ -87,22 +88,46 @@ def test_compiled_measures_are_those_of_numpy(seed, monkeypatch):
     assert vars(found) == pytest.approx(vars(measured(tracks, *plants[: seed % 5], **how)), rel=1e-12, abs=1e-12)
 
 
+@pytest.mark.compiled
+@pytest.mark.parametrize("seed", range(8))
+def test_compiled_slides_and_drifts_are_those_of_numpy_to_the_bit(seed, monkeypatch):
+    rng = np.random.default_rng(seed)
+    before, after = rng.normal(size=(2, FRAMES, len(POINTS), 3))
+    spans = [sorted(rng.integers(0, FRAMES, 2).tolist()) for _ in range(seed % 4)]
+    plants = [Plant("left", "toe", 0, point, *span, 0.0) for point, span in enumerate(spans)]
+    up = np.eye(3)[seed % 3]
+
+    def found():
+        return foot_slide_max(before, plants, up=up, frame_time=0.01), foot_drift(before, after, tuple(plants))
+
+    compiled_ones = found()
+    monkeypatch.setenv("MOTIONEDIT_SOLVER", "numpy")
+    assert compiled_ones == found()
+
+
 @pytest.mark.skipif(solver_name() == "numpy", reason="nothing compiled here")
-@pytest.mark.parametrize(
-    ("at", "point", "counts"),
-    [
-        ([0, 1], [2], [2]),
-        ([0, 1], [-1], [2]),
-        ([0, 3], [1], [2]),
-        ([-1, 0], [0], [2]),
-        ([0, 1], [0], [3]),
-        ([0], [0], [0]),
-    ],
-)
-def test_plants_at_no_frames_or_of_no_points_are_an_error_and_no_crash(at, point, counts):
-    given = np.zeros((3, 2, 3)), np.zeros(3), np.ones(2, bool), *map(np.array, (at, point, counts))
-    with pytest.raises(ValueError, match="plants are at no frames"):
-        compiled().foot_figures(*given, 3, 2, 0, len(counts), len(at), (1.0,) * 6)
+@pytest.mark.parametrize("span", [(2, 0, 1), (-1, 0, 1), (1, 0, 3), (0, -1, 0), (0, 2, 1)])
+def test_plants_at_no_frames_or_of_no_points_are_an_error_and_no_crash(span):
+    tracks, given = np.zeros((3, 2, 3)), (np.array([span]), 3, 2, 1)
+    calls = {"foot_figures": (np.ones(2, bool), 0, (1.0,) * 6), "foot_slide": (), "foot_drift": (tracks,)}
+    for call, more in calls.items():
+        with pytest.raises(ValueError, match="plant 0 is at no frames, or of no point"):
+            getattr(compiled(), call)(tracks, np.zeros(3), *given, *more)
+
+
+@pytest.mark.skipif(solver_name() == "numpy", reason="nothing compiled here")
+def test_feet_without_up_or_with_tracks_of_another_size_are_an_error_and_no_crash():
+    tracks, given = np.zeros((3, 2, 3)), (np.array([(0, 0, 1)]), 3, 2, 1)
+    with pytest.raises(ValueError, match="no up"):
+        compiled().foot_slide(tracks, None, *given)
+    with pytest.raises(ValueError, match="no up"):
+        compiled().foot_figures(tracks, None, *given, np.ones(2, bool), 0, (1.0,) * 6)
+    with pytest.raises(ValueError, match="other tracks: 24 bytes do not fit"):
+        compiled().foot_drift(tracks, None, *given, np.zeros(3))
+    with pytest.raises(ValueError, match="no such frames or points"):
+        compiled().foot_slide(tracks, np.zeros(3), given[0], -1, 2, 1)
+    with pytest.raises(ValueError, match="no such frames"):
+        compiled().foot_figures(tracks, np.zeros(3), *given, np.ones(2, bool), -1, (1.0,) * 6)
 
 
 def test_a_foot_that_stands_far_from_the_origin_does_not_drift_at_all():

@@ -1,7 +1,5 @@
 """Where a foot stands, found at once: the compiled part and numpy agree."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from human import skeleton_of
@@ -9,8 +7,6 @@ from human import skeleton_of
 from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.contacts import Plant
 from motionedit.core.compiled import compiled, solver_name
-from motionedit.core.feet.phases import _kept_at_once, _kept_in_rounds
-from motionedit.core.feet.settled import settled
 from motionedit.core.feet.stance import FootPath, stance_of
 
 BODY = find_anatomy(skeleton_of())
@@ -48,38 +44,6 @@ def test_a_compiled_stance_is_that_of_numpy(seed, monkeypatch):
         np.testing.assert_allclose(getattr(found, name), getattr(expected, name), rtol=0.0, atol=1e-14)
 
 
-@pytest.mark.compiled
-@pytest.mark.parametrize("seed", range(20))
-def test_compiled_plants_settle_as_those_of_numpy(seed, monkeypatch):
-    rng = np.random.default_rng(seed)
-    asked = [replace(plant, point=int(rng.integers(4))) for plant in plants(rng, 40)]
-    tracks = np.cumsum(rng.normal(scale=0.004, size=(40, 4, 3)), axis=0)
-    how = {"up": np.array([0.0, 1.0, 0.0]), "frame_time": 1.0 / float(rng.choice([30, 60, 240]))}
-    found = settled(asked, tracks, BODY, **how)
-    monkeypatch.setenv("MOTIONEDIT_SOLVER", "numpy")
-    assert found == settled(asked, tracks, BODY, **how)
-
-
-@pytest.mark.compiled
-@pytest.mark.parametrize("seed", range(20))
-def test_compiled_plants_are_kept_as_those_of_numpy(seed, monkeypatch):
-    rng = np.random.default_rng(seed)
-    path, asked = foot(rng, 40), plants(rng, 40) if seed else []
-    leg = {"hip": rng.normal(size=(40, 3)), "reach": rng.uniform(0.2, 2.0, size=40)}
-    found = _kept_at_once(compiled().kept, asked, path, 2, **leg)
-    monkeypatch.setenv("MOTIONEDIT_SOLVER", "numpy")
-    assert found == _kept_in_rounds(asked, path, 2, **leg)
-
-
-@pytest.mark.skipif(solver_name() == "numpy", reason="nothing compiled here")
-def test_counts_that_are_not_those_of_the_places_are_an_error_and_no_crash():
-    for counts in ([3, 3], [5, 0], [-1, 6]):
-        with pytest.raises(ValueError, match="counts are not those"):
-            compiled().settled(
-                np.zeros((5, 3)), np.zeros(3), np.array(counts), np.zeros((2, 2), int), 5, 2, 1, *[1.0] * 3
-            )
-
-
 @pytest.mark.skipif(solver_name() == "numpy", reason="nothing compiled here")
 def test_plants_beyond_the_frames_and_arrays_of_another_size_are_an_error_and_no_crash():
     three, four, flags = np.zeros((5, 3)), np.zeros((5, 4)), np.zeros(5, bool)
@@ -88,7 +52,5 @@ def test_plants_beyond_the_frames_and_arrays_of_another_size_are_an_error_and_no
     for span in ((0, 0, 5), (1, -1, 2), (0, 3, 2)):
         with pytest.raises(ValueError, match="plant 0 is at no frames"):
             compiled().stance(*given, np.array([span]), *out, 5, 1)
-        with pytest.raises(ValueError, match="plant 0 is at no frames"):
-            compiled().kept(*given, three, np.zeros(5), np.array([span]), 5, 1, 2, 6, 0.0)
     with pytest.raises(ValueError, match="turn: 120 bytes do not fit"):
         compiled().stance(three, three, three, three, np.zeros((0, 3), np.int64), *out, 5, 0)

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from motionedit.core.body.contacts import Plant, frames_of
+from motionedit.core.body.contacts import Plant
+from motionedit.core.body.plant_frames import frames_of
 
 
 def test_values_means_and_medians_are_those_of_each_plant_by_itself():
