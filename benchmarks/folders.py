@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 import time
+from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -84,12 +85,14 @@ def _long(folder: Path) -> Row:
 
 
 def _edit(config: str, folder: Path) -> Callable[[Sequence[Path]], object]:
-    """Return a function that edits clips into a new folder: to replace files a disk may wait for what was in them."""
-    spec, out = load_spec(CONFIGS / f"{config}.yaml", "edit-prioritized"), folder / f"{config}-out"
+    """Return a function that edits clips into a new folder each time.
+
+    To replace files a disk may wait for what was in them, and for a while it steps over what was removed.
+    """
+    spec, rounds = load_spec(CONFIGS / f"{config}.yaml", "edit-prioritized"), count()
 
     def run(clips: Sequence[Path]) -> object:
-        shutil.rmtree(out, ignore_errors=True)
-        return edit_prioritized.run(spec, clips, f"{out}/", RunOptions())
+        return edit_prioritized.run(spec, clips, f"{folder / f'{config}-out{next(rounds)}'}/", RunOptions())
 
     return run
 
@@ -101,16 +104,16 @@ def _gains(folder: Path) -> list[Row]:
     swings.mkdir()
     for n, swing in enumerate(random_swings(np.random.default_rng(11), MEASURED)):
         (swings / f"swing{n:04d}.bvh").write_bytes(new_bytes(make_swing(swing)))
-    few = sorted(swings.iterdir())[:EDITED]
+    few = sorted(swings.iterdir())[:BASE]
     normalized, base = folder / "shared-normalized", folder / "base-normalized"
-    for clips, out in (([swings], normalized), (few[:BASE], base)):
+    for clips, out in (([swings], normalized), (few, base)):
         process((PROGRAM, "normalize", *clips, "-s", CONFIGS / "golf-normalize.yaml", "-o", out), folder)()
     process((PROGRAM, "fit-pca", base, "-s", CONFIGS / "golf-fit.yaml", "-o", model), folder)()
     commands: dict[str, tuple[str | Path, ...]] = {
         f"edit-prioritized, reach.yaml, {EDITED} clips": ("edit-prioritized", walks, "-s", CONFIGS / "reach.yaml"),
         f"normalize, {MEASURED:,} clips": ("normalize", swings, "-s", CONFIGS / "golf-normalize.yaml"),
         f"fit-pca, {MEASURED:,} clips": ("fit-pca", normalized, "-s", CONFIGS / "golf-fit.yaml"),
-        f"edit-pc, {EDITED} clips": ("edit-pc", *few, "-m", model, "-s", CONFIGS / "golf-edit.yaml"),
+        f"edit-pc, {BASE} clips": ("edit-pc", *few, "-m", model, "-s", CONFIGS / "golf-edit.yaml"),
     }
     return [_gain(name, command, folder) for name, command in commands.items()]
 
@@ -118,13 +121,12 @@ def _gains(folder: Path) -> list[Row]:
 def _gain(name: str, command: tuple[str | Path, ...], folder: Path) -> Row:
     end = ".npz" if "fit-pca" in command else ""
 
-    def run(jobs: int) -> Callable[[], object]:
-        out = folder / f"gain{end}"
-        again = process((PROGRAM, *command, "-o", out, "-j", str(jobs)), folder)
+    rounds = count()
 
+    def run(jobs: int) -> Callable[[], object]:
         def fresh() -> object:
-            out.unlink(missing_ok=True) if end else shutil.rmtree(out, ignore_errors=True)
-            return again()
+            out = folder / f"gain-{command[0]}{next(rounds)}{end}"
+            return process((PROGRAM, *command, "-o", out, "-j", str(jobs)), folder)()
 
         return fresh
 
@@ -147,9 +149,9 @@ def _busy(count: int) -> float:
     return time.perf_counter() - start
 
 
-def _copies(clip: Path, folder: Path, count: int) -> list[Path]:
+def _copies(clip: Path, folder: Path, number: int) -> list[Path]:
     folder.mkdir()
-    clips = [folder / f"clip{n:04d}.bvh" for n in range(count)]
+    clips = [folder / f"clip{n:04d}.bvh" for n in range(number)]
     for each in clips:
         shutil.copyfile(clip, each)
     return clips
