@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.arrays import frozen
+from motionedit.core.pca.by_rows import lower_gram, lower_product, make_unit, product
 from motionedit.core.pca.left_out import LeftOut, left_out_of_gram
-from motionedit.core.pca.products import lower_gram, lower_product, product
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -139,7 +139,7 @@ def _orthonormal(rows: FloatArray, *, threads: int) -> FloatArray:
     The squared condition of the Gram matrix left the weakest rows off by a millionth. The rows at unit length are
     well conditioned, so that Cholesky does as well as a QR step, in a third of its time.
     """
-    rows /= np.linalg.norm(rows, axis=1, keepdims=True)
+    make_unit(rows, threads=threads)
     L = np.linalg.cholesky(lower_gram(rows, threads=threads))
     return lower_product(np.linalg.inv(L), rows, threads=threads)
 

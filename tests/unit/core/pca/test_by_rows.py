@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from motionedit.core.pca.by_rows import lower_gram, lower_product, make_unit, product
 from motionedit.core.pca.fit import ComponentCount, fit_centred
-from motionedit.core.pca.products import lower_gram, lower_product, product
 
 RNG = np.random.default_rng(5)
 A, B = RNG.normal(size=(700, 300)), RNG.normal(size=(300, 90))
@@ -26,6 +26,13 @@ def test_any_number_of_threads_gives_the_same_bits(threads):
     assert np.array_equal(product(A, B, threads=threads), product(A, B, threads=1))
     assert np.array_equal(lower_gram(A, threads=threads), lower_gram(A, threads=1))
     assert np.array_equal(lower_product(lower, A, threads=threads), lower_product(lower, A, threads=1))
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_rows_are_made_as_long_as_one(threads):
+    rows = A.copy()
+    make_unit(rows, threads=threads)
+    assert np.array_equal(rows, A / np.linalg.norm(A, axis=1, keepdims=True))
 
 
 def test_a_fit_in_threads_is_the_fit():

@@ -1,4 +1,4 @@
-"""Products of large matrices by blocks of rows, in threads: the blocks, and so the bits, are those of one thread."""
+"""Work on large matrices by blocks of rows, in threads: the blocks, and so the bits, are those of one thread."""
 
 from __future__ import annotations
 
@@ -40,17 +40,26 @@ def lower_product(L: FloatArray, B: FloatArray, *, threads: int) -> FloatArray:
     return LB
 
 
-def _by_rows(multiply: Callable[[slice], object], count: int, threads: int) -> None:
+def make_unit(rows: FloatArray, *, threads: int) -> None:
+    """Divide rows by their lengths, in place."""
+
+    def divide(some: slice) -> None:
+        rows[some] /= np.linalg.norm(rows[some], axis=1, keepdims=True)
+
+    _by_rows(divide, len(rows), threads)
+
+
+def _by_rows(work: Callable[[slice], object], count: int, threads: int) -> None:
     """Call a function with all rows, block by block; the last, which may be the longest, first."""
     blocks = [slice(first, min(first + _ROWS, count)) for first in range(0, count, _ROWS)][::-1]
     if min(threads, len(blocks)) < 2:
         for rows in blocks:
-            multiply(rows)
+            work(rows)
         return
     from concurrent.futures import ThreadPoolExecutor
 
     pool = ThreadPoolExecutor(min(threads, len(blocks)))
     try:
-        list(pool.map(multiply, blocks))
+        list(pool.map(work, blocks))
     finally:  # after Ctrl-C what was not begun is not waited for
         pool.shutdown(cancel_futures=True)
