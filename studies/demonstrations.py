@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from motionedit.core.body.anatomy import anatomy_of
+from motionedit.core.body.find_anatomy import anatomy_of
 from motionedit.core.bvh import read_clip
 from motionedit.jobs.clip.facts import facts_of
 from motionedit.spec.load import load_spec

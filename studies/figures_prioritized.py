@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from motionedit.core.body.anatomy import anatomy_of
+from motionedit.core.body.find_anatomy import anatomy_of
 from motionedit.core.body.rest_pose import rest_pose_frames
 from motionedit.core.bvh import read_clip
 from motionedit.core.kinematics import forward

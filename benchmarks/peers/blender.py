@@ -13,8 +13,8 @@ import numpy as np
 from benchmarks.clock import best_of, duration, process
 from benchmarks.peers.jobs import COM, places
 from benchmarks.peers.others import PeerError, ask, command, versions
-from motionedit.core.body.anatomy import anatomy_of
 from motionedit.core.body.center_of_mass import find_masses
+from motionedit.core.body.find_anatomy import anatomy_of
 from motionedit.core.bvh import new_bytes, read_clip
 from motionedit.core.kinematics import forward
 from motionedit.core.motion import Motion

@@ -11,10 +11,10 @@ import numpy as np
 
 from benchmarks.peers.robot import mjcf
 from motionedit.core import rotations as rot
-from motionedit.core.body.anatomy import anatomy_of
 from motionedit.core.body.bends import find_bends
 from motionedit.core.body.bones import travel_joint
 from motionedit.core.body.center_of_mass import center_of_mass, find_masses
+from motionedit.core.body.find_anatomy import anatomy_of
 from motionedit.core.body.hinges import find_hinges
 from motionedit.core.bvh import read_clip
 from motionedit.core.kinematics import Effector, WorldPoses, forward

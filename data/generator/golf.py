@@ -12,6 +12,7 @@ from data.generator.figure import Figure, axis_turn, unit
 from data.generator.grip import HEAD_IN_CLUB, IN_HAND, UP_SHAFT, above_ground, grips, within_reach, wrist_of
 from data.generator.styles import ENVELOPES, NOISE, PARAMETERS, RESPONSE, STYLES, key_values
 from motionedit.core import rotations as rot
+from motionedit.core.slerp import slerp
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
@@ -266,7 +267,7 @@ class SwingModel:
         free = curves.smooth_step(times, t.hit + 0.02, t.finish - 0.05)
         after = rot.multiply(axis_turn("y", 78.0 + p["head_yaw"]), axis_turn("x", 6.0 + p["head_pitch"]))
         after = rot.multiply(after, axis_turn("z", p["head_roll"]))
-        body.share(("Neck", "Neck1", "Head"), rot.slerp(down, after, free))
+        body.share(("Neck", "Neck1", "Head"), slerp(down, after, free))
 
 
 def _elbow_pole(body: Figure, p: dict[str, FloatArray], side: str) -> FloatArray:

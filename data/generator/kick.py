@@ -9,6 +9,7 @@ import numpy as np
 from data.generator import curves, figure
 from data.generator.figure import Figure, axis_turn, unit
 from motionedit.core import rotations as rot
+from motionedit.core.slerp import slerp
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
@@ -108,10 +109,10 @@ def _kicking_leg(body: Figure, p: dict[str, FloatArray]) -> None:
     aim = unit((1.0 - w) * _knee_aim(np.full_like(p["free"], -22.0)) + w * along(p["thigh"] - 0.5 * p["knee"] + 90.0))
     body.leg("Right", planted + w * (lifted - planted), knee_to=aim)
     shin = rot.multiply(body.rotations["RightLeg"], axis_turn("x", p["ankle"]))
-    foot = rot.slerp(rolled, shin, p["free"])
+    foot = slerp(rolled, shin, p["free"])
     body.turn("RightFoot", foot)
     standing = rot.multiply(rot.conjugate(rolled), np.broadcast_to(flat, rolled.shape))
-    body.turn_local("RightToeBase", rot.slerp(standing, axis_turn("x", p["toes"]), p["free"]))
+    body.turn_local("RightToeBase", slerp(standing, axis_turn("x", p["toes"]), p["free"]))
 
 
 def _guard(body: Figure, side: str, p: dict[str, FloatArray]) -> None:

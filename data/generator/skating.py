@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motionedit.core.body.anatomy import anatomy_of
 from motionedit.core.body.bends import find_bends
+from motionedit.core.body.find_anatomy import anatomy_of
 from motionedit.core.feet.knees import knee_of
 from motionedit.core.feet.legs import LegGoal, legs_onto
 from motionedit.core.kinematics import forward

@@ -6,7 +6,7 @@ Euler order such as ``ZXY`` names BVH channels in their order: R = Rz Rx Ry.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from motionedit.core.compiled import compiled
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from motionedit.core.arrays import FloatArray, IntArray
+    from motionedit.core.arrays import FloatArray
 
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
 IDENTITY.setflags(write=False)
@@ -23,8 +23,6 @@ _CONJUGATE = np.array([1.0, -1.0, -1.0, -1.0])
 
 # Below this angle (rad) sin(x)/x and its kin are taken from their series, exact to double precision there.
 _SMALL_ANGLE = 1e-4
-# Tangent of half an arc below which a line will do for it: there sin(x) is x to the last bit.
-_STRAIGHT = 0.5e-8
 
 
 def multiply(a: FloatArray, b: FloatArray) -> FloatArray:
@@ -32,8 +30,8 @@ def multiply(a: FloatArray, b: FloatArray) -> FloatArray:
     product = _in_one_loop("multiply", a, b, 4)
     if product is not None:
         return product
-    aw, ax, ay, az = _parts(a)
-    bw, bx, by, bz = _parts(b)
+    aw, ax, ay, az = parts_of(a)
+    bw, bx, by, bz = parts_of(b)
     # Part by part into its place: four parts beside the product would double the memory of a long motion.
     product = np.empty((*np.broadcast(aw, bw).shape, 4))
     product[..., 0] = aw * bw - ax * bx - ay * by - az * bz
@@ -82,8 +80,8 @@ def cross(a: FloatArray, b: FloatArray) -> FloatArray:
     product = _in_one_loop("cross", a, b, 3)
     if product is not None:
         return product
-    ax, ay, az = _parts(a)
-    bx, by, bz = _parts(b)
+    ax, ay, az = parts_of(a)
+    bx, by, bz = parts_of(b)
     product = np.empty((*np.broadcast(ax, bx).shape, 3))
     product[..., 0] = ay * bz - az * by
     product[..., 1] = az * bx - ax * bz
@@ -96,8 +94,8 @@ def dot(a: FloatArray, b: FloatArray) -> FloatArray:
     product = _in_one_loop("dot", a, b)
     if product is not None:
         return product
-    ax, ay, az = _parts(a)
-    bx, by, bz = _parts(b)
+    ax, ay, az = parts_of(a)
+    bx, by, bz = parts_of(b)
     summed: FloatArray = ax * bx + ay * by + az * bz
     return summed
 
@@ -139,7 +137,7 @@ def _in_one_loop(
     return out
 
 
-def _parts(v: FloatArray) -> list[FloatArray]:
+def parts_of(v: FloatArray) -> list[FloatArray]:
     """Return the parts of vectors or quaternions, shape (...) each; `numpy.moveaxis` takes longer than a product."""
     return [v[..., i] for i in range(v.shape[-1])]
 
@@ -234,72 +232,6 @@ def from_matrix(R: FloatArray) -> FloatArray:
     best = np.argmax(np.diagonal(outer, axis1=-2, axis2=-1), axis=-1)
     q = normalize(np.take_along_axis(outer, best[..., None, None], axis=-2)[..., 0, :])
     return np.where(q[..., :1] < 0.0, -q, q)
-
-
-def slerp(a: FloatArray, b: FloatArray, t: FloatArray) -> FloatArray:
-    """Return the rotation at fraction t of the shorter arc from a to b, shape (..., 4); t has shape (...)."""
-    aw, ax, ay, az = _parts(a)
-    bw, bx, by, bz = _parts(b)
-    cosine = aw * bw + ax * bx + ay * by + az * bz
-    whole, rest, way = _arc_tangents(cosine, t)
-    straight = whole < _STRAIGHT
-    sine = np.where(straight, 1.0, whole / (1.0 + whole * whole))
-    first = np.where(straight, 1.0 - t, rest / (1.0 + rest * rest) / sine)
-    second = np.copysign(np.where(straight, t, way / (1.0 + way * way) / sine), cosine)
-    between: FloatArray = first[..., None] * a + second[..., None] * b
-    return between
-
-
-def slerp_frames(rotations: FloatArray, frames: IntArray, t: FloatArray) -> FloatArray:
-    """Return the rotations at fractions t (N,) of the ways from `frames` (N,) to the ones after, shape (N, J, 4).
-
-    `rotations`, shape (F, J, 4), are those of all frames; there is nothing after the last one.
-    """
-    kernel = compiled()
-    if kernel is None:
-        return slerp(rotations[frames], rotations[np.minimum(frames + 1, len(rotations) - 1)], t[:, None])
-    ways = ways_of(kernel, rotations, frames, t)
-    turned = np.empty((*ways.parts.shape[1:], 4))
-    kernel.sampled_turns(ways.rotations, turned.shape[1], ways.frames, ways.t, ways.parts, turned)
-    return turned
-
-
-class Ways(NamedTuple):
-    """Ways (N,) from frames of `rotations` (F, J, 4) to the ones after, as the compiled part takes them.
-
-    The last two of `parts`, shape (3, N, J), are the weights of both ends.
-    """
-
-    rotations: FloatArray
-    frames: IntArray
-    t: FloatArray
-    parts: FloatArray
-
-
-def ways_of(kernel: Any, rotations: FloatArray, frames: IntArray, t: FloatArray) -> Ways:  # noqa: ANN401  as `compiled`
-    """Return the ways to fractions t (N,) from frames (N,) to the ones after; arguments as of `slerp_frames`."""
-    rotations, t = np.ascontiguousarray(rotations, np.float64), np.ascontiguousarray(t, np.float64)
-    frames, joints = np.ascontiguousarray(frames, np.int64), rotations.shape[1]
-    cosines, parts = np.empty((len(t), joints)), np.empty((3, len(t), joints))
-    kernel.arc_cosines(rotations, joints, frames, t, cosines, parts[0])
-    np.arccos(parts[0], out=parts[0])
-    kernel.arc_parts(t, joints, parts)
-    np.tan(parts, out=parts)
-    kernel.arc_weights(t, joints, cosines, _STRAIGHT, parts)
-    return Ways(rotations, frames, t, parts)
-
-
-def _arc_tangents(cosine: FloatArray, t: FloatArray) -> FloatArray:
-    """Return the tangents of half an arc, of half of what is left of it at t, and of half its way to t, (3, ...).
-
-    Of a cosine (...) between quaternions. A sine 2 u / (1 + u^2) by its tangent costs a quarter of numpy's own.
-    """
-    tangents = np.empty((3, *np.broadcast_shapes(cosine.shape, t.shape)))
-    half = 0.5 * np.arccos(np.minimum(np.abs(cosine), 1.0))
-    tangents[0] = half
-    np.multiply(1.0 - t, half, out=tangents[1, ...])
-    np.multiply(t, half, out=tangents[2, ...])
-    return np.tan(tangents, out=tangents)
 
 
 def mean_of_products(products: FloatArray) -> FloatArray:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.body.anatomy import anatomy_of
+from motionedit.core.body.find_anatomy import anatomy_of
 from motionedit.core.kinematics import forward
 from motionedit.core.skeleton_match import match_joints
 from motionedit.dataclass import dataclass

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from motionedit.core.body.anatomy import anatomy_of
+from motionedit.core.body.find_anatomy import anatomy_of
 from motionedit.core.body.quality import jerk_rms
 from motionedit.core.bvh import read_clip
 from studies.capsules import clearances, limb_pairs

@@ -10,7 +10,7 @@ import pytest
 from small_motions import make_motion
 
 from motionedit.core import rotations as rot
-from motionedit.core.body.anatomy import anatomy_of
+from motionedit.core.body.find_anatomy import anatomy_of
 from motionedit.core.bvh import new_bytes
 
 NAMES = ("Hips", "Spine", "LeftArm", "LeftForeArm")

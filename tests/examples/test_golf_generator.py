@@ -12,6 +12,7 @@ from data.generator.players import BALL, GROUPS, random_swing, random_swings, sh
 from data.generator.styles import KEYS, STYLES
 from motionedit.core import kinematics
 from motionedit.core import rotations as rot
+from motionedit.core.slerp import slerp
 
 
 def accelerations(motion):
@@ -56,7 +57,7 @@ def components(motions, hits):
         at = np.interp(np.arange(frames), [0, key, frames - 1], [0, hit, len(motion) - 1])
         i = np.minimum(at.astype(int), len(motion) - 2)
         u = np.repeat((at - i)[:, None], len(motion.skeleton), axis=1)
-        rotations.append(rot.slerp(motion.rotations[i], motion.rotations[i + 1], u))
+        rotations.append(slerp(motion.rotations[i], motion.rotations[i + 1], u))
         root = motion.translations[:, 0]
         roots.append(root[i] * (1.0 - u[:, :1]) + root[i + 1] * u[:, :1])
     q = np.array(rotations)

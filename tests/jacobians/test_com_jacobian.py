@@ -8,8 +8,8 @@ from human import BONES, skeleton_of, split
 from increments import turned
 
 from motionedit.core import rotations as rot
-from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.center_of_mass import center_of_mass, find_masses
+from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.kinematics import forward
 from motionedit.core.motion import Motion
 from motionedit.core.priorities.kinds.com import CenterOfMassTask

@@ -5,8 +5,8 @@ import pytest
 from human import skeleton_of
 
 from motionedit.core import rotations as rot
-from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.center_of_mass import find_masses
+from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.kinematics import Effector, WorldPoses, forward
 from motionedit.core.measure import Level, Measure
 from motionedit.core.motion import Motion

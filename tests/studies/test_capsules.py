@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from motionedit.core.body.anatomy import find_anatomy
+from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.bvh import read_clip
 from motionedit.core.kinematics import forward
 from studies.capsules import Capsule, clearances, limb_pairs, segment_distance

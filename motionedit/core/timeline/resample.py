@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
 from motionedit.core.motion import Motion
+from motionedit.core.slerp import slerp_frames
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray, IntArray
@@ -21,7 +21,7 @@ def resample(motion: Motion, at: FloatArray, *, frame_time: float) -> Motion:
     """
     i, t = frames_before(motion, at)
     j = np.minimum(i + 1, len(motion) - 1)
-    rotations = rot.slerp_frames(motion.rotations, i, t)
+    rotations = slerp_frames(motion.rotations, i, t)
     a, b = motion.translations[i], motion.translations[j]
     translations = a + t[:, None, None] * (b - a)
     return Motion(motion.skeleton, frozen(rotations), frozen(translations), frame_time)

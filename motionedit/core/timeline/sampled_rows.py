@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
 from motionedit.core.compiled import compiled
 from motionedit.core.euler import DEGREES, GIMBAL_BAND, HELD, joint_angles, radians
 from motionedit.core.motion import position_columns
+from motionedit.core.slerp import ways_of
 from motionedit.core.timeline.alignment import aligned
 from motionedit.core.timeline.resample import frames_before, resample
 
@@ -51,7 +51,7 @@ def _in_few_loops(motion: Motion, at: FloatArray, alignment: Alignment, *, start
     if kernel is None or any(len(group.axes) != 3 for group in groups) or len(at) * len(skeleton) > HELD:
         return None
     frames, t = frames_before(motion, at)
-    ways = rot.ways_of(kernel, motion.rotations, frames, t)
+    ways = ways_of(kernel, motion.rotations, frames, t)
     width, seeds = skeleton.channel_count, radians(start)
     rows = np.empty((len(at), width))
     given = ways.rotations, len(skeleton), ways.frames, ways.t, ways.parts

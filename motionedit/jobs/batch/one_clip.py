@@ -181,7 +181,7 @@ def read_task(task: ClipTask, *, lenient: bool) -> Clip:
 
 def _verify(clip: Clip, content: bytes, motion: Motion) -> dict[str, Any]:
     """Return what bvhio, an independent reader, found in the bytes to write; a difference fails the clip."""
-    from motionedit.core.body.anatomy import anatomy_of
+    from motionedit.core.body.find_anatomy import anatomy_of
     from motionedit.core.bvh import check_with_bvhio
 
     result = check_with_bvhio(content, motion, leg_length=anatomy_of(motion).leg_length)

@@ -10,9 +10,10 @@ import numpy as np
 from motionedit.core import kinematics
 from motionedit.core.arrays import frozen
 from motionedit.core.body import ground
-from motionedit.core.body.anatomy import NOTHING_GIVEN, Anatomy, GivenBody, find_anatomy
+from motionedit.core.body.anatomy import NOTHING_GIVEN, Anatomy, GivenBody
 from motionedit.core.body.bones import find_bones, travel_joint
 from motionedit.core.body.contacts import planted, plants_of, sole_tracks, stands_of
+from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.body.rest_pose import rest_pose_frames
 from motionedit.core.body.steps import own_steps
 from motionedit.core.body.up import find_up

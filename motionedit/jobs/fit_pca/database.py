@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import PurePath
 from typing import TYPE_CHECKING
 
-from motionedit.core.body.anatomy import anatomy_of
+from motionedit.core.body.find_anatomy import anatomy_of
 from motionedit.core.pca.database import DatabaseMotion
 from motionedit.core.pca.model import DatabaseClip
 from motionedit.core.skeleton_match import match_joints

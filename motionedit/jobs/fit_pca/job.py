@@ -5,8 +5,8 @@ from __future__ import annotations
 from itertools import chain
 from typing import TYPE_CHECKING
 
-from motionedit.core.body.anatomy import anatomy_of
 from motionedit.core.body.bones import travel_joint
+from motionedit.core.body.find_anatomy import anatomy_of
 from motionedit.core.body.ground import axis_vector
 from motionedit.core.pca.database import FitSettings, build_model
 from motionedit.core.pca.fit import AllTheSameError, ComponentCount, TooFewComponentsError

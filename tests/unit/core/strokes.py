@@ -6,8 +6,8 @@ from human import HIPS_HEIGHT, skeleton_of
 from motionedit.core import kinematics
 from motionedit.core import rotations as rot
 from motionedit.core.body import ground
-from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.bones import bones_of, travel_joint
+from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.body.up import find_up
 from motionedit.core.motion import Motion
 from motionedit.core.pca.database import DatabaseMotion, FitSettings, build_model

@@ -8,8 +8,8 @@ from motionedit.core import rotations as rot
 from motionedit.core import trace
 from motionedit.core.arrays import median, percentile
 from motionedit.core.body import center_of_mass as center_of_mass_module
-from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.center_of_mass import center_of_mass, find_masses
+from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.body.quality import jerk_rms
 from motionedit.core.kinematics import forward
 from motionedit.core.trace import blocks_of, forward_blocks, frame_blocks, trace_of

@@ -22,7 +22,7 @@ from human import (
 from hypothesis import given
 from hypothesis import strategies as st
 
-from motionedit.core.body.anatomy import find_anatomy
+from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.kinematics import forward
 from motionedit.core.skeleton import EndSite, Skeleton
 

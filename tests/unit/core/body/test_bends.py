@@ -5,8 +5,8 @@ import pytest
 from human import skeleton_of, standing, with_rotation
 
 from motionedit.core import rotations as rot
-from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.bends import find_bends
+from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.kinematics import forward
 from motionedit.core.skeleton import EndSite
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from human import BONES, CHANNELS, ROOT_CHANNELS, above, skeleton_of, standing
 
-from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.bones import below, bones_of, travel_joint
+from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.motion import Motion
 from motionedit.core.skeleton import Skeleton
 

@@ -9,8 +9,8 @@ import pytest
 from human import BONES, ENDS, HIPS_HEIGHT, above, skeleton_of, split, standing
 
 from motionedit.core import rotations as rot
-from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.center_of_mass import center_of_mass, find_masses, subtree_centers
+from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.bvh import read_clip
 from motionedit.core.kinematics import forward
 from motionedit.core.motion import Motion

@@ -7,8 +7,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from takes import clock, foot_path, footfalls, smooth, within
 
-from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.contacts import Plant, foot_plants, plants_of, sole_tracks
+from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.body.ground import axis_vector
 from motionedit.core.compiled import compiled, solver_name
 from motionedit.core.kinematics import WorldPoses, forward

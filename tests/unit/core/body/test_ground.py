@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from rigs import FILES
 
 from motionedit.core import rotations as rot
-from motionedit.core.body.anatomy import find_anatomy
+from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.body.ground import axis_name, axis_vector, heading_frame, reference_axes, stance_frame
 from motionedit.core.kinematics import forward
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 from human import ARMS, BONES, ENDS, LEGS, arms_of, assert_human, legs_of, skeleton_of, split
 
-from motionedit.core.body.anatomy import find_anatomy
+from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.skeleton import EndSite
 
 

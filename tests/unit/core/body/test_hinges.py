@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from sklearn.decomposition import TruncatedSVD
 
 from motionedit.core import rotations as rot
-from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.bends import find_bends, turns_about
+from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.body.hinges import FULL_BEND, channel_hinges, find_hinges, hinge_of, plain_hinge, with_limits_of
 from motionedit.core.kinematics import forward
 from motionedit.core.motion import Motion

@@ -3,7 +3,7 @@
 import numpy as np
 from human import BONES, skeleton_of
 
-from motionedit.core.body.anatomy import find_anatomy
+from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.body.stiffness import CLAVICLE, NECK, PELVIS, SPINE, WRIST_AND_ANKLE, human_mobility
 
 SKELETON = skeleton_of()

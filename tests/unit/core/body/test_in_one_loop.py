@@ -7,9 +7,9 @@ import pytest
 from human import skeleton_of, standing
 
 from motionedit.core import rotations as rot
-from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.bends import find_bends
 from motionedit.core.body.center_of_mass import center_of_mass, find_masses
+from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.body.in_one_loop import read_off
 from motionedit.core.body.limits import human_limits
 from motionedit.core.body.quality import squared_jerks

@@ -6,7 +6,7 @@ from human import skeleton_of, standing, with_rotation
 from scipy.spatial.transform import Rotation
 
 from motionedit.core import rotations as rot
-from motionedit.core.body.anatomy import find_anatomy
+from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.body.limits import NECK, Range, given_limits, human_limits, limit_of, swing_and_twist
 from motionedit.core.kinematics import forward
 

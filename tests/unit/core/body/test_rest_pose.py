@@ -3,7 +3,7 @@ import pytest
 from human import skeleton_of, standing, with_rotation
 
 from motionedit.core import rotations as rot
-from motionedit.core.body.anatomy import find_anatomy
+from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.body.rest_pose import rest_pose_frames
 from motionedit.core.motion import Motion
 

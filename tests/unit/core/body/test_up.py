@@ -12,8 +12,8 @@ from rigs import FILES, Rig, found_in, mirrored, motion_of
 from takes import TAKES, Take, about, clock, smooth, walks, wave, waving
 
 from motionedit.core import rotations as rot
-from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.bones import bones_of, travel_joint
+from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.body.ground import axis_name, axis_vector
 from motionedit.core.body.up import find_up
 from motionedit.core.kinematics import forward

@@ -6,8 +6,8 @@ from rig_names import CONVENTIONS, STYLES
 from rig_rows import EXTRAS
 from rigs import Rig, file_names
 
-from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.bones import hanging
+from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.body.words import (
     bare_names,
     hangs_on,

@@ -8,8 +8,8 @@ import pytest
 from human import skeleton_of, standing
 
 from motionedit.core import rotations as rot
-from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.contacts import sole_tracks
+from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.compiled import compiled, solver_name
 from motionedit.core.feet.phases import find_phases, leg_paths
 from motionedit.core.kinematics import forward

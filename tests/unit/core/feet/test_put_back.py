@@ -7,9 +7,9 @@ import pytest
 
 from motionedit.core import kinematics
 from motionedit.core import rotations as rot
-from motionedit.core.body.anatomy import anatomy_of
 from motionedit.core.body.bends import find_bends
 from motionedit.core.body.contacts import foot_plants, plants_of, sole_tracks
+from motionedit.core.body.find_anatomy import anatomy_of
 from motionedit.core.bvh import read_clip
 from motionedit.core.feet.knees import knee_of
 from motionedit.core.feet.put_back import put_back, standing_feet

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from human import skeleton_of
 
-from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.contacts import Plant
+from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.compiled import compiled, solver_name
 from motionedit.core.feet.stance import FootPath, stance_of
 

@@ -3,8 +3,8 @@
 import numpy as np
 from human import skeleton_of, standing, with_rotation
 
-from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.center_of_mass import find_masses
+from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.kinematics import Effector, effector_positions, forward
 from motionedit.core.priorities.edit import edit_by_priorities
 from motionedit.core.priorities.kinds import Position

@@ -12,7 +12,7 @@ from hypothesis.extra import numpy as nps
 from trajectories_through_points import T, hold, largest_turn_jump, turned, whole
 
 from motionedit.core import rotations as rot
-from motionedit.core.body.anatomy import find_anatomy
+from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.bvh import read_clip
 from motionedit.core.kinematics import Effector, effector_positions, forward
 from motionedit.core.priorities.trajectories import (

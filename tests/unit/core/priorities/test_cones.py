@@ -7,7 +7,7 @@ import pytest
 from person import BODY, end, held_feet, swaying
 
 from motionedit.core import rotations as rot
-from motionedit.core.body.anatomy import find_anatomy
+from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.body.limits import human_limits, swing_and_twist
 from motionedit.core.compiled import compiled
 from motionedit.core.kinematics import forward

@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from motionedit.core import rotations as rot
-from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.center_of_mass import find_masses
+from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.body.hinges import channel_hinges
 from motionedit.core.euler import joint_angles
 from motionedit.core.kinematics import Effector, forward

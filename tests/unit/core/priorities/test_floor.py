@@ -8,8 +8,8 @@ from person import FEET, HARD, SKELETON, UP, edited, end, held, held_feet, joint
 from scipy.optimize import minimize
 
 from motionedit.core import rotations as rot
-from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.center_of_mass import find_masses
+from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.kinematics import Effector, forward
 from motionedit.core.measure import Level
 from motionedit.core.motion import Motion

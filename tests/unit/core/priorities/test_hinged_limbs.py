@@ -7,8 +7,8 @@ import pytest
 from person import BODY, HARD, SKELETON, edited, end, held_feet, joint, swaying
 
 from motionedit.core import rotations as rot
-from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.bends import find_bends, turns_about
+from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.body.hinges import find_hinges
 from motionedit.core.kinematics import forward
 from motionedit.core.motion import Motion

@@ -6,8 +6,8 @@ from human import skeleton_of, standing, with_rotation
 
 from motionedit.core import kinematics
 from motionedit.core import rotations as rot
-from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.center_of_mass import find_masses
+from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.body.hinges import plain_hinge
 from motionedit.core.kinematics import Effector
 from motionedit.core.priorities.edit import RecruitingError, edit_by_priorities

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from human import BONES, skeleton_of, standing, with_rotation
 
-from motionedit.core.body.anatomy import find_anatomy
 from motionedit.core.body.bends import find_bends
 from motionedit.core.body.center_of_mass import find_masses
+from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.body.hinges import plain_hinge
 from motionedit.core.kinematics import Effector, forward
 from motionedit.core.priorities.edit import edit_by_priorities

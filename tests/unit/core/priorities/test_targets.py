@@ -20,6 +20,7 @@ from motionedit.core.priorities.lengths import LengthPoint
 from motionedit.core.priorities.settings import LayeredSettings, PaperFilter
 from motionedit.core.priorities.targets import errors_of, reached
 from motionedit.core.priorities.trajectories import ControlPoint, share_of
+from motionedit.core.slerp import slerp
 
 FRAMES = 14
 MOTION = swaying(FRAMES)
@@ -130,7 +131,7 @@ def test_between_two_targets_every_part_is_on_the_straight_way(one, other, share
     assert (found.first, found.last) == (3, 11)
     np.testing.assert_allclose(found.positions, (1 - share) * a.positions + share * b.positions, atol=1e-12)
     np.testing.assert_allclose(found.lengths, (1 - share) * a.lengths + share * b.lengths, atol=1e-12)
-    expected = rot.slerp(a.rotations, b.rotations, np.full(9, share))
+    expected = slerp(a.rotations, b.rotations, np.full(9, share))
     assert rot.angle_between(found.rotations, expected).max() < 1e-7
 
 
