@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import sys
 import time
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,7 +18,7 @@ from motionedit.core import rotations as rot
 from motionedit.core.body.ground import axis_vector
 from motionedit.core.motion import Motion
 from motionedit.core.pca import vectors
-from motionedit.core.pca.database import DatabaseMotion, FitSettings, build_model
+from motionedit.core.pca.database import DatabaseMotion, FitSettings, build_model, database_space
 from motionedit.core.pca.fit import ComponentCount
 from motionedit.core.pca.model import DatabaseClip
 from motionedit.core.skeleton import Skeleton
@@ -77,14 +78,16 @@ def main() -> None:
     start = time.process_time()
     most = count if how == "gram" else 1
     vectors.MOST_IN_MEMORY = most
+    made, settings = motions(count, spent), FitSettings(components=ComponentCount(components))
+    first = next(made)
+    space = database_space(first.motion, travel=0, leg_length=STANDARD_LEG, settings=settings)
     fitted = build_model(
-        motions(count, spent),
+        map(space.vector, chain((first,), made)),
         count,
+        of=space,
         timeline=Timeline(FRAMES, 25.0),
-        travel=0,
         up=axis_vector("y"),
-        leg_length=STANDARD_LEG,
-        settings=FitSettings(components=ComponentCount(components)),
+        settings=settings,
         rules={},
     )
     stop = time.process_time()

@@ -18,7 +18,7 @@ from motionedit.core.pca.coordinates import (
 from motionedit.core.pca.fit import ALL, ComponentCount, PrincipalComponents, fit_centred
 from motionedit.core.pca.model import DatabaseClip, MotionModel
 from motionedit.core.pca.streaming import Streamed, stream_components
-from motionedit.core.pca.tracks import MeanRotations, make_consistent
+from motionedit.core.pca.tracks import make_consistent, products_of
 from motionedit.core.pca.vectors import CentredVectors, MotionVectors, VectorsInFile, VectorsInMemory, motion_vectors
 from motionedit.core.timeline.alignment import NO_ALIGNMENT, travel_path
 from motionedit.core.units import STANDARD_LEG
@@ -40,6 +40,43 @@ class DatabaseMotion:
     clip: DatabaseClip
     motion: Motion
     joint_map: IntArray
+
+
+@dataclass(frozen=True, eq=False)
+class DatabaseVector:
+    """A motion's vector (D,), with v = log(q), and the sums of its rotations' q q^T over frames, shape (K, 4, 4)."""
+
+    clip: DatabaseClip
+    vector: FloatArray
+    products: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class DatabaseSpace:
+    """What makes vectors of motions: the first one's `skeleton`, its joint that carries the `travel`, and a `space`.
+
+    The space is about the identity: what a database's rotations lie about is known when all have been seen.
+    """
+
+    skeleton: Skeleton
+    travel: int
+    space: PoseSpace
+
+    def vector(self, each: DatabaseMotion) -> DatabaseVector:
+        """Return the vector of a motion."""
+        path = travel_path(each.motion, int(each.joint_map[self.travel]))
+        joints = each.joint_map[self.space.joints]
+        q = rotations_in_space(each.motion, joints, path=path, alignment=NO_ALIGNMENT)
+        rows = pose_rows(rot.log(q), self.space, path=path, alignment=NO_ALIGNMENT)
+        return DatabaseVector(each.clip, rows.reshape(-1), products_of(q))
+
+
+def database_space(first: Motion, *, travel: int, leg_length: float, settings: FitSettings) -> DatabaseSpace:
+    """Return the space of a database whose first motion is given; `leg_length` in clip units."""
+    joints = space_joints(first, travel=travel, excluded=settings.excluded)
+    identity = np.tile(rot.IDENTITY, (len(joints), 1))
+    space = PoseSpace(frozen(joints), frozen(identity), STANDARD_LEG / leg_length, settings.root_weight)
+    return DatabaseSpace(first.skeleton, travel, space)
 
 
 @dataclass(frozen=True)
@@ -86,17 +123,16 @@ class FittedModel:
 
 
 def build_model(
-    database: Iterable[DatabaseMotion],
+    database: Iterable[DatabaseVector],
     count: int,
     *,
+    of: DatabaseSpace,
     timeline: Timeline,
-    travel: int,
     up: FloatArray,
-    leg_length: float,
     settings: FitSettings,
     rules: dict[str, Any],
 ) -> FittedModel:
-    """Return the model of M >= 2 normalized motions, taken one by one.
+    """Return the model of M >= 2 normalized motions, whose vectors are taken one by one.
 
     Up to `vectors.MOST_IN_MEMORY` motions their vectors are held and fitted by the Gram matrix, with all components
     unless `settings` say how many. More wait in a scratch file and are streamed, never all in memory.
@@ -105,10 +141,8 @@ def build_model(
     ----------
     count : int
         M, how many motions the database will give.
-    travel : int
-        Joint of the first clip's skeleton.
-    leg_length : float
-        In clip units.
+    of : DatabaseSpace
+        What made the vectors.
     rules : dict
         How the clips were normalized, for the model to keep.
 
@@ -119,44 +153,28 @@ def build_model(
         (`TooFewComponentsError`).
     """
     with motion_vectors(count) as vectors:
-        scale = STANDARD_LEG / leg_length
-        skeleton, space, clips = _gather(database, vectors, travel=travel, scale=scale, settings=settings)
+        space, clips = _gather(database, vectors, of.space, settings)
         strays = make_consistent(vectors, space.references, frames=timeline.frames)
         components, streamed = _components(vectors, settings)
-    windings = [
-        OtherWinding(clips[m].name, skeleton.names[space.joints[k]], float(np.degrees(stray))) for m, k, stray in strays
-    ]
-    model = MotionModel(skeleton, space, timeline, travel, frozen(up), components, clips, rules)
+    names = of.skeleton.names
+    windings = [OtherWinding(clips[m].name, names[space.joints[k]], float(np.degrees(stray))) for m, k, stray in strays]
+    model = MotionModel(of.skeleton, space, timeline, of.travel, frozen(up), components, clips, rules)
     return FittedModel(model, windings, streamed)
 
 
 def _gather(
-    database: Iterable[DatabaseMotion],
-    vectors: MotionVectors,
-    *,
-    travel: int,
-    scale: float,
-    settings: FitSettings,
-) -> tuple[Skeleton, PoseSpace, tuple[DatabaseClip, ...]]:
-    """Write the motions' vectors, with v = log(q), and return the first's skeleton, the pose space, and the clips."""
+    database: Iterable[DatabaseVector], vectors: MotionVectors, plain: PoseSpace, settings: FitSettings
+) -> tuple[PoseSpace, tuple[DatabaseClip, ...]]:
+    """Write the motions' vectors, with v = log(q), and return the pose space, and the clips."""
     clips: list[DatabaseClip] = []
+    products = np.zeros((len(plain.joints), 4, 4))
     for each in database:
-        if not clips:
-            skeleton = each.motion.skeleton
-            joints = space_joints(each.motion, travel=travel, excluded=settings.excluded)
-            plain = PoseSpace(
-                frozen(joints), frozen(np.tile(rot.IDENTITY, (len(joints), 1))), scale, settings.root_weight
-            )
-            center = MeanRotations(len(joints))
-        path = travel_path(each.motion, int(each.joint_map[travel]))
-        q = rotations_in_space(each.motion, each.joint_map[joints], path=path, alignment=NO_ALIGNMENT)
-        center.add(q)
-        vector = pose_rows(rot.log(q), plain, path=path, alignment=NO_ALIGNMENT).reshape(1, -1)
-        vectors.write(len(clips), vector)
+        products += each.products
+        vectors.write(len(clips), each.vector[None])
         clips.append(each.clip)
     centred = settings.representation == "centred"
-    space = replace(plain, references=frozen(center.mean())) if centred else plain
-    return skeleton, space, tuple(clips)
+    space = replace(plain, references=frozen(rot.mean_of_products(products))) if centred else plain
+    return space, tuple(clips)
 
 
 def _components(

@@ -25,20 +25,11 @@ OTHER_WINDING = 2.5
 _MOST_GATHERED = 1 << 24
 
 
-class MeanRotations:
-    """The Markley mean of rotations that come in parts: the sum of q q^T, shape (K, 4, 4)."""
-
-    def __init__(self, joints: int) -> None:
-        self._sum = np.zeros((joints, 4, 4))
-
-    def add(self, q: FloatArray) -> None:
-        """Add rotations, shape (F, K, 4)."""
-        parts = np.moveaxis(q, 0, -1)
-        self._sum += parts @ np.swapaxes(parts, 1, 2)
-
-    def mean(self) -> FloatArray:
-        """Return the mean of each joint, shape (K, 4)."""
-        return rot.mean_of_products(self._sum)
+def products_of(q: FloatArray) -> FloatArray:
+    """Return the sums of q q^T over frames, shape (K, 4, 4), of rotations (F, K, 4): their Markley mean's matrix."""
+    parts = np.moveaxis(q, 0, -1)
+    products: FloatArray = parts @ np.swapaxes(parts, 1, 2)
+    return products
 
 
 def make_consistent(vectors: MotionVectors, references: FloatArray, *, frames: int) -> list[tuple[int, int, float]]:

@@ -14,7 +14,7 @@ from motionedit.errors import ClipError, ModelError, MotionEditError, UsageError
 from motionedit.jobs.batch.files import Places, bytes_of
 from motionedit.jobs.batch.one_clip import read_task
 from motionedit.jobs.batch.plan import ClipTask
-from motionedit.jobs.batch.run import values_in_order
+from motionedit.jobs.batch.run import map_tasks, values_in_order
 from motionedit.jobs.normalize.normalization_file import NAME, Normalization, NormalizedClip, read_normalization
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from motionedit.core.motion import Motion
-    from motionedit.core.skeleton import Skeleton
+    from motionedit.core.pca.database import DatabaseSpace, DatabaseVector
     from motionedit.jobs.batch.plan import RunOptions
 
 
@@ -74,36 +74,69 @@ def _refuse_strangers(normalization: Normalization, folder: Path) -> None:
         found.add(name)
 
 
-def motions_of(database: Database, options: RunOptions) -> Iterator[DatabaseMotion]:
-    """Yield the clips one by one, none after one that cannot be used; all that cannot are named together at the end."""
-    frames = database.normalization.timeline.frames
-    items = [
-        _Listed(task, each, frames) for task, each in zip(database.tasks, database.normalization.clips, strict=True)
-    ]
-    if bytes_of(task.source for task in database.tasks) <= _FEW_BYTES and options.scheduler is None:
-        options = replace(options, jobs=1)
-    errors: list[MotionEditError] = []
-    reference: Skeleton | None = None
-    height = 0.0
-    for item, value in zip(items, values_in_order(_read, items, options), strict=True):
-        if isinstance(value, MotionEditError):
-            errors.append(value)
-            continue
-        if reference is None:
-            reference = value.skeleton
-            height = anatomy_of(value).height
-        try:
-            against = items[0].task.label
-            joint_map = match_joints(reference, value.skeleton, height=height, label=item.task.label, against=against)
-        except ClipError as error:
-            errors.append(error)
-            continue
-        if not errors:
-            listed = item.listed
-            clip = DatabaseClip(_stem(listed.clip), listed.digest, tuple(listed.events.items()))
-            yield DatabaseMotion(clip, value, joint_map)
-    if errors:
-        raise together("clips cannot be used", errors)
+class Motions:
+    """The motions that a database lists: the `first`, then the vectors of all.
+
+    Raises
+    ------
+    MotionEditError
+        Why each of them cannot be used, where none can.
+    """
+
+    def __init__(self, database: Database, options: RunOptions) -> None:
+        frames = database.normalization.timeline.frames
+        listed = zip(database.tasks, database.normalization.clips, strict=True)
+        self._items = [_Listed(task, each, frames) for task, each in listed]
+        few = bytes_of(task.source for task in database.tasks) <= _FEW_BYTES and options.scheduler is None
+        self._options = replace(options, jobs=1) if few else options
+        self._errors: list[MotionEditError] = []
+        self._rest = iter(self._items)
+        for item in self._rest:
+            value = map_tasks(_read, [item], self._options)[0]
+            if not isinstance(value, MotionEditError):
+                self.first: Motion = value
+                return
+            self._errors.append(value)
+        raise self._unusable()
+
+    def vectors(self, space: DatabaseSpace) -> Iterator[DatabaseVector]:
+        """Yield the vectors one by one, none after a motion that cannot be used; all these are named at the end."""
+        vector_of = _VectorOf(space, anatomy_of(self.first).height, self._items[0].task.label)
+        rest = list(self._rest)
+        if not self._errors:
+            yield vector_of.motion(self.first, self._items[0])
+        for value in values_in_order(vector_of, rest, self._options):
+            if isinstance(value, MotionEditError):
+                self._errors.append(value)
+            elif not self._errors:
+                yield value
+        if self._errors:
+            raise self._unusable()
+
+    def _unusable(self) -> MotionEditError:
+        return together("clips cannot be used", self._errors)
+
+
+@dataclass(frozen=True)
+class _VectorOf:
+    """What makes the vector of a clip of the list, by the joints of the first that can be read."""
+
+    space: DatabaseSpace
+    height: float
+    against: str
+
+    def __call__(self, item: _Listed) -> DatabaseVector:
+        """Return the vector of a clip, which is read."""
+        return self.motion(_read(item), item)
+
+    def motion(self, motion: Motion, item: _Listed) -> DatabaseVector:
+        """Return the vector of a clip's motion."""
+        joint_map = match_joints(
+            self.space.skeleton, motion.skeleton, height=self.height, label=item.task.label, against=self.against
+        )
+        listed = item.listed
+        clip = DatabaseClip(_stem(listed.clip), listed.digest, tuple(listed.events.items()))
+        return self.space.vector(DatabaseMotion(clip, motion, joint_map))
 
 
 def _stem(relative: str) -> str:

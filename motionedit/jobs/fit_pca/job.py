@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from itertools import chain
 from typing import TYPE_CHECKING
 
 from motionedit.core.body.bones import travel_joint
 from motionedit.core.body.find_anatomy import anatomy_of
 from motionedit.core.body.ground import axis_vector
-from motionedit.core.pca.database import FitSettings, build_model
+from motionedit.core.pca.database import FitSettings, build_model, database_space
 from motionedit.core.pca.fit import AllTheSameError, ComponentCount, TooFewComponentsError
 from motionedit.core.pca.model_file import model_bytes
 from motionedit.core.pca.streaming import MOST_COMPONENTS
@@ -20,7 +19,7 @@ from motionedit.jobs.batch.outputs import refuse_clashes
 from motionedit.jobs.batch.pool import threads_within
 from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.kept_rules import body_said, kept_body, with_body
-from motionedit.jobs.fit_pca.database import database_in, motions_of
+from motionedit.jobs.fit_pca.database import Motions, database_in
 from motionedit.jobs.fit_pca.report import fit_report
 from motionedit.jobs.normalize.normalization_file import NAME
 from motionedit.spec.fit_pca import FitPcaSpec
@@ -29,7 +28,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from motionedit.core.body.anatomy import GivenBody
-    from motionedit.core.pca.database import DatabaseMotion
     from motionedit.core.pca.model import MotionModel
     from motionedit.core.skeleton import Skeleton
     from motionedit.errors import MotionEditError
@@ -75,23 +73,25 @@ def fit(database: Database, loaded: LoadedSpec[FitPcaSpec] | None, *, options: R
     normalization, count = database.normalization, len(database.tasks)
     if count < 2:
         raise ModelError(f"lists {count} clip; a PCA needs two or more", file=database.list_label)
-    motions = motions_of(database, options)
-    first = next(motions)
+    motions = Motions(database, options)
+    first = motions.first
+    settings = FitSettings(
+        representation="centred" if spec.rotation == "centred" else "exponential",
+        root_weight=spec.root_weight,
+        excluded=_excluded(loaded, first.skeleton, database.label),
+        components=ComponentCount(spec.components, spec.explained_variance),
+        threads=threads_within(1, options),
+    )
+    leg_length = anatomy_of(first, given=_body(loaded, database, first.skeleton)).leg_length
+    space = database_space(first, travel=travel_joint(first), leg_length=leg_length, settings=settings)
     try:
         fitted = build_model(
-            chain((first,), motions),
+            motions.vectors(space),
             count,
+            of=space,
             timeline=normalization.timeline,
-            travel=travel_joint(first.motion),
             up=axis_vector(normalization.up),
-            leg_length=anatomy_of(first.motion, given=_body(loaded, database, first.motion.skeleton)).leg_length,
-            settings=FitSettings(
-                representation="centred" if spec.rotation == "centred" else "exponential",
-                root_weight=spec.root_weight,
-                excluded=_excluded(loaded, first, database.label),
-                components=ComponentCount(spec.components, spec.explained_variance),
-                threads=threads_within(1, options),
-            ),
+            settings=settings,
             rules=with_body(normalization.rules, spec.body),
         )
     except TooFewComponentsError as error:
@@ -109,11 +109,11 @@ def _body(loaded: LoadedSpec[FitPcaSpec] | None, database: Database, skeleton: S
     return body_said(loaded, rules, skeleton, **where)
 
 
-def _excluded(loaded: LoadedSpec[FitPcaSpec] | None, first: DatabaseMotion, folder: str) -> frozenset[int]:
+def _excluded(loaded: LoadedSpec[FitPcaSpec] | None, skeleton: Skeleton, folder: str) -> frozenset[int]:
     if loaded is None:
         return frozenset()
     place = resolve.Place(loaded, ("exclude_joints",), folder)
-    return frozenset(resolve.joints(loaded.model.exclude_joints, first.motion.skeleton, place))
+    return frozenset(resolve.joints(loaded.model.exclude_joints, skeleton, place))
 
 
 def _too_few(loaded: LoadedSpec[FitPcaSpec] | None, spec: FitPcaSpec, clips: int, available: int) -> MotionEditError:

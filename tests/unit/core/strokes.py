@@ -10,7 +10,7 @@ from motionedit.core.body.bones import bones_of, travel_joint
 from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.body.up import find_up
 from motionedit.core.motion import Motion
-from motionedit.core.pca.database import DatabaseMotion, FitSettings, build_model
+from motionedit.core.pca.database import DatabaseMotion, FitSettings, build_model, database_space
 from motionedit.core.pca.fit import ALL, fit_centred
 from motionedit.core.pca.model import DatabaseClip
 from motionedit.core.timeline.alignment import align_to, aligned
@@ -64,16 +64,12 @@ def model_of(motions, timeline, hits, settings=None):
         normalized = aligned(resample(motion, at, frame_time=1 / timeline.frame_rate), alignment, travel=travel)
         clip = DatabaseClip(f"stroke{m}", f"{m:064d}", (("hit", hit),))
         database.append(DatabaseMotion(clip, normalized, np.arange(len(motion.skeleton))))
-    fitted = build_model(
-        database,
-        len(database),
-        timeline=timeline,
-        travel=0,
-        up=up,
-        leg_length=anatomy.leg_length,
-        settings=settings or FitSettings(),
-        rules={"align": {"heading": True}},
-    )
+    settings = settings or FitSettings()
+    first = database[0].motion
+    space = database_space(first, travel=0, leg_length=anatomy.leg_length, settings=settings)
+    vectors = map(space.vector, database)
+    rules = {"align": {"heading": True}}
+    fitted = build_model(vectors, len(database), of=space, timeline=timeline, up=up, settings=settings, rules=rules)
     return fitted.model
 
 

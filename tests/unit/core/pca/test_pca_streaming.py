@@ -13,7 +13,7 @@ from motionedit.core.pca import streaming, tracks, vectors
 from motionedit.core.pca.database import FitSettings
 from motionedit.core.pca.fit import AllTheSameError, ComponentCount, TooFewComponentsError
 from motionedit.core.pca.streaming import DEFAULT_COMPONENTS, MOST_COMPONENTS, RESIDUAL_TOLERANCE, stream_components
-from motionedit.core.pca.tracks import MeanRotations, make_consistent, other_windings
+from motionedit.core.pca.tracks import make_consistent, other_windings, products_of
 from motionedit.core.pca.vectors import CentredVectors, VectorsInFile, VectorsInMemory, motion_vectors
 from motionedit.core.rotation_vectors import TURN
 
@@ -158,10 +158,9 @@ def test_the_scratch_file_has_no_name_and_goes_with_its_context(tmp_path, monkey
 
 def test_rotations_that_come_in_parts_have_the_mean_of_the_whole():
     q = rot.normalize(np.random.default_rng(3).normal(size=(40, 5, 4)) + 1.0)
-    mean = MeanRotations(5)
-    for part in (q[:7], q[7:30], -q[30:]):
-        mean.add(part)
-    np.testing.assert_allclose(mean.mean(), rot.mean_of_products(np.einsum("fja,fjb->jab", q, q)), atol=1e-12)
+    products = sum(products_of(part) for part in (q[:7], q[7:30], -q[30:]))
+    whole = np.einsum("fja,fjb->jab", q, q)
+    np.testing.assert_allclose(rot.mean_of_products(products), rot.mean_of_products(whole), atol=1e-12)
 
 
 def written(several):
