@@ -109,3 +109,26 @@ def test_words_of_any_length_are_kept_beside_new_ones(monkeypatch, ways, decimal
     usual, other = written(monkeypatch, clip, *edit_of(clip, 4))
     assert usual == other
     assert None not in ways
+
+
+SHAPES = {"sums": (6, 1, 4), "joints": 1, "columns": 3, "touched": (4, 2)}
+SHAPES |= dict.fromkeys(("given", "values", "cells"), (4, 9))
+TYPES = dict.fromkeys(("joints", "columns"), np.int64) | dict.fromkeys(("touched", "cells"), np.bool_)
+
+
+def raw_rows(**other):
+    arrays = {name: np.zeros(shape, TYPES.get(name, np.float64)) for name, shape in SHAPES.items()} | other
+    return compiled().touched_rows(*arrays.values(), 1, 2, 4, 9, 1.0, 2.0, 1.0)
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_buffers_of_a_wrong_size_are_an_error_and_no_crash(name):
+    assert raw_rows() is True
+    with pytest.raises(ValueError, match="bytes do not fit"):
+        raw_rows(**{name: np.zeros(0)})
+
+
+@pytest.mark.parametrize(("name", "value"), [("joints", [2]), ("joints", [-1]), ("columns", [0, 1, 9])])
+def test_joints_and_columns_that_are_none_are_an_error_and_no_crash(name, value):
+    with pytest.raises(ValueError, match="no such joints, or no such columns"):
+        raw_rows(**{name: np.array(value)})
