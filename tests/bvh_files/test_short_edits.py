@@ -62,16 +62,36 @@ def test_runs_of_touched_frames_are_written_at_once(monkeypatch, ways, seed, gap
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_edits_that_wind_or_come_near_gimbal_lock_come_out_the_same(monkeypatch, ways, seed):
+def test_edits_that_wind_another_way_round_come_out_the_same(monkeypatch, ways, seed):
     clip = clip_of(walk(seed, scale=60.0))
-    motion, touched, moved = edit_of(clip, seed, most=180.0)
-    locked = np.radians(np.array([0.0, 90.0, 0.0]))
-    rotations = motion.rotations.copy()
-    rotations[FRAMES // 2] = rot.from_euler(locked, (2, 0, 1))
-    for each in (motion, replace(motion, rotations=rotations)):
-        usual, other = written(monkeypatch, clip, each, touched, moved)
-        assert usual == other
-    assert None in ways
+    usual, other = written(monkeypatch, clip, *edit_of(clip, seed, most=180.0))
+    assert usual == other
+    assert ways == [None]
+
+
+def from_frame_20_on():
+    touched = np.zeros((FRAMES, 2), dtype=bool)
+    touched[20:, 1] = True
+    return touched
+
+
+def test_angles_near_gimbal_lock_come_out_the_same(monkeypatch, ways):
+    clip = clip_of(walk(5, scale=0.5))
+    rotations = clip.motion.rotations.copy()
+    rotations[30:33, 1] = rot.from_euler(np.radians([[10.0, 90.0, 20.0]] * 3), (2, 0, 1))
+    motion = replace(clip.motion, rotations=rotations)
+    usual, other = written(monkeypatch, clip, motion, from_frame_20_on(), None)
+    assert usual == other
+    assert ways == [None]
+
+
+def test_a_run_follows_the_frame_before_it_where_the_input_makes_a_whole_turn(monkeypatch, ways):
+    rows = walk(6, scale=0.5)
+    rows[20:, 6:] += 360.0
+    usual, other = written(monkeypatch, clip_of(rows), clip_of(rows).motion, from_frame_20_on(), None)
+    assert usual == other
+    assert None not in ways
+    assert np.abs(parse_clip(usual, label="clip.bvh").values[20:, 6:]).max() < 180.0
 
 
 @pytest.mark.parametrize("channels", ["1 Zrotation", "2 Zrotation Xrotation"])
