@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 TURN = 2.0 * np.pi
 # As `np.degrees` has it.
 DEGREES = 180.0 / np.pi
-_MOST_WOUND = 1e8  # degrees: six of the digits after the point are left
+MOST_WOUND = 1e8  # degrees: six of the digits after the point are left
 # Within this angle (rad, 1e-4 degrees) of gimbal lock the last angle is kept. The rebuilt rotation is off by no more
 # than that; a wider band would cost more than the 2e-4 degrees that are promised.
 GIMBAL_BAND = np.radians(1e-4)
@@ -124,16 +124,25 @@ def solved_tracks(
 
 def _angles_of_sums(sums: FloatArray, axes: tuple[int, ...]) -> FloatArray:
     """Return what `solve_angles` does of three axes, shape (3, ...), from its sums (6, ...), which are used up."""
-    sign = 1.0 if (axes[1] - axes[0]) % 3 == 1 else -1.0
-    for k in (0, 2, 4):
-        np.arctan2(sums[k], sums[k + 1], out=sums[k])
+    arc_tangents(sums)
     plus, minus, middle = sums[::2]
     np.add(plus, minus, out=sums[1])
     np.subtract(plus, minus, out=sums[5])
-    sums[5] *= sign
+    sums[5] *= sign_of(axes)
     np.multiply(middle, 2.0, out=sums[3])
     sums[3] -= np.pi / 2.0
     return sums[1::2]
+
+
+def arc_tangents(sums: FloatArray) -> None:
+    """Put the arc tangents of three pairs, shape (6, ...), in place of the first of each."""
+    for k in (0, 2, 4):
+        np.arctan2(sums[k], sums[k + 1], out=sums[k])
+
+
+def sign_of(axes: tuple[int, ...]) -> float:
+    """Return the sign in e_i e_j = sign e_k, of the first two axes and the third."""
+    return 1.0 if (axes[1] - axes[0]) % 3 == 1 else -1.0
 
 
 def _blocks(frames: int, joints: int) -> Iterator[slice]:
@@ -188,7 +197,7 @@ def solve_angles(q: FloatArray, axes: tuple[int, ...]) -> FloatArray:
         angle: FloatArray = 2.0 * np.arctan2(q[1 + axes[0]], q[0])[None]
         return angle
     i, j = axes[:2]
-    sign = 1.0 if (j - i) % 3 == 1 else -1.0  # e_i e_j = sign e_k
+    sign = sign_of(axes)
     w, x, y, z = q[0], q[1 + i], q[1 + j], sign * q[1 + (3 - i - j)]
     if len(axes) == 2:
         plus, minus = np.arctan2(x + y, w - z), np.arctan2(x - y, w + z)
@@ -276,7 +285,7 @@ def radians(degrees: FloatArray) -> FloatArray:
 
     Near such an angle no other one can be written: the digits would not reach below a turn.
     """
-    wound = np.abs(degrees) > _MOST_WOUND
+    wound = np.abs(degrees) > MOST_WOUND
     return np.radians(np.where(wound, np.fmod(degrees, 360.0), degrees) if wound.any() else degrees)
 
 

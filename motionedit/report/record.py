@@ -12,6 +12,7 @@ from motionedit.version import __version__
 SCHEMA = "motionedit/report/v1"
 # Enough for any comparison, and few enough that the last bits of two machines do not show.
 _DIGITS = 9
+_SHORT = f"%.{_DIGITS}g"  # as a format that is made once
 # Whole numbers below the first are as short already; below the second so many digits reach beyond so many decimals.
 _WHOLE, _TENTH = 10.0**_DIGITS, 0.1
 _INDENT = "\n  "
@@ -137,5 +138,5 @@ def _rounded(value: float) -> float | None:
         return float(value) + 0.0
     if not math.isfinite(value):
         return None
-    short = float(f"{value:.{_DIGITS}g}")
+    short = float(_SHORT % value)
     return round(short, _DIGITS) + 0.0 if -_TENTH < short < _TENTH else short

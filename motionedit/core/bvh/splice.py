@@ -12,6 +12,7 @@ from motionedit.core.arrays import frozen
 from motionedit.core.bvh.format import format_fixed, place
 from motionedit.core.bvh.rows import BLOCK_BYTES
 from motionedit.core.bvh.scan import words_between
+from motionedit.core.bvh.short_edit import short_edit
 from motionedit.core.bvh.write import LONGEST_WHOLE, check_finite, decimals_of_edits, head_bytes, joined, rows_text
 from motionedit.core.compiled import compiled
 from motionedit.core.euler_pieces import piece_angles, runs, touched_angles, touched_pieces
@@ -63,7 +64,16 @@ def edited_pieces(
     clip: Written, motion: Motion, *, touched: BoolArray, moved: BoolArray | None = None
 ) -> Iterator[bytes | memoryview]:
     """Yield what `edited_bytes` returns, piece by piece: a long file need not be held to be written."""
-    plan = _plan(clip, motion, touched, moved)
+    positions = _moved_columns(motion, moved)
+    is_short = len(clip.text.file) <= BLOCK_BYTES and len(motion) <= SEGMENT
+    short = short_edit(clip, motion, touched, moved, positions) if is_short else None
+    if short is not None:
+        yield head_bytes(clip, frames=len(motion), frame_time=motion.frame_time)
+        yield from clip.text.file.pieces(clip.text.header.rows_start, short.start)
+        yield short.text
+        yield from _tail(clip, short.stop)
+        return
+    plan = _plan(clip, motion, touched, positions)
     if len(plan.columns) == 0 and motion.frame_time == clip.text.header.frame_time:
         yield clip.text.data
         return
@@ -100,8 +110,8 @@ class _Edit:
     cells: BoolArray
 
 
-def _plan(clip: Written, motion: Motion, touched: BoolArray, moved: BoolArray | None) -> _Plan:
-    skeleton, given, positions = clip.text.motion.skeleton, clip.text.values_between, _moved_columns(motion, moved)
+def _plan(clip: Written, motion: Motion, touched: BoolArray, positions: list[tuple[int, int, int]]) -> _Plan:
+    skeleton, given = clip.text.motion.skeleton, clip.text.values_between
     is_touched = touched.any(axis=0).tobytes()
     every, joints, places = _columns_of(skeleton, is_touched, tuple(column for _, _, column in positions))
     if len(motion) > SEGMENT:

@@ -4,6 +4,7 @@
 
 #include "../../csrc/held.h"
 #include "text.h"
+#include "touched_rows.h"
 
 #include <math.h>
 #include <string.h>
@@ -102,6 +103,45 @@ static PyObject *splice(PyObject *self, PyObject *arguments)
     return length < -1 ? NULL : PyLong_FromLongLong(length);
 }
 
+/* Whether there are such joints, and such columns. */
+static int are_places(const Turned *of)
+{
+    for (int64_t i = 0; i < of->count; i++)
+        if (of->joints[i] < 0 || of->joints[i] >= of->all)
+            return 0;
+    for (int64_t i = 0; i < 3 * of->count; i++)
+        if (of->columns[i] < 0 || of->columns[i] >= of->width)
+            return 0;
+    return 1;
+}
+
+static PyObject *rows_where_touched(PyObject *self, PyObject *arguments)
+{
+    PyObject *sums, *joints, *columns, *touched, *given, *values, *cells;
+    long long count, all, frames, width;
+    int are_written = -1;
+    Turned of;
+    Held held = {.count = 0};
+    (void)self;
+    if (!PyArg_ParseTuple(arguments, "OOOOOOOLLLLddd", &sums, &joints, &columns, &touched, &given, &values, &cells,
+            &count, &all, &frames, &width, &of.sign, &of.most_middle, &of.most_wound))
+        return NULL;
+    of.count = count, of.all = all, of.frames = frames, of.width = width;
+    double *const angles = items_of(&held, sums, 6 * count * frames, sizeof(double), 1, "sums");
+    double *const rows = angles ? items_of(&held, values, frames * width, sizeof(double), 1, "values") : NULL;
+    uint8_t *const written = rows ? items_of(&held, cells, frames * width, 1, 1, "cells") : NULL;
+    of.joints = written ? items_of(&held, joints, count, sizeof(int64_t), 0, "joints") : NULL;
+    of.columns = of.joints ? items_of(&held, columns, 3 * count, sizeof(int64_t), 0, "columns") : NULL;
+    of.touched = of.columns ? items_of(&held, touched, frames * all, 1, 0, "what is touched") : NULL;
+    of.given = of.touched ? items_of(&held, given, frames * width, sizeof(double), 0, "what is given") : NULL;
+    if (of.given != NULL && !are_places(&of))
+        PyErr_SetString(PyExc_ValueError, "no such joints, or no such columns");
+    else if (of.given != NULL)
+        are_written = touched_rows(&of, angles, rows, written);
+    let_go(&held);
+    return are_written < 0 ? NULL : PyBool_FromLong(are_written);
+}
+
 PyMethodDef text_methods[] = {
     {"rows_from_text", rows_from_text, METH_VARARGS,
         "Read rows of numbers; return how many and the most decimals, or None where it is no such text."},
@@ -110,5 +150,7 @@ PyMethodDef text_methods[] = {
     {"plain_gaps", plain_gaps, METH_VARARGS, "Return whether a text's blanks are so many, single ones and line feeds."},
     {"splice", splice, METH_VARARGS,
         "Copy text with some words replaced by numbers; return its length, -1 where one is large."},
+    {"touched_rows", rows_where_touched, METH_VARARGS,
+        "Write the angles of joints as rows where they are touched; False where that takes more."},
     {NULL, NULL, 0, NULL},
 };

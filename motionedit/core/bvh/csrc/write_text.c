@@ -174,10 +174,34 @@ int has_plain_gaps(const char *text, int64_t length, int64_t count)
     return found == count && odd == 0;
 }
 
+enum { USUAL_WORD = 16 }; /* characters that are copied at once, less than the longest number of one decimal */
+
+/* Where a word ends that begins at `at`. */
+static inline const char *end_of_word(const char *at, const char *end)
+{
+#ifdef LOW_BYTE_FIRST
+    /* Of eight characters the highest bit of each that is a blank or a control, of the first of them for sure: how long
+       numbers are cannot be foretold. */
+    for (uint64_t eight, blanks; end - at >= 8; at += 8) {
+        memcpy(&eight, at, sizeof eight);
+        blanks = (eight - 0x2121212121212121u) & ~eight & 0x8080808080808080u;
+        if (blanks != 0) {
+            at += __builtin_ctzll(blanks) / 8;
+            break;
+        }
+    }
+#endif
+    while (at < end && !is_blank(*at))
+        at++;
+    return at;
+}
+
 int64_t splice_words(const char *text, int64_t length, const uint8_t *cells, const double *values, int64_t count,
     int decimals, char *out)
 {
     const char *at = text, *const end = text + length;
+    const int is_short = decimals <= MOST_SHORT_DECIMALS;
+    Split split;
     char *to = out;
     int64_t word = 0;
     while (at < end) {
@@ -185,19 +209,28 @@ int64_t splice_words(const char *text, int64_t length, const uint8_t *cells, con
             *to++ = *at++;
             continue;
         }
-        const char *const first = at;
-        while (at < end && !is_blank(*at))
-            at++;
+        const char *const stop = end_of_word(at, end);
+        const int64_t place = word % TOGETHER;
         if (word == count)
             return -1;
+        if (place == 0 && is_short)
+            split_numbers(values + word, count - word < TOGETHER ? count - word : TOGETHER, decimals, &split);
         if (cells[word]) {
-            if ((to = write_numbers(values + word, 1, decimals, to)) == NULL)
+            int written = 0;
+            if (is_short)
+                written = write_short(values[word], split.whole[place], split.fraction[place], decimals, to);
+            if (written == 0 && (written = write_number(values[word], decimals, to)) < 0)
                 return -1;
-            to--; /* what stands between words is copied */
+            to += written;
         } else {
-            memcpy(to, first, at - first);
-            to += at - first;
+            /* There is room for the longest number in its place. */
+            if (stop - at <= USUAL_WORD && end - at >= USUAL_WORD)
+                memcpy(to, at, USUAL_WORD);
+            else
+                memcpy(to, at, stop - at);
+            to += stop - at;
         }
+        at = stop;
         word++;
     }
     return word == count ? to - out : -1;
