@@ -64,7 +64,8 @@ static PyObject *unless_set(PyObject *self, PyObject *arguments)
 static PyMethodDef methods[] = {
     {"keep_memory", keep_memory, METH_VARARGS, "Keep memory that was let go of, but for large arrays (glibc alone)."},
     {"room", room, METH_VARARGS, "Return so many bytes that are not yet written, for a stream."},
-    {"unless_set", unless_set, METH_VARARGS, "Return the module; None where a variable of the environment has a value."},
+    {"unless_set", unless_set, METH_VARARGS,
+        "Return the module; None where a variable of the environment has a value."},
     {NULL, NULL, 0, NULL},
 };
 
