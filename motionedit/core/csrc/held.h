@@ -68,9 +68,23 @@ static inline void release(Py_buffer *buffers, int count)
         PyBuffer_Release(buffers + i);
 }
 
+/* What a call returns that has written what it was asked for: None, or an error where that does not fit. */
+static inline PyObject *none_if(int fits, Py_buffer *buffers, int count)
+{
+    release(buffers, count);
+    if (!fits)
+        return NULL;
+    Py_RETURN_NONE;
+}
+
 static inline void let_go(Held *held)
 {
     release(held->held, held->count);
+}
+
+static inline PyObject *let_go_none_if(int fits, Held *held)
+{
+    return none_if(fits, held->held, held->count);
 }
 
 #endif

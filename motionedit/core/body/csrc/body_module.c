@@ -88,10 +88,7 @@ static PyObject *on_joints(const OnJoints *of, PyObject *arguments)
     const int fits = take_joints(of, arguments, &held, &poses, &first, &count, &joints, arrays, &out);
     if (fits)
         of->work(&poses, first, joints, arrays, count, out);
-    let_go(&held);
-    if (!fits)
-        return NULL;
-    Py_RETURN_NONE;
+    return let_go_none_if(fits, &held);
 }
 
 static void directions_work(
@@ -198,10 +195,7 @@ static PyObject *steps(PyObject *self, PyObject *arguments)
         if (fits)
             largest_steps(before.rotations, after.rotations, frames, joints, first, angles, into);
     }
-    let_go(&held);
-    if (!fits)
-        return NULL;
-    Py_RETURN_NONE;
+    return let_go_none_if(fits, &held);
 }
 
 static PyObject *bends(PyObject *self, PyObject *arguments)
@@ -260,10 +254,7 @@ static PyObject *median_ways(PyObject *self, PyObject *arguments)
         if (out != NULL && (status = find_median_ways(&poses, which, count, out)) < 0)
             PyErr_NoMemory();
     }
-    let_go(&held);
-    if (status < 0)
-        return NULL;
-    Py_RETURN_NONE;
+    return let_go_none_if(status >= 0, &held);
 }
 
 PyMethodDef body_methods[] = {

@@ -32,10 +32,7 @@ static PyObject *same(PyObject *self, PyObject *arguments)
         else if (!fits && !PyErr_Occurred())
             PyErr_SetString(PyExc_ValueError, "numbers of other frames");
     }
-    let_go(&held);
-    if (!fits)
-        return NULL;
-    Py_RETURN_NONE;
+    return let_go_none_if(fits, &held);
 }
 
 static PyObject *turned(PyObject *self, PyObject *arguments)
@@ -54,10 +51,7 @@ static PyObject *turned(PyObject *self, PyObject *arguments)
     fits = out != NULL;
     if (fits)
         turned_otherwise(one, other, count, least, out);
-    let_go(&held);
-    if (!fits)
-        return NULL;
-    Py_RETURN_NONE;
+    return let_go_none_if(fits, &held);
 }
 
 static PyObject *stepping(PyObject *self, PyObject *arguments)
@@ -78,10 +72,7 @@ static PyObject *stepping(PyObject *self, PyObject *arguments)
         stepping_joints(one, other, frames, joints, cosine, far);
     else if (!PyErr_Occurred())
         PyErr_SetString(PyExc_ValueError, "no such frames");
-    let_go(&held);
-    if (!fits)
-        return NULL;
-    Py_RETURN_NONE;
+    return let_go_none_if(fits, &held);
 }
 
 PyMethodDef change_methods[] = {

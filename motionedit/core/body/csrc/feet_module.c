@@ -195,10 +195,7 @@ static PyObject *stance(PyObject *self, PyObject *arguments)
         if (status < 0)
             PyErr_NoMemory();
     }
-    let_go(&held);
-    if (status < 0)
-        return NULL;
-    Py_RETURN_NONE;
+    return let_go_none_if(status >= 0, &held);
 }
 
 PyMethodDef feet_methods[] = {

@@ -38,10 +38,7 @@ static PyObject *leg_paths(PyObject *self, PyObject *arguments)
         fits = are_joints(&legs, joints);
     if (fits)
         find_leg_paths(&poses, &legs, share, paths);
-    let_go(&held);
-    if (!fits)
-        return NULL;
-    Py_RETURN_NONE;
+    return let_go_none_if(fits, &held);
 }
 
 /* Whether plants are at frames, and of points and feet, that there are. */
@@ -85,10 +82,7 @@ static PyObject *phases(PyObject *self, PyObject *arguments)
         if (status < 0)
             PyErr_NoMemory();
     }
-    let_go(&held);
-    if (status < 0)
-        return NULL;
-    Py_RETURN_NONE;
+    return let_go_none_if(status >= 0, &held);
 }
 
 PyMethodDef phase_methods[] = {

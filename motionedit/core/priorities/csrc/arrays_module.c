@@ -150,10 +150,7 @@ static PyObject *turns_from_tangents(PyObject *self, PyObject *arguments)
         Py_BEGIN_ALLOW_THREADS from_tangents(b[0].buf, axes, count, b[1].buf);
         Py_END_ALLOW_THREADS
     }
-    release(b, 2);
-    if (!fits)
-        return NULL;
-    Py_RETURN_NONE;
+    return none_if(fits, b, 2);
 }
 
 static PyObject *sums_of_euler(PyObject *self, PyObject *arguments)
@@ -180,10 +177,7 @@ static PyObject *sums_of_euler(PyObject *self, PyObject *arguments)
         Py_BEGIN_ALLOW_THREADS euler_sums(b[ROTATIONS].buf, 4 * joints, b[JOINTS].buf, count, frames, axes, b[OUT].buf);
         Py_END_ALLOW_THREADS
     }
-    release(b, COUNT);
-    if (!fits)
-        return NULL;
-    Py_RETURN_NONE;
+    return none_if(fits, b, COUNT);
 }
 
 static PyObject *lay_rows(PyObject *self, PyObject *arguments)
@@ -208,10 +202,7 @@ static PyObject *lay_rows(PyObject *self, PyObject *arguments)
         Py_BEGIN_ALLOW_THREADS rows_of_tracks(b[TRACKS].buf, columns, count, frames, factor, b[OUT].buf, width);
         Py_END_ALLOW_THREADS
     }
-    release(b, COUNT);
-    if (!fits)
-        return NULL;
-    Py_RETURN_NONE;
+    return none_if(fits, b, COUNT);
 }
 
 /* Whether each run is of a joint that there is, and of frames that it has. */
@@ -250,10 +241,7 @@ static PyObject *make_continuous(PyObject *self, PyObject *arguments)
         double *angles = (double *)b[ANGLES].buf + run[0] * axes * frames + run[1];
         nearest_angles(angles, axes, frames, run[2] - run[1], (const double *)b[SEEDS].buf + i * axes);
     }
-    release(b, COUNT);
-    if (!fits)
-        return NULL;
-    Py_RETURN_NONE;
+    return none_if(fits, b, COUNT);
 }
 
 PyMethodDef array_methods[] = {

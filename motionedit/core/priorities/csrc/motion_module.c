@@ -39,10 +39,7 @@ static PyObject *forward_frames(PyObject *self, PyObject *arguments)
             b[LOCAL].buf, b[MOVED].buf, b[POSITIONS].buf, b[WORLD].buf);
         Py_END_ALLOW_THREADS
     }
-    release(b, COUNT);
-    if (!fits)
-        return NULL;
-    Py_RETURN_NONE;
+    return none_if(fits, b, COUNT);
 }
 
 static PyObject *smooth(PyObject *self, PyObject *arguments)

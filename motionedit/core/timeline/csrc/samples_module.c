@@ -50,15 +50,6 @@ static int take_ways(Held *held, PyObject *rotations, long long joints, PyObject
     return whole != NULL;
 }
 
-/* What is returned when all is done: None, or an error. */
-static PyObject *none_if(int fits, Held *held)
-{
-    let_go(held);
-    if (!fits)
-        return NULL;
-    Py_RETURN_NONE;
-}
-
 static PyObject *cosines_of_arcs(PyObject *self, PyObject *arguments)
 {
     PyObject *rotations, *at, *t, *cosines, *sizes;
@@ -77,7 +68,7 @@ static PyObject *cosines_of_arcs(PyObject *self, PyObject *arguments)
         Py_BEGIN_ALLOW_THREADS arc_cosines(&samples, &ways, one, other);
         Py_END_ALLOW_THREADS
     }
-    return none_if(fits, &held);
+    return let_go_none_if(fits, &held);
 }
 
 static PyObject *parts_of_arcs(PyObject *self, PyObject *arguments)
@@ -94,7 +85,7 @@ static PyObject *parts_of_arcs(PyObject *self, PyObject *arguments)
         samples.t == NULL ? NULL : items_of(&held, parts, 3 * samples.count * joints, 8, 1, "parts of arcs");
     if (whole != NULL)
         arc_parts(&samples, joints, whole);
-    return none_if(whole != NULL, &held);
+    return let_go_none_if(whole != NULL, &held);
 }
 
 static PyObject *weights_of_arcs(PyObject *self, PyObject *arguments)
@@ -113,7 +104,7 @@ static PyObject *weights_of_arcs(PyObject *self, PyObject *arguments)
     double *const whole = given == NULL ? NULL : items_of(&held, parts, 3 * all, 8, 1, "parts of arcs");
     if (whole != NULL)
         arc_weights(&samples, joints, given, straight, whole);
-    return none_if(whole != NULL, &held);
+    return let_go_none_if(whole != NULL, &held);
 }
 
 static PyObject *turns_of_samples(PyObject *self, PyObject *arguments)
@@ -132,7 +123,7 @@ static PyObject *turns_of_samples(PyObject *self, PyObject *arguments)
         Py_BEGIN_ALLOW_THREADS sampled_turns(&samples, &ways, out);
         Py_END_ALLOW_THREADS
     }
-    return none_if(out != NULL, &held);
+    return let_go_none_if(out != NULL, &held);
 }
 
 static PyObject *sums_of_samples(PyObject *self, PyObject *arguments)
@@ -158,7 +149,7 @@ static PyObject *sums_of_samples(PyObject *self, PyObject *arguments)
         Py_BEGIN_ALLOW_THREADS sampled_sums(&samples, &ways, &placing, places, many, axes, out);
         Py_END_ALLOW_THREADS
     }
-    return none_if(out != NULL, &held);
+    return let_go_none_if(out != NULL, &held);
 }
 
 /* Rows of so many numbers, and the columns of joints in them. */
@@ -222,7 +213,7 @@ static PyObject *columns_of_places(PyObject *self, PyObject *arguments)
     fits = fits && (taken.count == joints || refused("columns of other joints"));
     if (fits)
         place_columns(&samples, given, placed, &placing, &taken);
-    return none_if(fits, &held);
+    return let_go_none_if(fits, &held);
 }
 
 PyMethodDef sample_methods[] = {
