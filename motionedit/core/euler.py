@@ -30,6 +30,7 @@ MOST_WOUND = 1e8  # degrees: six of the digits after the point are left
 # Within this angle (rad, 1e-4 degrees) of gimbal lock the last angle is kept. The rebuilt rotation is off by no more
 # than that; a wider band would cost more than the 2e-4 degrees that are promised.
 GIMBAL_BAND = np.radians(1e-4)
+MOST_MIDDLE = np.pi / 2.0 - GIMBAL_BAND  # rad: middle angles beyond it, to either side, are in the band
 # Rotations that are solved together stay in the processor's cache.
 _TOGETHER = 1 << 13
 # Rotations whose angles are held at once, near the processor: all of a short clip, some joints of a long one.
@@ -225,7 +226,7 @@ def gimbal_locked(solved: FloatArray) -> BoolArray:
     """Return at which frames angles (A, ..., F) are so near gimbal lock that the last one is kept, shape (..., F)."""
     if len(solved) < 3:
         return np.zeros(solved.shape[1:], dtype=np.bool_)
-    locked: BoolArray = np.abs(solved[1]) > np.pi / 2.0 - GIMBAL_BAND
+    locked: BoolArray = np.abs(solved[1]) > MOST_MIDDLE
     return locked
 
 

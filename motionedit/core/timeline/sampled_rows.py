@@ -9,7 +9,7 @@ import numpy as np
 
 from motionedit.core.arrays import frozen
 from motionedit.core.compiled import compiled
-from motionedit.core.euler import DEGREES, GIMBAL_BAND, HELD, joint_angles, radians
+from motionedit.core.euler import DEGREES, HELD, MOST_MIDDLE, arc_tangents, joint_angles, radians
 from motionedit.core.motion import position_columns
 from motionedit.core.slerp import ways_of
 from motionedit.core.timeline.alignment import aligned
@@ -58,10 +58,9 @@ def _in_few_loops(motion: Motion, at: FloatArray, alignment: Alignment, *, start
     for group in groups:
         sums = np.empty((6, len(group.joints), len(at)))
         kernel.sampled_sums(*given, alignment.rotation, group.joints, *group.axes, sums)
-        np.arctan2(sums[::2], sums[1::2], out=sums[::2])
-        limits = np.pi / 2.0 - GIMBAL_BAND, DEGREES
+        arc_tangents(sums)
         own = seeds[group.columns], group.columns
-        if not kernel.angle_columns(sums, len(at), *group.axes, *limits, *own, width, rows):
+        if not kernel.angle_columns(sums, len(at), *group.axes, MOST_MIDDLE, DEGREES, *own, width, rows):
             return None
     placed, columns = _places(skeleton)
     if len(columns):
