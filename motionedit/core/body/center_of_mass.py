@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.arrays import frozen
-from motionedit.core.body.in_one_loop import carried
+from motionedit.core.body.in_one_loop import carried, read_off
 from motionedit.core.body.segments import lay_by_length, lay_given, lay_human
 from motionedit.core.kinematics import WorldPoses
 from motionedit.dataclass import dataclass, replace
@@ -112,6 +112,10 @@ def _masses(skeleton: Skeleton, anatomy: Anatomy, by_joint: tuple[tuple[int, flo
 def center_of_mass(poses: WorldPoses, masses: Masses) -> FloatArray:
     """Return c = sum m_j (p_j + R_j c_j) / M, the center of mass in the world, shape (F, 3), clip units."""
     carriers, shares, points = masses.carriers
+    where = poses.positions, poses.rotations, carriers
+    center = read_off("center", *where, points, shares, shape=(len(poses.positions), 3))
+    if center is not None:
+        return center
     center = np.empty((len(poses.positions), 3))
     # Block by block: what is carried takes more memory on its way than the world transforms of a long motion.
     for start in range(0, len(center), _BLOCK_FRAMES):

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.kinematics import WorldPoses
 
-Work = Literal["directions", "products", "cones", "bent_back", "carried"]
+Work = Literal["directions", "cones", "bent_back", "carried", "center"]
 
 
 def read_off(

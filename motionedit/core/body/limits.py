@@ -146,15 +146,11 @@ def _cones(motion: Motion, joints: IntArray, along: FloatArray, first: int) -> t
 
     A mean is the first eigenvector of sum q q^T, signed as the first frame's.
     """
-    q, shape = motion.rotations, (len(joints), 4, 4)
-    products = read_off("products", None, q, joints, shape=shape, first=first)
-    if products is None:
-        products = np.einsum("fni,fnj->nij", q[first:, joints], q[first:, joints])
-    _, vectors = np.linalg.eigh(products)
-    cones = read_off("cones", None, q, joints, vectors, along, shape=(len(joints), 6), first=first)
+    q = motion.rotations
+    cones = read_off("cones", None, q, joints, along, shape=(len(joints), 6), first=first)
     if cones is not None:
         return cones[:, :4], cones[:, 4:]
-    means: FloatArray = vectors[..., -1]
+    means = rot.mean_of_products(np.einsum("fni,fnj->nij", q[first:, joints], q[first:, joints]))
     signs = np.sum(means * q[first, joints], axis=-1, keepdims=True)
     means = np.where(signs < 0.0, -means, means)
     swing, twist = swing_and_twist(rot.between(means, q[first:, joints]), along)

@@ -83,17 +83,17 @@ static inline const double *joint_turn(const Poses *poses, int64_t frame, int64_
    vectors, (n, 3). */
 void find_directions(const Poses *poses, int64_t first, const int64_t *triples, int64_t count, double *out);
 
-/* Sum q q^T over frames from `first` on, of n joints' rotations: shape (n, 4, 4). */
-void sum_products(const Poses *poses, int64_t first, const int64_t *joints, int64_t count, double *out);
-
-/* The cones of n joints, of which the eigenvectors of sum q q^T are known, (n, 4, 4), and the bones `along` (n, 3): the
-   last vector, signed as the rotation at frame `first`, is a cone's center, and how far the joint swings its bone from
-   there, and twists about it, at most, from that frame on, its ranges: (n, 6), rad. */
-void find_cones(const Poses *poses, int64_t first, const int64_t *joints, const double *vectors, const double *along,
-    int64_t count, double *out);
+/* The cones of n joints with the bones `along` (n, 3): the mean of a joint's rotations from frame `first` on is its
+   cone's center, and how far it swings its bone from there, and twists about it, at most, its ranges: (n, 6), rad. */
+void find_cones(
+    const Poses *poses, int64_t first, const int64_t *joints, const double *along, int64_t count, double *out);
 
 /* Where points (n, 3) in the frames of n joints are in the world at each frame: shape (F, n, 3). */
 void carry(const Poses *poses, const int64_t *joints, const double *points, int64_t count, double *out);
+
+/* The sum of these places at each frame, weighted by n `shares`: shape (F, 3). */
+void find_center(
+    const Poses *poses, const int64_t *joints, const double *points, const double *shares, int64_t count, double *out);
 
 /* The largest step of each joint's rotations (F, J, 4) from one frame to the next, from frame `first` on: rad, and the
    frame that it leads into, (J,) each. With `before` those of before^-1 after: joints that are the same do not step. */

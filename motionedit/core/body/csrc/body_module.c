@@ -41,11 +41,11 @@ static const int64_t *joints_of(Held *held, PyObject *given, int64_t count, cons
 }
 
 /* What is done with joints of a motion: with so many indices of each item, numbers of its arrays, and of its results;
-   these are of every item, or of every item at every frame. */
+   these are of every item, or of all together, and of all frames or of every frame. */
 typedef struct {
     void (*work)(const Poses *, int64_t, const int64_t *, const double **, int64_t, double *);
     int64_t indices, numbers[3], results;
-    int by_frame, needs_positions, needs_rotations;
+    int together, by_frame, needs_positions, needs_rotations;
 } OnJoints;
 
 /* Take the poses, first frame, joints, up to three arrays and the results that a call is given; whether all fit. */
@@ -73,7 +73,8 @@ static int take_joints(const OnJoints *of, PyObject *arguments, Held *held, Pose
         if (arrays[i] == NULL)
             return 0;
     }
-    *out = items_of(held, results, of->results * items * (of->by_frame ? frames : 1), sizeof(double), 1, "results");
+    const int64_t many = of->results * (of->together ? 1 : items) * (of->by_frame ? frames : 1);
+    *out = items_of(held, results, many, sizeof(double), 1, "results");
     return *out != NULL;
 }
 
@@ -98,17 +99,10 @@ static void directions_work(
     find_directions(poses, first, joints, count, out);
 }
 
-static void products_work(
-    const Poses *poses, int64_t first, const int64_t *joints, const double **arrays, int64_t count, double *out)
-{
-    (void)arrays;
-    sum_products(poses, first, joints, count, out);
-}
-
 static void cones_work(
     const Poses *poses, int64_t first, const int64_t *joints, const double **arrays, int64_t count, double *out)
 {
-    find_cones(poses, first, joints, arrays[0], arrays[1], count, out);
+    find_cones(poses, first, joints, arrays[0], count, out);
 }
 
 static void back_work(
@@ -124,34 +118,41 @@ static void carry_work(
     carry(poses, joints, arrays[0], count, out);
 }
 
+static void center_work(
+    const Poses *poses, int64_t first, const int64_t *joints, const double **arrays, int64_t count, double *out)
+{
+    (void)first;
+    find_center(poses, joints, arrays[0], arrays[1], count, out);
+}
+
 static PyObject *directions(PyObject *self, PyObject *arguments)
 {
     (void)self;
-    return on_joints(&(const OnJoints){directions_work, 3, {0}, 3, 0, 1, 1}, arguments);
-}
-
-static PyObject *products(PyObject *self, PyObject *arguments)
-{
-    (void)self;
-    return on_joints(&(const OnJoints){products_work, 1, {0}, 16, 0, 0, 1}, arguments);
+    return on_joints(&(const OnJoints){directions_work, 3, {0}, 3, 0, 0, 1, 1}, arguments);
 }
 
 static PyObject *cones(PyObject *self, PyObject *arguments)
 {
     (void)self;
-    return on_joints(&(const OnJoints){cones_work, 1, {16, 3}, 6, 0, 0, 1}, arguments);
+    return on_joints(&(const OnJoints){cones_work, 1, {3}, 6, 0, 0, 0, 1}, arguments);
 }
 
 static PyObject *bent_back(PyObject *self, PyObject *arguments)
 {
     (void)self;
-    return on_joints(&(const OnJoints){back_work, 1, {3, 3, 3}, 1, 0, 0, 1}, arguments);
+    return on_joints(&(const OnJoints){back_work, 1, {3, 3, 3}, 1, 0, 0, 0, 1}, arguments);
 }
 
 static PyObject *carried(PyObject *self, PyObject *arguments)
 {
     (void)self;
-    return on_joints(&(const OnJoints){carry_work, 1, {3}, 3, 1, 1, 1}, arguments);
+    return on_joints(&(const OnJoints){carry_work, 1, {3}, 3, 0, 1, 1, 1}, arguments);
+}
+
+static PyObject *center(PyObject *self, PyObject *arguments)
+{
+    (void)self;
+    return on_joints(&(const OnJoints){center_work, 1, {3, 1}, 3, 1, 1, 1, 1}, arguments);
 }
 
 static PyObject *jerks(PyObject *self, PyObject *arguments)
@@ -259,10 +260,10 @@ static PyObject *median_ways(PyObject *self, PyObject *arguments)
 
 PyMethodDef body_methods[] = {
     {"directions", directions, METH_VARARGS, "Write mean directions between joints, seen from others."},
-    {"products", products, METH_VARARGS, "Write sums of products of joints' rotations."},
-    {"cones", cones, METH_VARARGS, "Write the cones of joints about their means, which are eigenvectors."},
+    {"cones", cones, METH_VARARGS, "Write the cones of joints about the means of their rotations."},
     {"bent_back", bent_back, METH_VARARGS, "Write which limbs bend back at any frame: 1 or 0."},
     {"carried", carried, METH_VARARGS, "Write where points in joints' frames are at each frame."},
+    {"center", center, METH_VARARGS, "Write where the weighted mean of points in joints' frames is at each frame."},
     {"steps", steps, METH_VARARGS, "Write the largest step of each joint, and the frames into which these lead."},
     {"bends", bends, METH_VARARGS, "Write how much limbs are bent at each frame, and about which axes."},
     {"median_ways", median_ways, METH_VARARGS, "Write median ways between the middles of joints."},

@@ -5,6 +5,7 @@
 #include <float.h>
 #include <string.h>
 
+#include "../../csrc/jacobi.h"
 #define ONE_LANE
 #include "../../priorities/csrc/rotations.h"
 
@@ -28,18 +29,25 @@ void find_directions(const Poses *poses, int64_t first, const int64_t *triples, 
     }
 }
 
-void sum_products(const Poses *poses, int64_t first, const int64_t *joints, int64_t count, double *out)
+/* The mean of a joint's rotations over frames from `first` on, to `mean` (4,): the eigenvector of sum q q^T with the
+   largest eigenvalue, signed as the first of them. */
+static void find_mean(const Poses *poses, int64_t first, int64_t joint, double *mean)
 {
-    for (int64_t i = 0; i < count; i++, out += 16) {
-        double sum[4][4] = {{0.0}};
-        for (int64_t f = first; f < poses->frames; f++) {
-            const double *q = joint_turn(poses, f, joints[i]);
-            for (int a = 0; a < 4; a++)
-                for (int b = 0; b < 4; b++)
-                    sum[a][b] += q[a] * q[b];
-        }
-        memcpy(out, sum, sizeof sum);
+    double sum[4][4] = {{0.0}}, vectors[4][4], cosine = 0.0;
+    for (int64_t f = first; f < poses->frames; f++) {
+        const double *q = joint_turn(poses, f, joint);
+        for (int a = 0; a < 4; a++)
+            for (int b = 0; b < 4; b++)
+                sum[a][b] += q[a] * q[b];
     }
+    jacobi(*sum, 4, *vectors);
+    int largest = 0;
+    for (int i = 1; i < 4; i++)
+        largest = sum[i][i] > sum[largest][largest] ? i : largest;
+    for (int a = 0; a < 4; a++)
+        cosine += vectors[a][largest] * joint_turn(poses, first, joint)[a];
+    for (int a = 0; a < 4; a++)
+        mean[a] = cosine < 0.0 ? -vectors[a][largest] : vectors[a][largest];
 }
 
 /* Tangents are compared as quotients of what is not negative: no arc is needed but of the largest. */
@@ -91,14 +99,11 @@ static void find_widest(
     widest[0] = atan2(swing.sine, swing.cosine), widest[1] = one > other ? one : other;
 }
 
-void find_cones(const Poses *poses, int64_t first, const int64_t *joints, const double *vectors, const double *along,
-    int64_t count, double *out)
+void find_cones(
+    const Poses *poses, int64_t first, const int64_t *joints, const double *along, int64_t count, double *out)
 {
-    for (int64_t i = 0; i < count; i++, vectors += 16, along += 3, out += 6) {
-        const double *q = joint_turn(poses, first, joints[i]);
-        const double cosine = vectors[3] * q[0] + vectors[7] * q[1] + vectors[11] * q[2] + vectors[15] * q[3];
-        for (int a = 0; a < 4; a++)
-            out[a] = cosine < 0.0 ? -vectors[4 * a + 3] : vectors[4 * a + 3];
+    for (int64_t i = 0; i < count; i++, along += 3, out += 6) {
+        find_mean(poses, first, joints[i], out);
         find_widest(poses, first, joints[i], out, along, out + 4);
     }
 }
@@ -109,6 +114,20 @@ void carry(const Poses *poses, const int64_t *joints, const double *points, int6
         for (int64_t i = 0; i < count; i++, out += 3) {
             q_turn(joint_turn(poses, f, joints[i]), points + 3 * i, out);
             add(out, joint_place(poses, f, joints[i]));
+        }
+}
+
+void find_center(
+    const Poses *poses, const int64_t *joints, const double *points, const double *shares, int64_t count, double *out)
+{
+    memset(out, 0, 3 * sizeof *out * (size_t)poses->frames);
+    for (int64_t f = 0; f < poses->frames; f++, out += 3)
+        for (int64_t i = 0; i < count; i++) {
+            double place[3];
+            q_turn(joint_turn(poses, f, joints[i]), points + 3 * i, place);
+            add(place, joint_place(poses, f, joints[i]));
+            for (int a = 0; a < 3; a++)
+                out[a] += shares[i] * place[a];
         }
 }
 

@@ -1,5 +1,6 @@
 /* The layered solver in one piece, compiled for what every processor has, and in solver_avx2.c and solver_avx512.c for wider vectors. */
 
+#include "../../csrc/jacobi.h"
 #include "batch.h"
 #include "rotations.h"
 

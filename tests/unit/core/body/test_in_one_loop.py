@@ -104,9 +104,11 @@ def test_joints_and_arrays_that_are_none_are_an_error_and_no_crash():
     turns, places = np.zeros((5, 2, 4)), np.zeros((5, 2, 3))
     for joints in ([2], [-1]):
         with pytest.raises(ValueError, match=f"no joint {joints[0]}"):
-            read_off("products", None, turns, np.array(joints), shape=(1, 4, 4))
+            read_off("cones", None, turns, np.array(joints), np.ones(3), shape=(1, 6))
     with pytest.raises(ValueError, match="results: 8 bytes do not fit"):
-        read_off("products", None, turns, np.array([0]), shape=(1,))
+        read_off("cones", None, turns, np.array([0]), np.ones(3), shape=(1,))
+    with pytest.raises(ValueError, match="results: 24 bytes do not fit"):
+        read_off("center", places, turns, np.array([0]), np.ones(3), np.ones(1), shape=(1, 3))
     with pytest.raises(ValueError, match="numbers: 16 bytes do not fit"):
         read_off("carried", places, turns, np.array([0]), np.zeros(2), shape=(5, 1, 3))
     with pytest.raises(ValueError, match="no positions"):
@@ -118,7 +120,7 @@ def test_joints_and_arrays_that_are_none_are_an_error_and_no_crash():
     with pytest.raises(ValueError, match="results: 8 bytes do not fit"):
         compiled().jerks(places, 5, 2, np.zeros(1))
     with pytest.raises(ValueError, match="no such frames"):
-        read_off("products", None, turns, np.array([0]), shape=(1, 4, 4), first=5)
+        read_off("cones", None, turns, np.array([0]), np.ones(3), shape=(1, 6), first=5)
     limbs, how = np.zeros((1, 4), int), (1, 0.1, 0.1)
     out = [np.zeros((1, 5), bool), *map(np.zeros, (3, 6, 15, 10))]
     for given, first in (((places, None), 0), ((places, turns), -1)):
