@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import shutil
+import itertools
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -43,10 +43,11 @@ def _rows_of(clips: Sequence[Path], normalized: Path) -> list[Row]:
     if failures:
         raise failures[0]
 
+    rounds = itertools.count()
+
     def again() -> object:
-        # Into a new folder, as in folders.py: to replace files a disk may wait for what was in them.
-        shutil.rmtree(normalized)
-        return normalize.run(spec, clips, normalized, RunOptions())
+        # Into a new folder, as in folders.py: for a while a disk steps over what was removed.
+        return normalize.run(spec, clips, normalized.with_name(f"{normalized.name}-{next(rounds)}"), RunOptions())
 
     best = best_of(
         {
