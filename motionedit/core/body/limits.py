@@ -21,7 +21,7 @@ from motionedit.core.compiled import compiled
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
     from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.body.anatomy import Anatomy
@@ -53,27 +53,35 @@ _BLOCK_POSES = 1 << 13
 
 
 @dataclass(frozen=True, eq=False)
-class Limit:
-    """A joint's cone.
+class Limits:
+    """The cones of some joints.
 
     Attributes
     ----------
-    center : shape (4,)
-        The local rotation in its middle.
-    along : shape (3,)
+    joints : shape (C,)
+    centers : shape (C, 4)
+        The local rotation in the middle of each.
+    along : shape (C, 3)
         The bone, a unit vector in the joint's frame.
-    swing, twist : float
+    swing, twist : shape (C,)
         Half ranges, rad; never less than what the clip itself has.
     """
 
-    joint: int
-    center: FloatArray
+    joints: IntArray
+    centers: FloatArray
     along: FloatArray
-    swing: float
-    twist: float
+    swing: FloatArray
+    twist: FloatArray
+
+    def __len__(self) -> int:
+        """How many there are."""
+        return len(self.joints)
 
 
-def human_limits(motion: Motion, poses: WorldPoses, anatomy: Anatomy, *, travel: int, first: int) -> list[Limit]:
+NO_LIMITS = Limits(np.zeros(0, dtype=np.intp), np.zeros((0, 4)), np.zeros((0, 3)), np.zeros(0), np.zeros(0))
+
+
+def human_limits(motion: Motion, poses: WorldPoses, anatomy: Anatomy, *, travel: int, first: int) -> Limits:
     """Return the limits of neck, spine, clavicles, shoulders, hips, wrists and ankles that were found."""
     joints, bones, halves = _wanted(motion.skeleton, anatomy, travel)
     found = []
@@ -82,8 +90,8 @@ def human_limits(motion: Motion, poses: WorldPoses, anatomy: Anatomy, *, travel:
     for start in range(0, len(joints), max(together, 1)):
         some = slice(start, start + together)
         along = directions_of(poses, bones[some], first=first)
-        found += _limits(motion, joints[some], along, halves[some], first)
-    return found
+        found.append(_limits(motion, joints[some], along, halves[some], first))
+    return _together(found)
 
 
 @lru_cache(maxsize=8)
@@ -101,7 +109,7 @@ def _wanted(skeleton: Skeleton, anatomy: Anatomy, travel: int) -> tuple[IntArray
     return frozen(which), frozen(bones), frozen(np.array([row[3:] for row in rows]).reshape(-1, 2))
 
 
-def given_limits(motion: Motion, poses: WorldPoses, given: Mapping[int, Range], *, first: int) -> list[Limit]:
+def given_limits(motion: Motion, poses: WorldPoses, given: Mapping[int, Range], *, first: int) -> Limits:
     """Return limits that a user gives by joint; a joint's bone leads to the middle of its children."""
     found = []
     for joint in sorted(given):
@@ -110,22 +118,26 @@ def given_limits(motion: Motion, poses: WorldPoses, given: Mapping[int, Range], 
         ways = [mean_direction(poses, start, stop, seen_from=joint, first=first) for start, stop in ends]
         along = np.sum(ways, axis=0)
         along = along / max(float(np.linalg.norm(along)), np.finfo(float).tiny)
-        found.append(limit_of(motion, joint, along, given[joint], first=first))
-    return found
+        halves = np.radians([[given[joint].swing, given[joint].twist]])
+        found.append(_limits(motion, np.array([joint]), along[None], halves, first))
+    return _together(found)
 
 
-def limit_of(motion: Motion, joint: int, along: FloatArray, half: Range, *, first: int) -> Limit:
-    """Return a joint's limit about its mean in a clip, not tighter than what the clip does after frame `first`."""
-    halves = np.radians([[half.swing, half.twist]])
-    return _limits(motion, np.array([joint]), along[None], halves, first)[0]
+def _limits(motion: Motion, joints: IntArray, along: FloatArray, halves: FloatArray, first: int) -> Limits:
+    """Return the limits of n joints about their means in a clip after frame `first`.
 
-
-def _limits(motion: Motion, joints: IntArray, along: FloatArray, halves: FloatArray, first: int) -> list[Limit]:
-    """Return the limits of n joints whose bones are `along`, (n, 3), no tighter than half ranges (n, 2), rad."""
+    Their bones are `along`, (n, 3); they are no tighter than half ranges (n, 2), rad, and than what the clip does.
+    """
     centers, widest = _cones(motion, joints, along, first)
-    ranges = np.maximum(halves, widest).tolist()
-    rows = zip(joints.tolist(), frozen(centers), frozen(along), ranges, strict=True)
-    return [Limit(joint, center, bone, *half) for joint, center, bone, half in rows]
+    swing, twist = frozen(np.maximum(halves, widest).T)
+    return Limits(joints, frozen(centers), frozen(along), swing, twist)
+
+
+def _together(parts: Sequence[Limits]) -> Limits:
+    if len(parts) < 2:
+        return parts[0] if parts else NO_LIMITS
+    arrays = zip(*((one.joints, one.centers, one.along, one.swing, one.twist) for one in parts), strict=True)
+    return Limits(*(frozen(np.concatenate(each)) for each in arrays))
 
 
 def swing_and_twist(q: FloatArray, along: FloatArray) -> tuple[FloatArray, FloatArray]:

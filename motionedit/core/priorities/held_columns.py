@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import fields
 from functools import lru_cache
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,37 +12,46 @@ from motionedit.core.priorities.problem import HingeColumns, LimitColumns
 from motionedit.dataclass import replace
 
 if TYPE_CHECKING:
-    from motionedit.core.arrays import FloatArray
+    from motionedit.core.arrays import FloatArray, IntArray
+    from motionedit.core.body.hinges import Hinge
+    from motionedit.core.body.limits import Limits
     from motionedit.core.priorities.points import Columns
     from motionedit.core.priorities.settings import Body
-
-
-_Told = TypeVar("_Told", HingeColumns, LimitColumns)
 
 
 @lru_cache(maxsize=2)
 def held_columns(body: Body, columns: Columns) -> tuple[HingeColumns, LimitColumns, FloatArray]:
     """Return the hinges among columns, the limits of those that are none, and the mobility of all and of the root."""
-    hinges, limits = _of_all_joints(body)
+    hinges = _of_all_joints(body.hinges)
     turns = np.ones(len(columns.joints)) if body.mobility is None else body.mobility[columns.joints]
-    return _among(columns, hinges), _among(columns, limits), np.append(turns, body.root_mobility)
+    limits = _limits_among(columns, body.limits, hinged=hinges.places)
+    return _hinges_among(columns, hinges), limits, np.append(turns, body.root_mobility)
 
 
-def _among(columns: Columns, every: _Told) -> _Told:
-    """Return what is told of joints, by their `places`, of those that are columns alone, and by theirs."""
+def _hinges_among(columns: Columns, every: HingeColumns) -> HingeColumns:
+    """Return the hinges of joints, which are their `places`, that are columns, and by their places among these."""
     places = columns.places[every.places]
     kept = places >= 0
     if kept.all():
         return replace(every, places=places)
     told = {each.name: getattr(every, each.name)[kept] for each in fields(every)}
-    return type(every)(**{**told, "places": places[kept]})
+    return HingeColumns(**{**told, "places": places[kept]})
+
+
+def _limits_among(columns: Columns, every: Limits, *, hinged: IntArray) -> LimitColumns:
+    """Return the limits of joints that are columns and are not `hinged`."""
+    places = columns.places.copy()
+    places[hinged] = -1
+    places = places[every.joints]
+    kept = places >= 0
+    which = slice(None) if kept.all() else kept
+    arrays = every.centers, every.along, every.swing, every.twist
+    return LimitColumns(places[which], *(each[which] for each in arrays))
 
 
 @lru_cache(maxsize=2)
-def _of_all_joints(body: Body) -> tuple[HingeColumns, LimitColumns]:
-    """Return the hinges of a body, and the limits of what is none, by joints: their `places` are these."""
-    hinges, hinged = body.hinges, {hinge.joint for hinge in body.hinges}
-    limits = [limit for limit in body.limits if limit.joint not in hinged]
+def _of_all_joints(hinges: tuple[Hinge, ...]) -> HingeColumns:
+    """Return hinges by their joints: their `places` are these."""
     return HingeColumns(
         places=np.array([hinge.joint for hinge in hinges], dtype=np.intp),
         axes=np.array([hinge.axis for hinge in hinges]).reshape(-1, 3),
@@ -50,10 +59,4 @@ def _of_all_joints(body: Body) -> tuple[HingeColumns, LimitColumns]:
         lower=np.array([hinge.lower for hinge in hinges]).reshape(-1, 3),
         limits=np.array([hinge.limits for hinge in hinges]).reshape(-1, 2),
         second=np.array([hinge.is_second for hinge in hinges], dtype=np.bool_),
-    ), LimitColumns(
-        places=np.array([limit.joint for limit in limits], dtype=np.intp),
-        centers=np.array([limit.center for limit in limits]).reshape(-1, 4),
-        along=np.array([limit.along for limit in limits]).reshape(-1, 3),
-        swing=np.array([limit.swing for limit in limits]),
-        twist=np.array([limit.twist for limit in limits]),
     )

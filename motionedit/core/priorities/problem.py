@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Protocol
 
-import numpy as np
-
+from motionedit.core.body.limits import NO_LIMITS
 from motionedit.core.measure import WORLD, Measure
 from motionedit.dataclass import dataclass
 
@@ -108,7 +107,7 @@ class HingeColumns:
 
 @dataclass(frozen=True, eq=False)
 class LimitColumns:
-    """Cones of columns that turn about any axis: their `places` (C,), and `body.limits.Limit` as arrays.
+    """Cones of columns that turn about any axis: their `places` (C,), and the rest of `body.limits.Limits`.
 
     Centres (C, 4), bones `along` (C, 3) in the joints' frames, half ranges `swing` and `twist` (C,) in rad.
     """
@@ -120,7 +119,7 @@ class LimitColumns:
     twist: FloatArray
 
 
-NO_LIMITS = LimitColumns(np.zeros(0, dtype=np.intp), np.zeros((0, 4)), np.zeros((0, 3)), np.zeros(0), np.zeros(0))
+_NO_LIMITS = LimitColumns(NO_LIMITS.joints, NO_LIMITS.centers, NO_LIMITS.along, NO_LIMITS.swing, NO_LIMITS.twist)
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,7 +154,7 @@ class Problem:
     max_iterations: int
     mobility: FloatArray
     softness: FloatArray
-    limits: LimitColumns = NO_LIMITS
+    limits: LimitColumns = _NO_LIMITS
     ends_early: bool = True
 
 

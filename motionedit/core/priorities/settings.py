@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import field
 from typing import TYPE_CHECKING, Literal
 
+from motionedit.core.body.limits import NO_LIMITS
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -12,7 +13,7 @@ if TYPE_CHECKING:
     from motionedit.core.body.bends import Bend
     from motionedit.core.body.center_of_mass import Masses
     from motionedit.core.body.hinges import Hinge
-    from motionedit.core.body.limits import Limit
+    from motionedit.core.body.limits import Limits
     from motionedit.core.priorities.trajectories import Curve
 
 RecruitingRule = Literal["expand", "error", "ignore"]
@@ -67,4 +68,4 @@ class Body:
     bends: tuple[Bend, ...] = ()
     mobility: FloatArray | None = None
     root_mobility: float = 1.0
-    limits: tuple[Limit, ...] = ()
+    limits: Limits = NO_LIMITS

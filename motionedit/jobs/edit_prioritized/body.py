@@ -10,7 +10,7 @@ import numpy as np
 from motionedit.core.body.bends import find_bends
 from motionedit.core.body.center_of_mass import Masses, find_masses, scaled_masses
 from motionedit.core.body.hinges import OFF_AXIS_ENERGY, Hinge, channel_hinges, find_hinges, hinge_of, with_limits_of
-from motionedit.core.body.limits import Limit, Range, given_limits, human_limits
+from motionedit.core.body.limits import Limits, Range, given_limits, human_limits
 from motionedit.core.body.stiffness import TRAVEL, human_mobility
 from motionedit.core.motion import Motion, scaled
 from motionedit.core.priorities.settings import Body
@@ -91,11 +91,11 @@ def body_again(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, body: 
 
 def _ranges(
     loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults: Faults, warnings: list[str]
-) -> tuple[tuple[Bend, ...], tuple[Hinge, ...], tuple[Limit, ...]]:
+) -> tuple[tuple[Bend, ...], tuple[Hinge, ...], Limits]:
     """Return how the joints of a clip bend and turn in it, and how far they may."""
     bends = find_bends(facts.clip.motion.skeleton, facts.poses, facts.anatomy, first=facts.first)
     hinges = _hinges(loaded, facts, bends, faults, warnings)
-    return bends, tuple(hinges), tuple(_limits(loaded, facts, hinges, faults, warnings))
+    return bends, tuple(hinges), _limits(loaded, facts, hinges, faults, warnings)
 
 
 def _masses(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults: Faults) -> Masses:
@@ -161,7 +161,7 @@ def _limits(
     hinges: Sequence[Hinge],
     faults: Faults,
     warnings: list[str],
-) -> list[Limit]:
+) -> Limits:
     """Return the cones that joints keep to, as the spec's limits have them."""
     motion, asked = facts.clip.motion, loaded.model.limits
     if asked == "human":

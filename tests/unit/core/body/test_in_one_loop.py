@@ -49,7 +49,7 @@ def read(motion, first):
     return [
         *(each for bend in bends for each in (bend.axis, bend.straight, bend.upper, bend.lower, bend.angles)),
         *(np.array(bend.bent) for bend in bends),
-        *(np.array([*limit.center, *limit.along, limit.swing, limit.twist]) for limit in limits),
+        *(limits.joints, limits.centers, limits.along, limits.swing, limits.twist),
         *(center_of_mass(poses, find_masses(SKELETON, BODY)), squares, np.array(worst)),
         np.array([(each.joint, each.frame, each.degrees) for each in (*beyond, *back)]),
         *steps_in(own_steps(motion, first=first)),

@@ -1,5 +1,7 @@
 """Cones of swing and twist about where a clip has its joints, never tighter than what it does."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from human import skeleton_of, standing, with_rotation
@@ -7,18 +9,25 @@ from scipy.spatial.transform import Rotation
 
 from motionedit.core import rotations as rot
 from motionedit.core.body.find_anatomy import find_anatomy
-from motionedit.core.body.limits import NECK, Range, given_limits, human_limits, limit_of, swing_and_twist
+from motionedit.core.body.limits import NECK, Range, given_limits, human_limits, swing_and_twist
 from motionedit.core.kinematics import forward
 
 SKELETON = skeleton_of()
 INDEX = SKELETON.names.index
-UP = np.array([0.0, 1.0, 0.0])
 
 
 def limits_of(motion, first=0):
     anatomy = find_anatomy(motion.skeleton)
     found = human_limits(motion, forward(motion), anatomy, travel=0, first=first)
-    return {motion.skeleton.names[limit.joint]: limit for limit in found}
+    return by_name(found, motion.skeleton)
+
+
+def by_name(limits, skeleton):
+    rows = zip(limits.joints.tolist(), limits.centers, limits.along, limits.swing, limits.twist, strict=True)
+    return {
+        skeleton.names[joint]: SimpleNamespace(center=center, along=along, swing=swing, twist=twist)
+        for joint, center, along, swing, twist in rows
+    }
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -55,13 +64,18 @@ def test_given_limits_are_of_the_joints_that_are_named():
     motion = standing(SKELETON)
     given = {INDEX("Head"): Range(20.0, 10.0), INDEX("LeftArm"): Range(90.0, 45.0)}
     found = given_limits(motion, forward(motion), given, first=0)
-    assert [limit.joint for limit in found] == sorted(given)
-    by_joint = {limit.joint: limit for limit in found}
-    np.testing.assert_allclose(by_joint[INDEX("Head")].swing, np.radians(20.0))
-    np.testing.assert_allclose(by_joint[INDEX("LeftArm")].twist, np.radians(45.0))
+    assert found.joints.tolist() == sorted(given)
+    limits = by_name(found, SKELETON)
+    np.testing.assert_allclose(limits["Head"].swing, np.radians(20.0))
+    np.testing.assert_allclose(limits["LeftArm"].twist, np.radians(45.0))
+
+
+def test_no_given_limits_are_none():
+    motion = standing(SKELETON)
+    assert len(given_limits(motion, forward(motion), {}, first=0)) == 0
 
 
 def test_the_middle_of_a_limit_is_the_mean_of_the_clip():
     motion = with_rotation(standing(SKELETON), "Head", slice(None), (0.0, 0.7, 0.0))
-    limit = limit_of(motion, INDEX("Head"), UP, Range(10.0, 10.0), first=0)
-    assert rot.angle_between(limit.center, rot.exp(np.array([0.0, 0.7, 0.0]))) < 1e-6
+    limits = given_limits(motion, forward(motion), {INDEX("Head"): Range(10.0, 10.0)}, first=0)
+    assert rot.angle_between(limits.centers[0], rot.exp(np.array([0.0, 0.7, 0.0]))) < 1e-6
