@@ -41,26 +41,27 @@ def components_about(
     heading, position : bool
         What of the clips' place on the ground to take out at the goals.
     """
-    E = model.component_rows
-    if heading or position:
-        at = np.clip(np.floor(places + 0.5).astype(np.intp), 0, model.timeline.frames - 1)
-        E = _laid_over(E, model, at, heading=heading, position=position)
     frames = np.arange(model.timeline.frames, dtype=np.float64)
     apart = (frames[:, None] - places) / model.timeline.frame_rate
     near = 1.0 - np.prod(-np.expm1(-0.5 * (apart / _TOGETHER) ** 2), axis=1)
     weights = believed + (1.0 - believed) * near
-    rows = frozen((E * weights[:, None]).reshape(len(E), -1))
+    E = model.component_rows * weights[:, None]
+    if heading or position:
+        at = np.clip(np.floor(places + 0.5).astype(np.intp), 0, model.timeline.frames - 1)
+        E[:, :, :6] = _laid_over(model, at, heading=heading, position=position) * weights[:, None]
+    rows = frozen(E.reshape(len(E), -1))
     return replace(model, components=replace(model.components, components=rows))
 
 
-def _laid_over(E: FloatArray, model: MotionModel, at: IntArray, *, heading: bool, position: bool) -> FloatArray:
-    """Return components that on the mean of some frames neither turn nor move the body on the ground.
+def _laid_over(model: MotionModel, at: IntArray, *, heading: bool, position: bool) -> FloatArray:
+    """Return components that on the mean of some frames neither turn nor move the body on the ground, shape (m, F, 6).
 
-    A turn by the angle x about up moves the travel by x up x (p - p_goal), and turns its joint by the world-axis
-    increment x up; a change dv of its rotation vector is the increment R_ref J_l(v) dv.
+    They differ in what they do to the travel and to the rotation of its joint, which have the first columns. A turn by
+    the angle x about up moves the travel by x up x (p - p_goal), and turns its joint by the world-axis increment x up;
+    a change dv of its rotation vector is the increment R_ref J_l(v) dv.
     """
     up, mean = model.up, model.mean_rows
-    E = E.copy()
+    E = model.component_rows[:, :, :6].copy()
     if heading:
         reference = rot.to_matrix(model.space.references[0])
         increments = reference @ exp_and_left_jacobian(mean[:, 3:6])[1]

@@ -10,7 +10,7 @@ from motionedit.core import rotations as rot
 from motionedit.core.coefficients.chain import CoefficientChain
 from motionedit.core.coefficients.goals import Goal
 from motionedit.core.measure import WORLD, Measure
-from motionedit.core.timeline.interpolation import low_pass, natural_spline
+from motionedit.core.timeline.interpolation import spline_weights
 from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
@@ -74,14 +74,14 @@ def goal_of(
     scale = model.space.scale
     ends = _ends(request)
     chains = [_chain(projection, model, rows[request.frame], request.frame, joint) for joint, _ in ends]
-    place = projection.places[request.frame : request.frame + 1]
-    components = np.moveaxis(model.component_rows, 0, -1)
-    sigma = smoothing * model.timeline.frame_rate
+    place, sigma = float(projection.places[request.frame]), smoothing * model.timeline.frame_rate
+    first, weights = spline_weights(model.timeline.frames, place, sigma=sigma)
+    components = (weights @ model.component_rows[:, first : first + len(weights)]).T
     full = []
     for (_, offset), (chain, columns) in zip(ends, chains, strict=True):
         known = np.flatnonzero(columns >= 0)
         wanted = np.concatenate([np.arange(3), *(3 + 3 * columns[k] + np.arange(3) for k in known)])
-        slices = natural_spline(low_pass(components[:, wanted], sigma=sigma), place)[0]
+        slices = components[wanted]
         if prior is not None:
             slices = prior.rows_of(slices, wanted, request.frame)
         rotation_rows = np.zeros((len(columns), 3, slices.shape[1]))

@@ -142,13 +142,13 @@ def _root(prior: ChangePrior, projection: Projection, model: MotionModel, feet: 
         near = _kernel(foot.frames, prior.frames, projection.motion.frame_time)
         fade = np.linalg.solve(prior.kernel_root, near.T).T
         places = np.floor(projection.places[foot.frames] + 0.5).astype(np.intp)
-        components = np.moveaxis(model.component_rows[:, places][:, :, foot.columns], 0, -1)
+        # What is picked at once is the foot's alone: all columns of many motions take longer than the rest.
+        components = np.moveaxis(model.component_rows[:, places[:, None], foot.columns], 0, -1)
         at, place = np.nonzero(foot.columns[:, None] == prior.columns)
-        own = foot.rows[:, :, at] @ prior.factor[place]
-        faded = fade[:, None, :, None] * own[:, :, None]
-        A = np.concatenate(
-            ((foot.rows @ components) * prior.deviations, faded.reshape(*own.shape[:2], -1)), axis=2
-        ).reshape(-1, prior.size)
+        own = foot.rows[:, :, at].reshape(-1, len(at)) @ prior.factor[place]
+        faded = np.repeat(fade, 3, axis=0)[:, :, None] * own[:, None]
+        along = (foot.rows @ components).reshape(len(own), -1) * prior.deviations
+        A = np.concatenate((along, faded.reshape(len(own), -1)), axis=1)
         precision += (foot.seconds / (2.0 * FADE * foot.deviation**2)) * (A.T @ A)
     # z^T P z = |L^T z|^2 with P = L L^T, so y = L^T z.
     return np.linalg.inv(np.linalg.cholesky(precision)).T

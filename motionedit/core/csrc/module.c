@@ -72,7 +72,7 @@ static PyMethodDef methods[] = {
 static int add_all(PyObject *module)
 {
     PyMethodDef *const added[] = {array_methods, body_methods, change_methods, feet_methods, motion_methods,
-        phase_methods, sample_methods, solver_methods, text_methods};
+        phase_methods, sample_methods, solver_methods, spline_methods, text_methods};
     for (size_t i = 0; i < sizeof added / sizeof *added; i++)
         if (PyModule_AddFunctions(module, added[i]) < 0)
             return -1;

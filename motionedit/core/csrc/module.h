@@ -8,7 +8,7 @@
 #include <Python.h>
 
 extern PyMethodDef array_methods[], body_methods[], change_methods[], feet_methods[], motion_methods[], phase_methods[],
-    sample_methods[], solver_methods[], text_methods[];
+    sample_methods[], solver_methods[], spline_methods[], text_methods[];
 
 /* Add the solver's tables to the module; 0, or -1 where memory ran out. */
 int add_solver_tables(PyObject *module);

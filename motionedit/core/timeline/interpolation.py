@@ -89,12 +89,37 @@ def natural_spline(rows: FloatArray, at: FloatArray) -> FloatArray:
     return spline
 
 
+# Frames, and more than enough: a row so far away weighs (2 - sqrt 3)^30 = 7e-18 of one beside a place.
+_REACH = 30
+
+
+def spline_weights(frames: int, at: float, *, sigma: float) -> tuple[int, FloatArray]:
+    """Return the weights of rows in the natural spline through them, low-passed, at one place, and the first's frame.
+
+    ``weights @ rows[first : first + len(weights)]`` is ``natural_spline(low_pass(rows, sigma=sigma), [at])[0]``, to
+    rounding, for rows of so many frames: what is farther away weighs nothing.
+    """
+    middle, reach = int(min(max(at, 0.0), frames - 1)), _REACH + len(gaussian(sigma, frames))
+    first, stop = max(middle - reach, 0), min(middle + reach + 2, frames)
+    return first, natural_spline(_low_passed_ones(stop - first, sigma), np.array([at - first]))[0]
+
+
+@lru_cache(maxsize=16)
+def _low_passed_ones(frames: int, sigma: float) -> FloatArray:
+    """Return what becomes of a one in each row: each row's weights of all, shape (frames, frames)."""
+    return frozen(low_pass(np.eye(frames), sigma=sigma))
+
+
 def _second_derivatives(rows: FloatArray) -> FloatArray:
     """Solve M[i-1] + 4 M[i] + M[i+1] = 6 (second difference), M = 0 at both ends, by elimination."""
     M = np.zeros(rows.shape)
     if len(rows) > 2:
         inner = M[1:-1].reshape(len(rows) - 2, -1)
         inner[:] = (6.0 * (rows[2:] - 2.0 * rows[1:-1] + rows[:-2])).reshape(inner.shape)
+        kernel = compiled()
+        if kernel is not None:
+            kernel.second_derivatives(inner, *inner.shape)
+            return M
         pivots = [4.0]
         for i in range(1, len(inner)):
             inner[i] -= inner[i - 1] / pivots[-1]

@@ -5,7 +5,8 @@ import pytest
 from scipy.interpolate import CubicSpline, PchipInterpolator
 from scipy.ndimage import gaussian_filter1d
 
-from motionedit.core.timeline.interpolation import low_pass, monotone_cubic, natural_spline
+from motionedit.core.compiled import compiled
+from motionedit.core.timeline.interpolation import low_pass, monotone_cubic, natural_spline, spline_weights
 
 
 @pytest.mark.parametrize("count", [2, 3, 7])
@@ -47,6 +48,36 @@ def test_the_natural_spline_is_scipys(frames):
 def test_the_natural_spline_passes_through_its_rows():
     rows = np.random.default_rng(3).normal(size=(20, 3))
     np.testing.assert_allclose(natural_spline(rows, np.arange(20.0)), rows, atol=1e-14)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("shape", [(3,), (4, 2), (50, 3, 2)])
+def test_the_compiled_spline_is_that_of_numpy_to_the_bit(shape, monkeypatch):
+    rng = np.random.default_rng(5)
+    rows, at = rng.normal(size=shape), rng.uniform(-1.0, shape[0], 20)
+    found = natural_spline(rows, at)
+    monkeypatch.setenv("MOTIONEDIT_SOLVER", "numpy")
+    np.testing.assert_array_equal(found, natural_spline(rows, at))
+
+
+@pytest.mark.compiled
+def test_rows_that_do_not_fit_are_an_error_and_no_crash():
+    with pytest.raises(ValueError, match="rows"):
+        compiled().second_derivatives(np.zeros(5), 2, 3)
+    with pytest.raises(ValueError, match="no such rows"):
+        compiled().second_derivatives(np.zeros(6), -2, -3)
+
+
+@pytest.mark.parametrize("sigma", [0.0, 4.0])
+@pytest.mark.parametrize(
+    ("frames", "at"), [(1, 0.0), (2, 0.3), (40, 39.0), (300, 0.4), (300, 150.6), (300, 298.9), (300, 400.0)]
+)
+def test_the_weights_at_a_place_make_what_the_smoothed_spline_has_there(frames, at, sigma):
+    rows = np.random.default_rng(frames).normal(size=(frames, 3))
+    first, weights = spline_weights(frames, at, sigma=sigma)
+    expected = natural_spline(low_pass(rows, sigma=sigma), np.array([at]))[0]
+    np.testing.assert_allclose(weights @ rows[first : first + len(weights)], expected, atol=1e-13)
+    assert len(weights) < 100
 
 
 def test_the_low_pass_is_scipys_gaussian_inside_and_leaves_a_line_alone():
