@@ -20,8 +20,8 @@ from motionedit.dataclass import dataclass, replace
 if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.kinematics import WorldPoses
-    from motionedit.core.priorities.kinds.constraint import Targets
     from motionedit.core.priorities.ramps import Ends
+    from motionedit.core.priorities.task_targets import Targets
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,8 +15,9 @@ from motionedit.core.feet.stance import Stance, feet_of, foot_path, runs, stance
 from motionedit.core.feet.stands import body_shift, on_height, within_reach
 from motionedit.core.kinematics import forward
 from motionedit.core.motion import scaled
-from motionedit.core.priorities.kinds.constraint import Scene, Targets
+from motionedit.core.priorities.kinds.constraint import Scene
 from motionedit.core.priorities.sight import sight_of
+from motionedit.core.priorities.task_targets import Targets
 from motionedit.dataclass import replace
 from motionedit.jobs.clip.facts import Poses
 from motionedit.jobs.edit_prioritized.body import body_again
