@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
 from motionedit.core.body.bends import find_bends
 from motionedit.core.feet.goals import FootGoal, Ground, foot_goal, ground_under
@@ -15,7 +14,7 @@ from motionedit.core.feet.legs import LegGoal, legs_onto, turns_freely
 from motionedit.core.feet.pelvis import drop_needed, smooth_cover
 from motionedit.core.feet.reach import CALMS_ANOTHER, CALMS_OWN, LOWERED, handed_on, reach_calm, reach_of, released
 from motionedit.core.feet.stance import feet_of, foot_path, stance_of
-from motionedit.core.kinematics import WorldPoses, forward
+from motionedit.core.kinematics import WorldPoses, forward, shifted
 from motionedit.core.motion import Motion
 from motionedit.dataclass import dataclass
 
@@ -157,17 +156,8 @@ def onto_stances(
         if turns_freely(motion.skeleton, goal.foot.leg) and goal.foot.side in knees
     ]
     stood = legs_onto(motion, poses, wanted, shift=shift)
-    done = shifted(stood, shift, poses, travel) if lowered.any() else stood
+    done = shifted(stood, shift, travel, poses=poses) if lowered.any() else stood
     rotations = done.rotations.copy()
     rotations[:first] = motion.rotations[:first]
     found = Motion(done.skeleton, frozen(rotations), done.translations, done.frame_time)
     return Kept(found, goals, lowered)
-
-
-def shifted(motion: Motion, shift: FloatArray, poses: WorldPoses, travel: int) -> Motion:
-    """Return a motion whose travel is shifted in the world, shape (F, 3)."""
-    parent = int(motion.skeleton.parents[travel])
-    local = shift if parent < 0 else rot.unrotate(poses.rotations[:, parent], shift)
-    translations = motion.translations.copy()
-    translations[:, int(np.searchsorted(motion.skeleton.translated, travel))] += local
-    return Motion(motion.skeleton, motion.rotations, frozen(translations), motion.frame_time)

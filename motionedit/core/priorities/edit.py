@@ -212,8 +212,7 @@ def edit_by_priorities(
 
 def changes(before: Motion, after: Motion, travel: int) -> tuple[BoolArray, BoolArray]:
     """Return which joints turn otherwise, shape (F, J), and where the travel goes otherwise, shape (F,)."""
-    place = np.searchsorted(before.skeleton.translated, travel)
-    shifts = (after.translations - before.translations)[:, place : place + 1]
+    shifts = (after.translations - before.translations)[:, before.skeleton.translated == travel]
     moved: BoolArray = np.abs(shifts).max(axis=(1, 2), initial=0.0) > NO_DISPLACEMENT
     return _turned(before.rotations, after.rotations), moved
 

@@ -52,7 +52,7 @@ class Run:
 
 def run_of(asked: Asked) -> Run:
     """Return an edit ready to be solved."""
-    groups, place = groups_of(asked), np.searchsorted(asked.motion.skeleton.translated, asked.body.travel)
+    groups, place = groups_of(asked), asked.motion.skeleton.translation_places[asked.body.travel]
     idle = np.ones(len(asked.motion), dtype=np.bool_)
     for group in groups:
         idle[group.where] = False

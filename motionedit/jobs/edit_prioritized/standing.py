@@ -8,12 +8,12 @@ import numpy as np
 
 from motionedit.core.body.contacts import Plant
 from motionedit.core.feet.goals import ground_under
-from motionedit.core.feet.keep import onto_stances, shifted, within_legs
+from motionedit.core.feet.keep import onto_stances, within_legs
 from motionedit.core.feet.path import NewPath, carried, new_path, turned
 from motionedit.core.feet.reach import CALMS_ANOTHER, CALMS_OWN, LOWERED, LOWERED_ON_PATH, reach_of
 from motionedit.core.feet.stance import Stance, feet_of, foot_path, runs, stance_of
 from motionedit.core.feet.stands import body_shift, on_height, within_reach
-from motionedit.core.kinematics import forward
+from motionedit.core.kinematics import forward, shifted
 from motionedit.core.motion import scaled
 from motionedit.core.priorities.kinds.constraint import Scene
 from motionedit.core.priorities.sight import sight_of
@@ -71,7 +71,7 @@ def on_feet(
     total = lift if path is None else path.shift + lift
     motion, poses = facts.clip.motion, facts.poses
     if np.any(total):
-        motion = shifted(motion, total, poses, facts.travel)
+        motion = shifted(motion, total, facts.travel, poses=poses)
         motion = motion if path is None else turned(motion, path, poses, facts.travel)
         poses = forward(motion)
     lowered = LOWERED if path is None else LOWERED_ON_PATH

@@ -12,12 +12,12 @@ from motionedit.core.body.bends import find_bends
 from motionedit.core.body.contacts import Plant, sole_tracks
 from motionedit.core.body.quality import jerk_rms
 from motionedit.core.feet.goals import ground_under
-from motionedit.core.feet.keep import keep_feet, onto_stances, shifted
+from motionedit.core.feet.keep import keep_feet, onto_stances
 from motionedit.core.feet.knees import eased_ways, knee_of
 from motionedit.core.feet.legs import LegGoal, legs_onto
 from motionedit.core.feet.pelvis import drop_needed, smooth_cover
 from motionedit.core.feet.stance import feet_of, foot_path, stance_of
-from motionedit.core.kinematics import forward
+from motionedit.core.kinematics import forward, shifted
 from motionedit.jobs.clip.facts import facts_of
 
 DATA = Path(__file__).parents[4] / "data"
@@ -45,7 +45,7 @@ def raised(name, share):
     """Return the clip of a name with its body raised by a share of a leg."""
     clip = facts(name)
     way = np.tile(share * clip.anatomy.leg_length * clip.up, (len(clip.clip.motion), 1))
-    return shifted(clip.clip.motion, way, clip.poses, clip.travel)
+    return shifted(clip.clip.motion, way, clip.travel, poses=clip.poses)
 
 
 def kept_raised(name, share):
