@@ -1,12 +1,6 @@
 /* A layer's rows of M, B and its step from G = J J^T: what _damped_step of layers.py gets from eigenvectors. Part of
    solver.c. */
 
-/* A pivot below this share of the trace is rounding: what is left of a row on a rigid part that has enough rows. */
-#define ROUNDING 1e-13
-/* Squared, of the off-diagonal part to the whole: Jacobi's rotations have come to their end. */
-#define DIAGONAL 1e-28
-#define SWEEPS 30
-
 /* What factoring a layer of k rows takes at most: a damped step, W and N, y and t. */
 static size_t factor_scratch(int k)
 {
@@ -18,29 +12,6 @@ static V damping(V s, V d)
 {
     const V near = root_of(larger(s * (d - s), all(0.0)));
     return choose(less(0.5 * d, s), only(~less(d, s), near), 0.5 * d);
-}
-
-/* A = L L^T in the lower triangle, in place; A is k x k, positive definite. The diagonal comes out inverted. */
-static void cholesky(V *A, int k)
-{
-    for (int j = 0; j < k; j++) {
-        const V pivot = A[j * k + j] - dot_in_order(A + j * k, A + j * k, j);
-        A[j * k + j] = 1.0 / root_of(larger(pivot, all(DBL_MIN)));
-        for (int i = j + 1; i < k; i++)
-            A[i * k + j] = (A[i * k + j] - dot_in_order(A + i * k, A + j * k, j)) * A[j * k + j];
-    }
-}
-
-/* x <- (L L^T)^-1 x */
-static void cholesky_solve(const V *L, int k, V *x)
-{
-    for (int i = 0; i < k; i++)
-        x[i] = (x[i] - dot_in_order(L + i * k, x, i)) * L[i * k + i];
-    for (int i = k - 1; i >= 0; i--) {
-        x[i] *= L[i * k + i];
-        for (int p = 0; p < i; p++)
-            x[p] -= L[i * k + p] * x[i];
-    }
 }
 
 /* The trace of a layer's S = A~ A~^T. */
@@ -93,43 +64,6 @@ static V eliminate(Batch *batch, Layer *layer, V trace, Mask *dependent)
         inverse += dot_product(own, own, i + 1);
     }
     return inverse;
-}
-
-/* Eigenvalues on the diagonal of S and eigenvectors in the columns of U, by cyclic Jacobi rotations. */
-static void jacobi(double *S, int k, double *U)
-{
-    memset(U, 0, sizeof(double) * k * k);
-    for (int i = 0; i < k; i++)
-        U[i * k + i] = 1.0;
-    for (int sweep = 0; sweep < SWEEPS; sweep++) {
-        double off = 0.0, whole = 0.0;
-        for (int i = 0; i < k; i++)
-            for (int j = 0; j < k; j++)
-                whole += S[i * k + j] * S[i * k + j], off += i == j ? 0.0 : S[i * k + j] * S[i * k + j];
-        if (off <= DIAGONAL * whole)
-            return;
-        for (int p = 0; p < k; p++)
-            for (int q = p + 1; q < k; q++) {
-                const double apq = S[p * k + q];
-                if (apq == 0.0)
-                    continue;
-                const double theta = (S[q * k + q] - S[p * k + p]) / (2.0 * apq);
-                const double t = copysign(1.0, theta) / (fabs(theta) + sqrt(theta * theta + 1.0));
-                const double c = 1.0 / sqrt(t * t + 1.0), s = t * c;
-                for (int i = 0; i < k; i++) {
-                    const double a = S[i * k + p], b = S[i * k + q];
-                    S[i * k + p] = c * a - s * b, S[i * k + q] = s * a + c * b;
-                }
-                for (int i = 0; i < k; i++) {
-                    const double a = S[p * k + i], b = S[q * k + i];
-                    S[p * k + i] = c * a - s * b, S[q * k + i] = s * a + c * b;
-                }
-                for (int i = 0; i < k; i++) {
-                    const double a = U[i * k + p], b = U[i * k + q];
-                    U[i * k + p] = c * a - s * b, U[i * k + q] = s * a + c * b;
-                }
-            }
-    }
 }
 
 /* Where the rank is in doubt: the singular triples one by one, as the reference has them. For one lane: a column of M is

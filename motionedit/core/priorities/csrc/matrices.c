@@ -1,0 +1,110 @@
+/* Small matrices, k x k, one a lane: Cholesky's factors, Jacobi's eigenvectors, products. Part of solver.c. */
+
+/* A pivot below this share of the trace is rounding: what is left of a row on a rigid part that has enough rows. */
+#define ROUNDING 1e-13
+/* Squared, of the off-diagonal part to the whole: Jacobi's rotations have come to their end. */
+#define DIAGONAL 1e-28
+#define SWEEPS 30
+
+/* A = L L^T in the lower triangle, in place; A is k x k, positive definite. The diagonal comes out inverted. */
+static void cholesky(V *A, int k)
+{
+    for (int j = 0; j < k; j++) {
+        const V pivot = A[j * k + j] - dot_in_order(A + j * k, A + j * k, j);
+        A[j * k + j] = 1.0 / root_of(larger(pivot, all(DBL_MIN)));
+        for (int i = j + 1; i < k; i++)
+            A[i * k + j] = (A[i * k + j] - dot_in_order(A + i * k, A + j * k, j)) * A[j * k + j];
+    }
+}
+
+/* x <- (L L^T)^-1 x */
+static void cholesky_solve(const V *L, int k, V *x)
+{
+    for (int i = 0; i < k; i++)
+        x[i] = (x[i] - dot_in_order(L + i * k, x, i)) * L[i * k + i];
+    for (int i = k - 1; i >= 0; i--) {
+        x[i] *= L[i * k + i];
+        for (int p = 0; p < i; p++)
+            x[p] -= L[i * k + p] * x[i];
+    }
+}
+
+/* As cholesky, of what is positive semidefinite: a pivot that is rounding comes out as 0. Returns how many are none. */
+static V cholesky_of_rank(V *A, int k)
+{
+    V trace = all(0.0), rank = trace;
+    for (int j = 0; j < k; j++)
+        trace += A[j * k + j];
+    for (int j = 0; j < k; j++) {
+        const V pivot = A[j * k + j] - dot_in_order(A + j * k, A + j * k, j);
+        const Mask kept = less(ROUNDING * trace, pivot);
+        A[j * k + j] = only(kept, 1.0 / root_of(choose(kept, pivot, all(1.0))));
+        rank += only(kept, all(1.0));
+        for (int i = j + 1; i < k; i++)
+            A[i * k + j] = (A[i * k + j] - dot_in_order(A + i * k, A + j * k, j)) * A[j * k + j];
+    }
+    return rank;
+}
+
+/* Eigenvalues on the diagonal of S and eigenvectors in the columns of U, by cyclic Jacobi rotations. */
+static void jacobi(double *S, int k, double *U)
+{
+    memset(U, 0, sizeof(double) * k * k);
+    for (int i = 0; i < k; i++)
+        U[i * k + i] = 1.0;
+    for (int sweep = 0; sweep < SWEEPS; sweep++) {
+        double off = 0.0, whole = 0.0;
+        for (int i = 0; i < k; i++)
+            for (int j = 0; j < k; j++)
+                whole += S[i * k + j] * S[i * k + j], off += i == j ? 0.0 : S[i * k + j] * S[i * k + j];
+        if (off <= DIAGONAL * whole)
+            return;
+        for (int p = 0; p < k; p++)
+            for (int q = p + 1; q < k; q++) {
+                const double apq = S[p * k + q];
+                if (apq == 0.0)
+                    continue;
+                const double theta = (S[q * k + q] - S[p * k + p]) / (2.0 * apq);
+                const double t = copysign(1.0, theta) / (fabs(theta) + sqrt(theta * theta + 1.0));
+                const double c = 1.0 / sqrt(t * t + 1.0), s = t * c;
+                for (int i = 0; i < k; i++) {
+                    const double a = S[i * k + p], b = S[i * k + q];
+                    S[i * k + p] = c * a - s * b, S[i * k + q] = s * a + c * b;
+                }
+                for (int i = 0; i < k; i++) {
+                    const double a = S[p * k + i], b = S[q * k + i];
+                    S[p * k + i] = c * a - s * b, S[q * k + i] = s * a + c * b;
+                }
+                for (int i = 0; i < k; i++) {
+                    const double a = U[i * k + p], b = U[i * k + q];
+                    U[i * k + p] = c * a - s * b, U[i * k + q] = s * a + c * b;
+                }
+            }
+    }
+}
+
+static int is_nothing(const V *row, int k)
+{
+    return !any(~is_zero(dot_product(row, row, k)));
+}
+
+/* tr(A B^T), k x k */
+static V trace_of(const V *A, const V *B, int k)
+{
+    return dot_product(A, B, k * k);
+}
+
+/* out = A v, and out = A^T v; k x k */
+static void matrix_times(const V *A, const V *v, int k, V *out)
+{
+    for (int i = 0; i < k; i++)
+        out[i] = dot_product(A + i * k, v, k);
+}
+
+static void transposed_times(const V *A, const V *v, int k, V *out)
+{
+    for (int i = 0; i < k; i++)
+        out[i] = all(0.0);
+    for (int i = 0; i < k; i++)
+        add_multiple(out, v[i], A + i * k, k);
+}
