@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.arrays import runs
 from motionedit.core.body.contacts import Plant
 from motionedit.core.feet.goals import ground_under
 from motionedit.core.feet.keep import onto_stances, within_legs
 from motionedit.core.feet.path import NewPath, carried, new_path, turned
 from motionedit.core.feet.reach import CALMS_ANOTHER, CALMS_OWN, LOWERED, LOWERED_ON_PATH, reach_of
-from motionedit.core.feet.stance import Stance, feet_of, foot_path, runs, stance_of
+from motionedit.core.feet.stance import Stance, feet_of, foot_path, stance_of
 from motionedit.core.feet.stands import body_shift, on_height, within_reach
 from motionedit.core.kinematics import WorldPoses, forward, shifted
 from motionedit.core.motion import Motion, scaled

@@ -6,7 +6,6 @@ from human import skeleton_of, standing, with_rotation
 
 from motionedit.core import rotations as rot
 from motionedit.core import trace
-from motionedit.core.arrays import median, percentile
 from motionedit.core.body import center_of_mass as center_of_mass_module
 from motionedit.core.body.center_of_mass import center_of_mass, find_masses
 from motionedit.core.body.find_anatomy import find_anatomy
@@ -47,19 +46,6 @@ def test_a_trace_by_blocks_is_that_of_the_whole_motion(moving, monkeypatch, size
 
 def test_without_masses_there_is_no_path_of_their_center(moving):
     assert trace_of(blocks_of(forward(moving)), tracks_of, frame_time=0.01, first=0).center is None
-
-
-@pytest.mark.parametrize("shape", [(1,), (2,), (7, 3), (8, 3)])
-def test_the_median_is_numpys(shape):
-    values = np.random.default_rng(1).normal(size=shape)
-    np.testing.assert_array_equal(median(values), np.median(values, axis=0))
-
-
-@pytest.mark.parametrize("rows", [2, 3, 50, 51, 145])
-@pytest.mark.parametrize("share", [2.0, 95.0])
-def test_the_percentile_is_numpys(rows, share):
-    values = np.random.default_rng(rows).normal(size=(rows, 4))
-    np.testing.assert_allclose(percentile(values, share), np.percentile(values, share, axis=0), rtol=1e-13)
 
 
 def test_the_center_of_mass_does_not_depend_on_the_frames_that_are_taken_together(moving, monkeypatch):
