@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.body.bent_back import bent_back
 from motionedit.core.body.quality import STILL
-from motionedit.core.body.ranges import bent_back, beyond_range, regions_of
+from motionedit.core.body.ranges import beyond_range, regions_of
 from motionedit.core.units import STANDARD_LEG
 
 if TYPE_CHECKING:

@@ -8,12 +8,13 @@ from human import skeleton_of, standing
 
 from motionedit.core import rotations as rot
 from motionedit.core.body.bends import find_bends
+from motionedit.core.body.bent_back import bent_back
 from motionedit.core.body.center_of_mass import center_of_mass, find_masses
 from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.body.in_one_loop import read_off
 from motionedit.core.body.limits import human_limits
 from motionedit.core.body.quality import squared_jerks
-from motionedit.core.body.ranges import bent_back, beyond_range, regions_of
+from motionedit.core.body.ranges import beyond_range, regions_of
 from motionedit.core.body.steps import change_steps, own_steps
 from motionedit.core.body.up import _ways_up
 from motionedit.core.compiled import compiled, solver_name
