@@ -27,9 +27,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from motionedit.core.arrays import BoolArray
-    from motionedit.core.feet.asked import AsksToStand
     from motionedit.core.feet.goals import FootGoal
     from motionedit.core.feet.stance import Foot
+    from motionedit.core.priorities.asks_to_stand import AsksToStand
     from motionedit.core.priorities.kinds.constraint import Constraint
     from motionedit.core.priorities.trajectories import Curve
     from motionedit.jobs.clip.facts import ClipFacts
