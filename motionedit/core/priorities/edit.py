@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from motionedit.core import rotations as rot
+from motionedit.core.blocks import frame_blocks
 from motionedit.core.body.bones import below
 from motionedit.core.compiled import compiled
 from motionedit.core.priorities.continuity import NO_DISPLACEMENT
@@ -19,7 +20,6 @@ from motionedit.core.priorities.recruiting import Breach, Reach, Recruits, breac
 from motionedit.core.priorities.settings import Passes
 from motionedit.core.priorities.switching import eased_from_others
 from motionedit.core.priorities.targets import NOBODY, Follows, errors_of, with_targets
-from motionedit.core.trace import frame_blocks
 from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:

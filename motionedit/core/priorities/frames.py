@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.blocks import frame_blocks
 from motionedit.core.compiled import compiled
 from motionedit.core.motion import Motion
 from motionedit.core.priorities.far_floors import lifted
@@ -14,7 +15,6 @@ from motionedit.core.priorities.far_turns import parts_of
 from motionedit.core.priorities.groups import Asked, Group, groups_of, part_of, retargeted, spans_of
 from motionedit.core.priorities.problem import LayeredSolution, Reference
 from motionedit.core.priorities.solver import solve_layers
-from motionedit.core.trace import frame_blocks
 from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:

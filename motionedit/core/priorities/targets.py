@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.again import once
+from motionedit.core.blocks import frame_blocks
 from motionedit.core.priorities.far_turns import arcs_of
 from motionedit.core.priorities.frames import run_of, solve_from_input
 from motionedit.core.priorities.groups import Asked, seen_by
 from motionedit.core.priorities.kinds.constraint import ConstraintErrors, Scene
 from motionedit.core.priorities.task_targets import Targets, between
-from motionedit.core.trace import frame_blocks
 from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from motionedit.core.body.bends import Bend
     from motionedit.core.body.ranges import Beyond
     from motionedit.core.body.steps import Steps
+    from motionedit.core.body.trace import Trace
     from motionedit.core.motion import Motion
-    from motionedit.core.trace import Trace
     from motionedit.jobs.clip.facts import ClipFacts
 
 # Degrees in a sixtieth of a second by which a joint's change steps where a viewer sees it.
