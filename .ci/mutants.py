@@ -43,7 +43,8 @@ ROOMS = [
 C_ROOMS = [
     "tests/properties/test_compiled_text.py", "tests/unit/core/priorities/test_compiled.py",
     "tests/unit/core/priorities/test_compiled_one_sided.py", "tests/unit/core/priorities/test_compiled_postures.py",
-    "tests/unit/core/priorities/test_compiled_buffers.py", "tests/unit/core/priorities/test_few_channels.py",
+    "tests/unit/core/priorities/test_compiled_smoothing.py", "tests/unit/core/priorities/test_compiled_buffers.py",
+    "tests/unit/core/priorities/test_few_channels.py",
 ]  # fmt: skip
 PATIENCE = 60.0  # seconds; a fault whose tests take longer counts as one that hangs
 

@@ -26,6 +26,7 @@ cones=tests/unit/core/priorities/test_cones.py::test_joints_stay_within_their_co
   --deselect "$cones[numpy]" \
   tests/unit/core/priorities/test_compiled.py tests/unit/core/priorities/test_compiled_buffers.py \
   tests/unit/core/priorities/test_compiled_one_sided.py tests/unit/core/priorities/test_compiled_postures.py \
+  tests/unit/core/priorities/test_compiled_smoothing.py \
   tests/unit/core/priorities/test_cones.py tests/unit/core/priorities/test_few_channels.py \
   tests/unit/core/test_rotations.py tests/unit/core/test_euler.py tests/unit/core/test_kinematics.py \
   tests/unit/core/body/test_contacts.py tests/unit/core/body/test_in_one_loop.py tests/unit/core/body/test_ranges.py \

@@ -1,4 +1,4 @@
-"""Names for the array types that signatures use; shapes stand in the docstrings."""
+"""Names for the array types that signatures use (shapes stand in the docstrings), and what numpy lacks for arrays."""
 
 from __future__ import annotations
 
@@ -18,6 +18,14 @@ def frozen(array: _Array) -> _Array:
     """Return the array itself, made read-only: a data class holds no array that can change under it."""
     array.setflags(write=False)
     return array
+
+
+def runs(there: BoolArray) -> list[tuple[int, int]]:
+    """Return (first, last) of each run of True, shape (F,)."""
+    padded = np.zeros(len(there) + 2, dtype=np.bool_)
+    padded[1:-1] = there
+    edges = np.flatnonzero(padded[1:] != padded[:-1]).tolist()
+    return [(start, stop - 1) for start, stop in zip(edges[::2], edges[1::2], strict=True)]
 
 
 def median(values: FloatArray) -> FloatArray:

@@ -237,13 +237,6 @@ def piece_angles(motion: Motion, joint: int, *, piece: Piece) -> FloatArray:
     return angles
 
 
-def runs(mask: BoolArray) -> list[tuple[int, int]]:
-    """Return the (start, stop) of each run of True, stop exclusive."""
-    padded = np.concatenate(([False], mask, [False]))
-    edges = np.flatnonzero(padded[1:] != padded[:-1])
-    return [(int(a), int(b)) for a, b in zip(edges[0::2], edges[1::2], strict=True)]
-
-
 def _runs_of(masks: BoolArray) -> IntArray:
     """Return (row, start, stop) of each run of True in G masks (G, F), stop exclusive, shape (R, 3)."""
     padded = np.zeros((len(masks), masks.shape[1] + 2), dtype=np.bool_)

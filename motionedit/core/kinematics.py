@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
+from motionedit.core.arrays import frozen
 from motionedit.core.compiled import compiled
+from motionedit.core.motion import Motion
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
-    from motionedit.core.motion import Motion
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,10 +77,8 @@ def _forward_block(motion: Motion, block: slice, positions: FloatArray, rotation
     terms = q[_TERMS] * _SIGNS[:, :, None, None]
     p = np.empty((3, *q.shape[1:]))
     p[:] = skeleton.offsets[walk.joints].T[:, :, None]
-    moved = np.flatnonzero(np.isin(walk.joints, skeleton.translated))
-    p[:, moved] = motion.translations[block, np.searchsorted(skeleton.translated, walk.joints[moved])].transpose(
-        2, 1, 0
-    )
+    moved = np.flatnonzero(skeleton.translation_places[walk.joints] >= 0)
+    p[:, moved] = motion.translations[block, skeleton.translation_places[walk.joints[moved]]].transpose(2, 1, 0)
     for start, stop in walk.levels:
         parents = q[:, walk.parents[start:stop]]
         np.einsum("akf,ackf->ckf", parents, terms[:, :, start:stop], out=q[:, start:stop])
@@ -102,16 +101,28 @@ def _turned(q: FloatArray, v: FloatArray) -> FloatArray:
 def forward_of(motion: Motion, joint: int) -> tuple[FloatArray, FloatArray]:
     """Return world positions (F, 3) and rotations (F, 4) of one joint, walking its own chain alone."""
     skeleton = motion.skeleton
-    place = {j: p for p, j in enumerate(skeleton.translated.tolist())}
+    places = skeleton.translation_places.tolist()
     positions, rotations = np.zeros((len(motion), 3)), motion.rotations[:, 0]
     for j in skeleton.chain(joint).tolist():
-        local = motion.translations[:, place[j]] if j in place else skeleton.offsets[j]
+        local = motion.translations[:, places[j]] if places[j] >= 0 else skeleton.offsets[j]
         if j == 0:
             positions = positions + local
             continue
         positions = positions + rot.rotate(rotations, local)
         rotations = rot.multiply(rotations, motion.rotations[:, j])
     return positions, rotations
+
+
+def shifted(motion: Motion, shift: FloatArray, travel: int, *, poses: WorldPoses | None = None) -> Motion:
+    """Return a motion whose `travel`, a joint with position channels, is shifted in the world, shape (F, 3).
+
+    Its `poses` may be known.
+    """
+    skeleton, parent = motion.skeleton, int(motion.skeleton.parents[travel])
+    local = shift if parent < 0 else rot.unrotate((poses or forward(motion)).rotations[:, parent], shift)
+    translations = motion.translations.copy()
+    translations[:, skeleton.translation_places[travel]] += local
+    return Motion(skeleton, motion.rotations, frozen(translations), motion.frame_time)
 
 
 def effector_positions(poses: WorldPoses, effector: Effector) -> FloatArray:

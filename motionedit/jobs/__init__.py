@@ -1,1 +1,1 @@
-"""The jobs: one file per command, spec and clips in, files and a report out; no command line."""
+"""The jobs: one folder or file per command, spec and clips in, files and a report out; no command line."""

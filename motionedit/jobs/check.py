@@ -6,10 +6,10 @@ import math
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from motionedit.core.blocks import blocks_of
 from motionedit.core.body import ground
 from motionedit.core.body.quality import find_defects
 from motionedit.core.body.steps import own_steps
-from motionedit.core.trace import blocks_of
 from motionedit.dataclass import dataclass
 from motionedit.errors import EXIT_CLIP_FAILED, EXIT_DONE, EXIT_OUT_OF_TOLERANCE, MotionEditError, UsageError
 from motionedit.jobs.batch.one_clip import read_task

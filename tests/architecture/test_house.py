@@ -38,6 +38,22 @@ def test_the_two_papers_do_not_know_each_other():
             assert not [each for each in GRAPH[name] if each.startswith(stranger)], name
 
 
+def room_of(module):
+    """Return the room of a module of `core` or `jobs`: a folder in there, or that itself."""
+    inside = ".".join(module.split(".")[:3])
+    return inside if any(name.startswith(f"{inside}.") for name in GRAPH) else inside.rpartition(".")[0]
+
+
+@pytest.mark.parametrize("floor", ["motionedit.core", "motionedit.jobs"])
+def test_the_rooms_of_a_floor_do_not_import_each_other_in_a_circle(floor):
+    rooms = {}
+    for name in (name for name in GRAPH if name.startswith(f"{floor}.")):
+        others = {room_of(each) for each in GRAPH[name] if each.startswith(f"{floor}.")}
+        rooms.setdefault(room_of(name), set()).update(others - {room_of(name)})
+    assert len(rooms) > 5
+    assert circles(rooms) == []
+
+
 def test_the_compiled_part_is_reached_from_one_file():
     reach = [place_of(path) for path in FILES if re.search(r"\b_compiled\b", path.read_text(encoding="utf-8"))]
     assert reach == ["core/compiled.py"]

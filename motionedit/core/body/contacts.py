@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.arrays import frozen, median
+from motionedit.core.arrays import frozen, median, runs
 from motionedit.core.body.in_one_loop import carried
 from motionedit.core.compiled import compiled
 from motionedit.core.units import STANDARD_LEG
@@ -204,9 +204,9 @@ def _stands(
     low = _rolling_minimum(np.where(slow, heights, np.inf), width)
     planted = _hysteresis(slow & (heights < low + _LOW), speed < _ENTERS)
     shortest, around = _shortest(frame_time), _top_while(frame_time)
-    slow_runs = _runs(slow)
+    slow_runs = runs(slow)
     begins, ends = [first for first, _ in slow_runs], [last for _, last in slow_runs]
-    for start, stop in _closed(_runs(planted), places, round(_LONGEST_GAP / frame_time)):
+    for start, stop in _closed(runs(planted), places, round(_LONGEST_GAP / frame_time)):
         level = float(heights[start : stop + 1].min())
         began, ended = begins[bisect_left(ends, start)], ends[bisect_right(begins, stop) - 1]
         beside = (heights[max(0, began - around) : began], heights[ended + 1 : ended + 1 + around])
@@ -231,7 +231,7 @@ def _hysteresis(wide: BoolArray, narrow: BoolArray) -> BoolArray:
     """Return the runs of `wide` in which `narrow` is anywhere true."""
     kept = np.zeros_like(wide)
     inside = np.flatnonzero(wide & narrow).tolist()
-    for start, stop in _runs(wide):
+    for start, stop in runs(wide):
         place = bisect_left(inside, start)
         kept[start : stop + 1] = place < len(inside) and inside[place] <= stop
     return kept
@@ -248,18 +248,10 @@ def _rolling_minimum(values: FloatArray, width: int) -> FloatArray:
     return padded[: len(values)]
 
 
-def _runs(there: BoolArray) -> list[tuple[int, int]]:
-    """Return (first, last) of the runs of True, shape (F,)."""
-    padded = np.zeros(len(there) + 2, dtype=np.bool_)
-    padded[1:-1] = there
-    edges = np.flatnonzero(padded[1:] != padded[:-1]).tolist()
-    return [(a, b - 1) for a, b in zip(edges[::2], edges[1::2], strict=True)]
-
-
-def _closed(runs: Sequence[tuple[int, int]], places: FloatArray, gap: int) -> list[tuple[int, int]]:
-    """Return runs, together where fewer than `gap` frames part them and the point stays at its place all along."""
+def _closed(parts: Sequence[tuple[int, int]], places: FloatArray, gap: int) -> list[tuple[int, int]]:
+    """Return runs of frames, together where fewer than `gap` frames part them and the point stays where it is."""
     joined: list[tuple[int, int]] = []
-    for start, stop in runs:
+    for start, stop in parts:
         if joined and start - joined[-1][1] - 1 < gap:
             before = joined[-1]
             way = places[before[1] + 1 : start + 1] - places[before[1]]

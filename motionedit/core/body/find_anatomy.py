@@ -12,8 +12,9 @@ from motionedit.core.body.anatomy import NOTHING_GIVEN, Anatomy, Arm, GivenBody,
 from motionedit.core.body.bones import bones_of, travel_joint
 from motionedit.core.body.head import SAME_PLACE, find_head
 from motionedit.core.body.legs_and_arms import find_legs_and_arms
-from motionedit.core.body.limbs import LimbPair, Tree, Triple
+from motionedit.core.body.limbs import LimbPair, Triple
 from motionedit.core.body.sides import side_of_chains, side_of_toes
+from motionedit.core.body.tree import Tree
 from motionedit.core.body.words import is_end, is_toe
 from motionedit.dataclass import dataclass
 

@@ -8,7 +8,8 @@ from motionedit.core.body.sides import side_of_chains
 from motionedit.core.body.words import is_end, is_head
 
 if TYPE_CHECKING:
-    from motionedit.core.body.limbs import LimbPair, Tree
+    from motionedit.core.body.limbs import LimbPair
+    from motionedit.core.body.tree import Tree
 
 # A joint as near to its parent as this, in heights, is at the same place.
 SAME_PLACE = 1e-3

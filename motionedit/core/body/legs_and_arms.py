@@ -10,7 +10,8 @@ from motionedit.core.body.head import SAME_PLACE
 from motionedit.core.body.limbs import find_limb_pairs
 
 if TYPE_CHECKING:
-    from motionedit.core.body.limbs import LimbPair, Tree
+    from motionedit.core.body.limbs import LimbPair
+    from motionedit.core.body.tree import Tree
 
 
 def find_legs_and_arms(tree: Tree) -> tuple[LimbPair | None, LimbPair | None]:

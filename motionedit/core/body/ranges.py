@@ -1,4 +1,4 @@
-"""How far an edit takes joints beyond the range that they have in its input, and bends knees and elbows back."""
+"""How far an edit takes joints beyond the range that they have in its input."""
 
 from __future__ import annotations
 
@@ -11,22 +11,20 @@ from motionedit.core import rotations as rot
 from motionedit.core.again import LastFew, Same
 from motionedit.core.arrays import frozen
 from motionedit.core.body.bones import below
-from motionedit.core.body.in_one_loop import read_off
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from motionedit.core.arrays import BoolArray, FloatArray, IntArray
+    from motionedit.core.arrays import BoolArray, FloatArray
     from motionedit.core.body.anatomy import Anatomy
-    from motionedit.core.body.bends import Bend
     from motionedit.core.motion import Motion
     from motionedit.core.skeleton import Skeleton
 
 # Degrees beyond its range in the input from which a joint looks wrong: most of them; neck and spine, which are many
 # joints that each take a part; shoulders and hips: an arm that hangs in the input may be raised overhead. Knees and
-# elbows, which fold, are seen where they bend back.
-MOST, TRUNK, BALL, BACK = 45.0, 60.0, 150.0, 5.0
+# elbows, which fold, are seen where they bend back (bent_back.py).
+MOST, TRUNK, BALL = 45.0, 60.0, 150.0
 
 _BLOCK_POSES = 1 << 13
 # Of a cosine: more by far than its rounding.
@@ -56,14 +54,19 @@ class Beyond:
     most: float
 
 
+Limb = tuple[int, int, int]  # its top, the joint that bends, its end
+
+
 @lru_cache(maxsize=8)
 def regions_of(skeleton: Skeleton, anatomy: Anatomy, *, travel: int) -> tuple[Region, ...]:
     """Return what has a range: every joint against its parent, and neck, spine, limbs against what carries them.
 
     The joint that carries the `travel` has none, nor have those above it and beside it; knees and elbows neither.
     """
-    carried, bending = below(skeleton, travel), {limb[1] for limb in _limbs(anatomy)}
-    seen = dict.fromkeys(_trunk(skeleton, anatomy), TRUNK) | dict.fromkeys((limb[0] for limb in _limbs(anatomy)), BALL)
+    carried, bending = below(skeleton, travel), {limb[1] for limb in limbs_of(anatomy)}
+    seen = dict.fromkeys(_trunk(skeleton, anatomy), TRUNK) | dict.fromkeys(
+        (limb[0] for limb in limbs_of(anatomy)), BALL
+    )
     found = {
         (j, skeleton.parents[j]): seen.get(j, MOST)
         for j in range(len(skeleton))
@@ -105,6 +108,13 @@ def beyond_range(
     return found
 
 
+@lru_cache(maxsize=8)
+def limbs_of(anatomy: Anatomy) -> tuple[Limb, ...]:
+    """Return the legs and arms of a body."""
+    legs = [(leg.thigh, leg.knee, leg.ankle) for leg in anatomy.legs or ()]
+    return (*legs, *((arm.shoulder, arm.elbow, arm.wrist) for arm in anatomy.arms or ()))
+
+
 def _largest_changes(before: Motion, after: Motion, first: int, touched: BoolArray) -> FloatArray:
     """Return by how many degrees each joint is turned at most, shape (J,), rounded up; 0 where it is not touched."""
     cosines = np.ones(len(touched))
@@ -114,69 +124,6 @@ def _largest_changes(before: Motion, after: Motion, first: int, touched: BoolArr
         np.minimum(cosines, rot.half_cosines(before.rotations[block], after.rotations[block]).min(axis=0), out=cosines)
     largest: FloatArray = np.degrees(2.0 * np.arccos(cosines * (1.0 - _ROUNDING))) * touched
     return largest
-
-
-def bent_back(
-    before: Motion, after: Motion, anatomy: Anatomy, bends: Sequence[Bend], *, first: int, touched: BoolArray
-) -> list[Beyond]:
-    """Return the knees and elbows that an edit bends back further than the input does, by more than `BACK`."""
-    axes = {bend.joint: bend.axis for bend in bends}
-    asked = [limb for limb in _limbs(anatomy) if limb[1] in axes and touched[_turning(before.skeleton, limb)].any()]
-    found = []
-    for limb in _back_at_all(after, tuple(asked), axes, first):
-        joint = limb[1]
-        taken = _bend(*_bones(after, limb), axes[joint])[first:]
-        worst = int(np.argmin(taken))
-        if taken[worst] >= -BACK:
-            continue
-        own = _bend(*_bones(before, limb), axes[joint])[first:]
-        degrees = min(0.0, float(own.min())) - float(taken[worst])
-        if degrees > BACK:
-            found.append(Beyond(joint, None, first + worst, degrees, BACK))
-    return found
-
-
-_Limb = tuple[int, int, int]  # its top, the joint that bends, its end
-
-
-@lru_cache(maxsize=8)
-def _limbs(anatomy: Anatomy) -> tuple[_Limb, ...]:
-    legs = [(leg.thigh, leg.knee, leg.ankle) for leg in anatomy.legs or ()]
-    return (*legs, *((arm.shoulder, arm.elbow, arm.wrist) for arm in anatomy.arms or ()))
-
-
-@lru_cache(maxsize=32)
-def _turning(skeleton: Skeleton, limb: _Limb) -> IntArray:
-    """Return the joints that turn a limb, shape (n,)."""
-    top, _, end = limb
-    return frozen(np.array([top, *_joints_between(skeleton, top, end)], dtype=np.intp))
-
-
-def _back_at_all(motion: Motion, limbs: tuple[_Limb, ...], axes: dict[int, FloatArray], first: int) -> list[_Limb]:
-    """Return the limbs that bend back at any frame from `first` on."""
-    joints, bones = _fixed_bones(motion.skeleton, limbs)
-    given = (bones[0], bones[1], np.array([axes[joint] for joint in joints.tolist()]).reshape(-1, 3))
-    found = read_off("bent_back", None, motion.rotations, joints, *given, shape=joints.shape, first=first)
-    # What the compiled part does not know is looked at by itself.
-    back = {} if found is None else dict(zip(joints.tolist(), found.tolist(), strict=True))
-    return [limb for limb in limbs if back.get(limb[1], 1.0) and not _never_back(motion, limb, axes[limb[1]], first)]
-
-
-def _never_back(motion: Motion, limb: _Limb, axis: FloatArray, first: int) -> bool:
-    return bool((rot.cross(*_bones(motion, limb))[first:] @ axis >= 0.0).all())
-
-
-@lru_cache(maxsize=8)
-def _fixed_bones(skeleton: Skeleton, limbs: tuple[_Limb, ...]) -> tuple[IntArray, FloatArray]:
-    """Return the joints of limbs that are two OFFSETs alone, as most are, shape (n,), and these bones, (2, n, 3)."""
-    places = skeleton.translation_places
-    plain = [
-        (joint, end)
-        for top, joint, end in limbs
-        if skeleton.parents[joint] == top and skeleton.parents[end] == joint and max(places[joint], places[end]) < 0
-    ]
-    joints = np.array(plain, dtype=np.int64).reshape(-1, 2).T
-    return frozen(joints[0].copy()), frozen(skeleton.offsets[joints])
 
 
 def _wholes(anatomy: Anatomy) -> Iterator[tuple[int | None, int | None, float]]:
@@ -248,54 +195,13 @@ def _all_relative(rotations: FloatArray, asked: Sequence[_RegionWays]) -> FloatA
 
 def _relative(rotations: FloatArray, up: Sequence[int], down: Sequence[int]) -> FloatArray:
     """Return the rotation of the lower joint in the frame of the upper one, shape (F, 4)."""
-    turned = _product(rotations, down)
-    return turned if not up else rot.between(_product(rotations, up), turned)
+    turned = product(rotations, down)
+    return turned if not up else rot.between(product(rotations, up), turned)
 
 
-def _product(rotations: FloatArray, way: Sequence[int]) -> FloatArray:
+def product(rotations: FloatArray, way: Sequence[int]) -> FloatArray:
     """Return the product of the rotations of joints on a way, shape (F, 4)."""
     product = rotations[:, way[0]] if way else np.broadcast_to(rot.IDENTITY, (len(rotations), 4))
     for j in way[1:]:
         product = rot.multiply(product, rotations[:, j])
     return product
-
-
-def _bones(motion: Motion, limb: _Limb) -> tuple[FloatArray, FloatArray]:
-    """Return the upper bone of a limb, shape (F, 3) or (3,), and the lower one, (F, 3), seen by its joint's parent."""
-    top, joint, end = limb
-    skeleton = motion.skeleton
-    frame = int(skeleton.parents[joint])
-    upper, lower = _path(motion, frame, joint), _path(motion, joint, end)
-    if top != frame:
-        # The upper bone comes from further up: seen from the frame that the axis is fixed in.
-        turned = _product(motion.rotations, _joints_between(skeleton, top, frame))
-        upper = upper + rot.unrotate(turned, _path(motion, top, frame))
-    return upper, rot.rotate(motion.rotations[:, joint], lower)
-
-
-def _bend(upper: FloatArray, lower: FloatArray, axis: FloatArray) -> FloatArray:
-    """Return how a limb's bones are bent, shape (F,), degrees, positive where they are about an `axis`."""
-    side = rot.cross(upper, lower)
-    angle = np.arctan2(rot.length(side), rot.dot(upper, lower))
-    bend: FloatArray = np.degrees(np.where(side @ axis < 0.0, -angle, angle))
-    return bend
-
-
-@lru_cache(maxsize=64)
-def _joints_between(skeleton: Skeleton, top: int, end: int) -> tuple[int, ...]:
-    """Return the joints below one and down to another that hangs on it, that one in."""
-    return tuple(skeleton.between(top, end))
-
-
-def _path(motion: Motion, top: int, end: int) -> FloatArray:
-    """Return where a joint is in the frame of one above it, shape (F, 3), or (3,) where that is one place for all."""
-    skeleton = motion.skeleton
-    joints = _joints_between(skeleton, top, end)
-    path, turned = np.zeros(3), rot.IDENTITY
-    for j in joints:
-        place = skeleton.translation_places[j]
-        local = motion.translations[:, place] if place >= 0 else skeleton.offsets[j]
-        path = local if j == joints[0] else path + rot.rotate(turned, local)
-        if j != joints[-1]:
-            turned = motion.rotations[:, j] if j == joints[0] else rot.multiply(turned, motion.rotations[:, j])
-    return path

@@ -11,7 +11,7 @@ import numpy as np
 from motionedit.core.arrays import frozen, median
 from motionedit.core.body.bones import below, hanging
 from motionedit.core.body.ground import axis_name, axis_vector
-from motionedit.core.body.limbs import zero_pose
+from motionedit.core.body.tree import zero_pose
 from motionedit.core.compiled import compiled
 from motionedit.dataclass import dataclass
 

@@ -72,8 +72,8 @@ def to_bvhio(motion: Motion) -> Any:  # noqa: ANN401 (bvhio has no types)
         node = bvhio.BvhJoint(name, glm.vec3(*skeleton.offsets[j].tolist()))
         node.Channels = list(skeleton.channels[j])
         positions = np.repeat(skeleton.offsets[j][None], len(motion), axis=0)
-        if j in skeleton.translated:
-            positions = motion.translations[:, int(np.searchsorted(skeleton.translated, j))]
+        if skeleton.translation_places[j] >= 0:
+            positions = motion.translations[:, skeleton.translation_places[j]]
         node.Keyframes = [
             bvhio.Pose(glm.vec3(*position), glm.quat(*turn))
             for position, turn in zip(positions.tolist(), motion.rotations[:, j].tolist(), strict=True)

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motionedit.core.arrays import frozen
+from motionedit.core.arrays import frozen, runs
 from motionedit.core.bvh.format import format_fixed, place
 from motionedit.core.bvh.rows import BLOCK_BYTES
 from motionedit.core.bvh.scan import words_between
 from motionedit.core.bvh.short_edit import short_edit
 from motionedit.core.bvh.write import LONGEST_WHOLE, check_finite, decimals_of_edits, head_bytes, joined, rows_text
 from motionedit.core.compiled import compiled
-from motionedit.core.euler_pieces import piece_angles, runs, touched_angles, touched_pieces
+from motionedit.core.euler_pieces import piece_angles, touched_angles, touched_pieces
 from motionedit.core.motion import position_columns
 from motionedit.core.skeleton import slice_or_all
 from motionedit.dataclass import dataclass
@@ -184,9 +184,9 @@ def _spliced_rows(clip: Written, edit: _Edit, first: int, at: int) -> Generator[
     file, rows = clip.text.file, clip.text.rows
     decimals = decimals_of_edits(clip)
     step = max(BLOCK_BYTES * len(rows.starts) // len(file), 1)
-    for start, stop in runs(np.asarray(edit.cells.any(axis=1))):
-        for block in range(start, stop, step):
-            chosen = slice(block, min(block + step, stop))
+    for start, last in runs(np.asarray(edit.cells.any(axis=1))):
+        for block in range(start, last + 1, step):
+            chosen = slice(block, min(block + step, last + 1))
             begin, end = int(rows.starts[first + block]), int(rows.stops[first + chosen.stop - 1])
             yield from file.pieces(at, begin)
             old = file.between(begin, end)

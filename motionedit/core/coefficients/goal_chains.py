@@ -139,9 +139,9 @@ def _chain(
         joints = joints[joints.index(projection.travel) :]
         base_rotation = rot.to_matrix(rot.conjugate(projection.alignment.rotation))
         base_position = projection.alignment.origin * space.scale
-    place = {int(j): p for p, j in enumerate(skeleton.translated)}
+    places = skeleton.translation_places.tolist()
     translations = np.array(
-        [motion.translations[frame, place[j]] if j in place else skeleton.offsets[j] for j in joints]
+        [motion.translations[frame, places[j]] if places[j] >= 0 else skeleton.offsets[j] for j in joints]
     )
     translations *= space.scale
     if carries:

@@ -8,11 +8,21 @@
 #include <stdint.h>
 
 /* The buffers of a call, held as long as it runs. */
-enum { MOST_HELD = 16 };
+enum { MOST_HELD = 24 };
 typedef struct {
     Py_buffer held[MOST_HELD];
     int count;
 } Held;
+
+/* Whether a buffer has `count` items of so many bytes; an error where it has not. */
+static inline int has_size(const Py_buffer *buffer, int64_t count, size_t bytes, const char *name)
+{
+    if (count >= 0 && buffer->len % (Py_ssize_t)bytes == 0 && buffer->len / (Py_ssize_t)bytes == count)
+        return 1;
+    PyErr_Format(
+        PyExc_ValueError, "%s has %zd bytes instead of %zd", name, buffer->len, (Py_ssize_t)((size_t)count * bytes));
+    return 0;
+}
 
 /* Where `count` items of so many bytes are, one after the other; NULL, and an error, where they are not. */
 static inline void *items_of(Held *held, PyObject *given, int64_t count, size_t bytes, int writable, const char *name)
@@ -21,10 +31,7 @@ static inline void *items_of(Held *held, PyObject *given, int64_t count, size_t 
     if (PyObject_GetBuffer(given, buffer, writable ? PyBUF_WRITABLE : PyBUF_SIMPLE) < 0)
         return NULL;
     held->count++;
-    if (count >= 0 && buffer->len / (Py_ssize_t)bytes == count && buffer->len % (Py_ssize_t)bytes == 0)
-        return buffer->buf;
-    PyErr_Format(PyExc_ValueError, "%s: %zd bytes do not fit", name, buffer->len);
-    return NULL;
+    return has_size(buffer, count, bytes, name) ? buffer->buf : NULL;
 }
 
 /* Where as many numbers are as are given, and how many; NULL, and an error, where they are no doubles. */
@@ -35,20 +42,7 @@ static inline const double *some_of(Held *held, PyObject *given, int64_t *count,
         return NULL;
     held->count++;
     *count = buffer->len / (Py_ssize_t)sizeof(double);
-    if (buffer->len % (Py_ssize_t)sizeof(double) == 0)
-        return buffer->buf;
-    PyErr_Format(PyExc_ValueError, "%s: %zd bytes do not fit", name, buffer->len);
-    return NULL;
-}
-
-/* Whether a buffer has `count` items of so many bytes; an error where it has not. */
-static inline int has_size(const Py_buffer *buffer, int64_t count, size_t bytes, const char *name)
-{
-    if (count >= 0 && buffer->len % (Py_ssize_t)bytes == 0 && buffer->len / (Py_ssize_t)bytes == count)
-        return 1;
-    PyErr_Format(
-        PyExc_ValueError, "%s has %zd bytes instead of %zd", name, buffer->len, (Py_ssize_t)((size_t)count * bytes));
-    return 0;
+    return has_size(buffer, *count, sizeof(double), name) ? buffer->buf : NULL;
 }
 
 /* Whether a joint turns about three different axes; an error where it does not. */

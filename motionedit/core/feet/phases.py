@@ -51,8 +51,17 @@ def find_phases(
     stands : sequence of Stand
         Those of `stands_of`.
     """
-    if stands and compiled() is not None:
-        return planted(anatomy, _phases_at_once(tracks, legs, anatomy, stands, up=up, frame_time=frame_time))
+    kernel = compiled()
+    if stands and kernel is not None:
+        parts = _parts_of(anatomy)
+        spans = np.array([(*parts[p], p, start, stop) for p, start, stop, _ in stands], dtype=np.int64)
+        sizes, metre = (*tracks.shape[:2], legs.shape[1], len(stands)), anatomy.leg_length / STANDARD_LEG
+        rules = settling_rules(frame_time), (_shortest(frame_time), _ROUNDS, ROUNDING)
+        # Both in one call; of a stand that is none any more the last frame is -1.
+        kernel.phases(np.ascontiguousarray(tracks), up, legs, spans, *sizes, metre, frame_time, *rules)
+        cut = zip(stands, spans[:, 3:].tolist(), strict=True)
+        left = [(p, start, stop, height) for (p, _, _, height), (start, stop) in cut if stop >= 0]
+        return planted(anatomy, sorted(left, key=itemgetter(1, 0)))
     calm = settled(planted(anatomy, stands), tracks, anatomy, up=up, frame_time=frame_time)
     found = kept(calm, legs, anatomy, frame_time)
     return sorted(found, key=lambda plant: (plant.start, plant.foot, plant.point))
@@ -93,26 +102,6 @@ def _parts_of(anatomy: Anatomy) -> tuple[tuple[int, bool], ...]:
     """Return the foot of each of the sole points, by its place, and whether it is a toe."""
     places = {"left": 0, "right": 1}
     return tuple((places[point.foot], point.part == "toe") for point in anatomy.sole_points)
-
-
-def _phases_at_once(
-    tracks: FloatArray,
-    legs: FloatArray,
-    anatomy: Anatomy,
-    stands: Sequence[Stand],
-    *,
-    up: FloatArray,
-    frame_time: float,
-) -> list[Stand]:
-    """Return what is left of stands as the compiled part finds it: `settled` and `kept` in one call."""
-    kernel, parts = compiled(), _parts_of(anatomy)
-    spans = np.array([(*parts[p], p, start, stop) for p, start, stop, _ in stands], dtype=np.int64)
-    sizes, metre = (*tracks.shape[:2], legs.shape[1], len(stands)), anatomy.leg_length / STANDARD_LEG
-    rules = settling_rules(frame_time), (_shortest(frame_time), _ROUNDS, ROUNDING)
-    kernel.phases(np.ascontiguousarray(tracks), up, legs, spans, *sizes, metre, frame_time, *rules)
-    cut = zip(stands, spans[:, 3:].tolist(), strict=True)
-    left = [(p, start, stop, height) for (p, _, _, height), (start, stop) in cut if stop >= 0]
-    return sorted(left, key=itemgetter(1, 0))
 
 
 def kept(plants: Sequence[Plant], legs: FloatArray, anatomy: Anatomy, frame_time: float) -> list[Plant]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.feet.stance import runs
+from motionedit.core.arrays import runs
 from motionedit.dataclass import replace
 
 if TYPE_CHECKING:

@@ -217,9 +217,3 @@ def _chained(count: int, links: Sequence[tuple[int, int]], ways: FloatArray) -> 
             whole[k] = whole[heel]
         members[whole[heel]] += others
     return whole, np.array(offsets).reshape(-1, 3)
-
-
-def runs(there: BoolArray) -> list[tuple[int, int]]:
-    """Return (first, last) of the runs of True, shape (F,)."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], there.astype(np.int8), [0]))))
-    return [(int(a), int(b) - 1) for a, b in zip(edges[::2], edges[1::2], strict=True)]

@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import FloatArray
     from motionedit.core.priorities.groups import Asked
-    from motionedit.core.priorities.kinds.constraint import ConstraintErrors, Targets
+    from motionedit.core.priorities.kinds.constraint import ConstraintErrors
+    from motionedit.core.priorities.task_targets import Targets
 
 # Nearer is nearer by this share of the error, and by this many metres or radians: less is rounding, or no help.
 _SHARE = 0.1

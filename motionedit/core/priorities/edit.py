@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from motionedit.core import rotations as rot
+from motionedit.core.blocks import frame_blocks
 from motionedit.core.body.bones import below
 from motionedit.core.compiled import compiled
 from motionedit.core.priorities.continuity import NO_DISPLACEMENT
@@ -19,7 +20,6 @@ from motionedit.core.priorities.recruiting import Breach, Reach, Recruits, breac
 from motionedit.core.priorities.settings import Passes
 from motionedit.core.priorities.switching import eased_from_others
 from motionedit.core.priorities.targets import NOBODY, Follows, errors_of, with_targets
-from motionedit.core.trace import frame_blocks
 from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
@@ -212,8 +212,7 @@ def edit_by_priorities(
 
 def changes(before: Motion, after: Motion, travel: int) -> tuple[BoolArray, BoolArray]:
     """Return which joints turn otherwise, shape (F, J), and where the travel goes otherwise, shape (F,)."""
-    place = np.searchsorted(before.skeleton.translated, travel)
-    shifts = (after.translations - before.translations)[:, place : place + 1]
+    shifts = (after.translations - before.translations)[:, before.skeleton.translated == travel]
     moved: BoolArray = np.abs(shifts).max(axis=(1, 2), initial=0.0) > NO_DISPLACEMENT
     return _turned(before.rotations, after.rotations), moved
 

@@ -10,15 +10,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motionedit.core import rotations as rot
-from motionedit.core.arrays import frozen
-from motionedit.core.kinematics import forward
-from motionedit.core.motion import Motion
+from motionedit.core.kinematics import shifted
 from motionedit.core.priorities.constants import LARGEST_ERROR
 from motionedit.core.priorities.groups import seen_by
 
 if TYPE_CHECKING:
-    from motionedit.core.arrays import FloatArray
+    from motionedit.core.motion import Motion
     from motionedit.core.priorities.groups import Asked
 
 
@@ -37,13 +34,4 @@ def lifted(asked: Asked) -> Motion:
         far = np.where(below > LARGEST_ERROR, below, 0.0)
         span = asked.targets[i].span
         shift[span] += np.maximum(far - shift[span] @ level.up, 0.0)[:, None] * level.up
-    return _moved(motion, shift, asked.body.travel) if shift.any() else motion
-
-
-def _moved(motion: Motion, shift: FloatArray, travel: int) -> Motion:
-    """Return a motion whose travel is moved in the world, shape (F, 3)."""
-    parent = int(motion.skeleton.parents[travel])
-    local = shift if parent < 0 else rot.unrotate(forward(motion).rotations[:, parent], shift)
-    translations = motion.translations.copy()
-    translations[:, int(np.searchsorted(motion.skeleton.translated, travel))] += local
-    return Motion(motion.skeleton, motion.rotations, frozen(translations), motion.frame_time)
+    return shifted(motion, shift, asked.body.travel) if shift.any() else motion

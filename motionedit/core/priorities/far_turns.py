@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.priorities.kinds.constraint import Targets
+from motionedit.core.priorities.task_targets import Targets
 from motionedit.core.rotation_vectors import least_turned
 
 if TYPE_CHECKING:

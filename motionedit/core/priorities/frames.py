@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.blocks import frame_blocks
 from motionedit.core.compiled import compiled
 from motionedit.core.motion import Motion
 from motionedit.core.priorities.far_floors import lifted
@@ -14,14 +15,13 @@ from motionedit.core.priorities.far_turns import parts_of
 from motionedit.core.priorities.groups import Asked, Group, groups_of, part_of, retargeted, spans_of
 from motionedit.core.priorities.problem import LayeredSolution, Reference
 from motionedit.core.priorities.solver import solve_layers
-from motionedit.core.trace import frame_blocks
 from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.kinematics import WorldPoses
-    from motionedit.core.priorities.kinds.constraint import Targets
     from motionedit.core.priorities.ramps import Ends
+    from motionedit.core.priorities.task_targets import Targets
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +52,7 @@ class Run:
 
 def run_of(asked: Asked) -> Run:
     """Return an edit ready to be solved."""
-    groups, place = groups_of(asked), np.searchsorted(asked.motion.skeleton.translated, asked.body.travel)
+    groups, place = groups_of(asked), asked.motion.skeleton.translation_places[asked.body.travel]
     idle = np.ones(len(asked.motion), dtype=np.bool_)
     for group in groups:
         idle[group.where] = False

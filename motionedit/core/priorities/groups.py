@@ -23,12 +23,13 @@ if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.motion import Motion
-    from motionedit.core.priorities.kinds.constraint import Constraint, Targets
+    from motionedit.core.priorities.kinds.constraint import Constraint
     from motionedit.core.priorities.points import Columns
     from motionedit.core.priorities.problem import Task
     from motionedit.core.priorities.recruiting import Recruits
     from motionedit.core.priorities.settings import Body, LayeredSettings
     from motionedit.core.priorities.sight import Sight
+    from motionedit.core.priorities.task_targets import Targets
 
 
 @dataclass(frozen=True, eq=False)

@@ -37,7 +37,7 @@ def attraction(
     turns = turn_to_local(columns.skeleton, poses, motion.rotations, joints=columns.joints, targets=targets)
     z[:, :-3] = turns.reshape(len(frames), -1)
     if reference.root is not None and len(columns.skeleton.translated):
-        root = int(np.searchsorted(columns.skeleton.translated, columns.root))
+        root = columns.skeleton.translation_places[columns.root]
         back = reference.root[frames] - motion.translations[:, root]
         above = int(columns.skeleton.parents[columns.root])
         z[:, -3:] = rot.rotate(poses.rotations[:, above], back) if above >= 0 else back

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.arrays import frozen
+from motionedit.core.blocks import BLOCK_FRAMES
 from motionedit.core.priorities.points import columns_of
 from motionedit.core.priorities.problem import order_of_layers
-from motionedit.core.trace import BLOCK_FRAMES
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.arrays import frozen
+from motionedit.core.blocks import BLOCK_FRAMES
 from motionedit.core.priorities.continuity import NO_DISPLACEMENT
 from motionedit.core.priorities.groups import Ramp, seen_by
-from motionedit.core.priorities.kinds.constraint import Targets, moved
-from motionedit.core.trace import BLOCK_FRAMES
+from motionedit.core.priorities.task_targets import Targets, moved
 from motionedit.dataclass import replace
 
 if TYPE_CHECKING:

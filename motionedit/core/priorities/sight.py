@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.blocks import BLOCK_FRAMES, frame_blocks
 from motionedit.core.body.center_of_mass import Masses, center_of_mass
 from motionedit.core.kinematics import WorldPoses, forward
-from motionedit.core.trace import BLOCK_FRAMES, frame_blocks
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:

@@ -8,10 +8,10 @@ import numpy as np
 
 from motionedit.core.priorities.continuity import NO_DISPLACEMENT
 from motionedit.core.priorities.frames import run_of
-from motionedit.core.priorities.kinds.constraint import moved
 from motionedit.core.priorities.passes import solve_in_passes
 from motionedit.core.priorities.ramps import ramps_of, task_at
 from motionedit.core.priorities.targets import errors_of, reached
+from motionedit.core.priorities.task_targets import moved
 from motionedit.dataclass import replace
 
 if TYPE_CHECKING:

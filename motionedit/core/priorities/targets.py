@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.again import once
+from motionedit.core.blocks import frame_blocks
 from motionedit.core.priorities.far_turns import arcs_of
 from motionedit.core.priorities.frames import run_of, solve_from_input
 from motionedit.core.priorities.groups import Asked, seen_by
-from motionedit.core.priorities.kinds.constraint import Scene, Targets, between, joined
-from motionedit.core.trace import frame_blocks
+from motionedit.core.priorities.kinds.constraint import ConstraintErrors, Scene
+from motionedit.core.priorities.task_targets import Targets, between
 from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.motion import Motion
-    from motionedit.core.priorities.kinds.constraint import Constraint, ConstraintErrors
+    from motionedit.core.priorities.kinds.constraint import Constraint
     from motionedit.core.priorities.recruiting import Recruits
     from motionedit.core.priorities.settings import Body, LayeredSettings
     from motionedit.core.priorities.sight import Sight
@@ -90,7 +91,7 @@ def errors_of(asked: Asked, motion: Motion, *, poses: WorldPoses | None = None) 
                 is_whole = block.start == 0 and stop == targets.last + 1
                 part = targets if is_whole else targets.within(slice(first, stop)).since(block.start)
                 found.append(each.errors(part, after, reference=here[1]))
-    return tuple(joined(found, targets.first) for found, targets in zip(parts, asked.targets, strict=True))
+    return tuple(_joined(found, targets.first) for found, targets in zip(parts, asked.targets, strict=True))
 
 
 def lefts_of(asked: Asked, motion: Motion) -> list[FloatArray]:
@@ -133,6 +134,18 @@ def toward(
         if there is not None:
             found[k] = original[k].with_part(between(original[k].within(frames), there, share[frames]))
     return tuple(found)
+
+
+def _joined(parts: Sequence[ConstraintErrors], first: int) -> ConstraintErrors:
+    """Return what is left of a constraint from frame `first` on, of parts that follow one another."""
+    if len(parts) == 1 and parts[0].first == first:
+        return parts[0]
+
+    def whole(name: str) -> FloatArray | None:
+        arrays = [array for array in (getattr(part, name) for part in parts) if array is not None]
+        return np.concatenate(arrays) if len(arrays) > 1 else arrays[0] if arrays else None
+
+    return ConstraintErrors(first, whole("positions"), whole("angles"), whole("places"))
 
 
 def _goals(constraints: Sequence[Constraint], found: dict[int, Targets], frames: int) -> dict[int, FloatArray]:

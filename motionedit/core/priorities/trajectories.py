@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from motionedit.core.blocks import BLOCK_FRAMES
 from motionedit.core.priorities.splines import Basis, basis_of, kochanek_bartels
 from motionedit.core.timeline import round_half_up
-from motionedit.core.trace import BLOCK_FRAMES
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:

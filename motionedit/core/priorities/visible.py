@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
+from motionedit.core.blocks import BLOCK_FRAMES, frame_blocks
 from motionedit.core.body.quality import STILL, squared_jerks
 from motionedit.core.compiled import compiled
 from motionedit.core.kinematics import forward
 from motionedit.core.priorities.sight import poses_again
-from motionedit.core.trace import BLOCK_FRAMES, frame_blocks
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:

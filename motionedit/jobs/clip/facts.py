@@ -9,6 +9,7 @@ import numpy as np
 
 from motionedit.core import kinematics
 from motionedit.core.arrays import frozen
+from motionedit.core.blocks import BLOCK_FRAMES, frame_blocks
 from motionedit.core.body import ground
 from motionedit.core.body.anatomy import NOTHING_GIVEN, Anatomy, GivenBody
 from motionedit.core.body.bones import find_bones, travel_joint
@@ -18,7 +19,6 @@ from motionedit.core.body.rest_pose import rest_pose_frames
 from motionedit.core.body.steps import own_steps
 from motionedit.core.body.up import find_up
 from motionedit.core.feet.phases import find_phases, leg_paths
-from motionedit.core.trace import BLOCK_FRAMES, frame_blocks
 from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError
 

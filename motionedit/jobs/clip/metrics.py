@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 from motionedit.core import rotations as rot
 from motionedit.core.body.contacts import sole_tracks
 from motionedit.core.body.quality import foot_drift, foot_slide_max
+from motionedit.core.body.trace import Trace, trace_of
 from motionedit.core.feet.measures import foot_measures
-from motionedit.core.trace import Trace, trace_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.body.bent_back import bent_back
 from motionedit.core.body.quality import STILL
-from motionedit.core.body.ranges import bent_back, beyond_range, regions_of
+from motionedit.core.body.ranges import beyond_range, regions_of
 from motionedit.core.units import STANDARD_LEG
 
 if TYPE_CHECKING:
@@ -17,8 +18,8 @@ if TYPE_CHECKING:
     from motionedit.core.body.bends import Bend
     from motionedit.core.body.ranges import Beyond
     from motionedit.core.body.steps import Steps
+    from motionedit.core.body.trace import Trace
     from motionedit.core.motion import Motion
-    from motionedit.core.trace import Trace
     from motionedit.jobs.clip.facts import ClipFacts
 
 # Degrees in a sixtieth of a second by which a joint's change steps where a viewer sees it.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -102,7 +101,7 @@ def _masses(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults: F
     skeleton, place = facts.clip.motion.skeleton, resolve.Place(loaded, ("masses",), facts.clip.label)
     given: dict[int, float] = {}
     for name, kilograms in loaded.model.masses.items():
-        index = faults.get(partial(resolve.joint, name, skeleton, place.at(name)), otherwise=None)
+        index = resolve.joint_if_there(name, skeleton, place.at(name), faults)
         if index is not None:
             given[index] = kilograms
     try:
@@ -126,10 +125,7 @@ def _hinges(
         found = {hinge.joint: (hinge,) for hinge in find_hinges(bends)}
     elif not isinstance(asked, str):
         place = resolve.Place(loaded, ("hinges",), facts.clip.label)
-        joints = [
-            faults.get(partial(resolve.joint, name, motion.skeleton, place.at(i)), otherwise=None)
-            for i, name in enumerate(asked)
-        ]
+        joints = [resolve.joint_if_there(name, motion.skeleton, place.at(i), faults) for i, name in enumerate(asked)]
         for joint in joints:
             if joint is not None and joint not in by_channel:
                 known = find_hinges([bend for bend in bends if bend.joint == joint])
@@ -149,7 +145,7 @@ def _mobility(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults:
     if not isinstance(asked, str):
         place = resolve.Place(loaded, ("stiffness",), facts.clip.label)
         for name, stiffness in asked.items():
-            joint = faults.get(partial(resolve.joint, name, skeleton, place.at(name)), otherwise=None)
+            joint = resolve.joint_if_there(name, skeleton, place.at(name), faults)
             if joint is not None:
                 mobility[joint] = 1.0 / stiffness
     return mobility, 1.0
@@ -169,7 +165,7 @@ def _limits(
     given = {}
     place = resolve.Place(loaded, ("limits",), facts.clip.label)
     for name, half in {} if isinstance(asked, str) else asked.items():
-        joint = faults.get(partial(resolve.joint, name, motion.skeleton, place.at(name)), otherwise=None)
+        joint = resolve.joint_if_there(name, motion.skeleton, place.at(name), faults)
         if joint is not None:
             given[joint] = Range(half.swing, half.twist)
         if joint in {hinge.joint for hinge in hinges}:

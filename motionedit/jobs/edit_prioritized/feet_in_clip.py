@@ -16,7 +16,7 @@ from motionedit.spec.faults import listed
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from motionedit.core.feet.asked import GivenPlants
+    from motionedit.core.priorities.asks_to_stand import GivenPlants
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.jobs.clip.faults import Faults
     from motionedit.jobs.clip.resolve import Place

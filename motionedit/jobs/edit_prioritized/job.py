@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from motionedit.core.blocks import BLOCK_FRAMES, blocks_of, forward_blocks, frame_blocks
 from motionedit.core.body.steps import change_steps
 from motionedit.core.bvh import edited_pieces, unedited_bytes
 from motionedit.core.motion import Motion, scaled
 from motionedit.core.priorities.edit import PrioritizedEdit, RecruitingError, edit_by_priorities
 from motionedit.core.priorities.settings import LayeredSettings, PaperFilter, Passes
 from motionedit.core.priorities.targets import Follows
-from motionedit.core.trace import BLOCK_FRAMES, blocks_of, forward_blocks, frame_blocks
 from motionedit.dataclass import dataclass, replace
 from motionedit.jobs.batch.one_clip import Outcome
 from motionedit.jobs.batch.plan import plan
@@ -42,8 +42,8 @@ if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray
     from motionedit.core.body.center_of_mass import Masses
     from motionedit.core.body.steps import Steps
+    from motionedit.core.body.trace import Trace
     from motionedit.core.bvh import Clip
-    from motionedit.core.trace import Trace
     from motionedit.jobs.batch.plan import ClipTask, RunOptions
     from motionedit.jobs.batch.run import BatchResult
     from motionedit.jobs.batch.verdicts import Verdicts

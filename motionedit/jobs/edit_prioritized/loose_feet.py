@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import BoolArray
     from motionedit.core.body.anatomy import Leg
+    from motionedit.core.body.trace import Trace
     from motionedit.core.priorities.kinds.constraint import Constraint
-    from motionedit.core.trace import Trace
     from motionedit.jobs.edit_prioritized.body import SizedClip
 
 # Metres at leg length 0.85 m: a visible way.

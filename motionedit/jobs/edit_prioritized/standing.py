@@ -6,17 +6,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.arrays import runs
 from motionedit.core.body.contacts import Plant
 from motionedit.core.feet.goals import ground_under
-from motionedit.core.feet.keep import onto_stances, shifted, within_legs
+from motionedit.core.feet.keep import onto_stances, within_legs
 from motionedit.core.feet.path import NewPath, carried, new_path, turned
 from motionedit.core.feet.reach import CALMS_ANOTHER, CALMS_OWN, LOWERED, LOWERED_ON_PATH, reach_of
-from motionedit.core.feet.stance import Stance, feet_of, foot_path, runs, stance_of
+from motionedit.core.feet.stance import Stance, feet_of, foot_path, stance_of
 from motionedit.core.feet.stands import body_shift, on_height, within_reach
-from motionedit.core.kinematics import forward
-from motionedit.core.motion import scaled
-from motionedit.core.priorities.kinds.constraint import Scene, Targets
+from motionedit.core.kinematics import WorldPoses, forward, shifted
+from motionedit.core.motion import Motion, scaled
+from motionedit.core.priorities.kinds.constraint import Scene
 from motionedit.core.priorities.sight import sight_of
+from motionedit.core.priorities.task_targets import Targets
 from motionedit.dataclass import replace
 from motionedit.jobs.clip.facts import Poses
 from motionedit.jobs.edit_prioritized.body import body_again
@@ -25,9 +27,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from motionedit.core.arrays import BoolArray
-    from motionedit.core.feet.asked import AsksToStand
     from motionedit.core.feet.goals import FootGoal
     from motionedit.core.feet.stance import Foot
+    from motionedit.core.priorities.asks_to_stand import AsksToStand
     from motionedit.core.priorities.kinds.constraint import Constraint
     from motionedit.core.priorities.trajectories import Curve
     from motionedit.jobs.clip.facts import ClipFacts
@@ -59,28 +61,8 @@ def on_feet(
         warned = replace(sized, warnings=(*sized.warnings, "footplants: no foot stands in it; nothing is held"))
         return warned, [each for each in constraints if each not in standing]
     path = _new_path(sized, constraints, curve) if any(ask.follows_path for ask, _, _ in stances) else None
-    placed: list[tuple[Foot, Stance]] = []
-    lifts = []
-    for ask, foot, stance in stances:
-        moved = stance if path is None or not ask.follows_path else carried(stance, path)
-        lifted = moved if ask.height is None else on_height(moved, ask.height, facts.up)
-        lifts.append((moved, lifted))
-        placed.append((foot, lifted))
-    lift = body_shift(lifts, facts.clip.motion.frame_time, facts.up)
-    total = lift if path is None else path.shift + lift
-    motion, poses = facts.clip.motion, facts.poses
-    if np.any(total):
-        motion = shifted(motion, total, poses, facts.travel)
-        motion = motion if path is None else turned(motion, path, poses, facts.travel)
-        poses = forward(motion)
     lowered = LOWERED if path is None else LOWERED_ON_PATH
-    low = lowered * facts.anatomy.leg_length
-    placed = [
-        (foot, within_reach(stance, poses.positions[:, foot.leg.thigh], reach_of(poses, foot), low, facts.up))
-        if ask.follows_path
-        else (foot, stance)
-        for (ask, _, _), (foot, stance) in zip(stances, placed, strict=True)
-    ]
+    motion, poses, placed = _placed(facts, stances, path, lowered)
     floors = [each.constraint.least.height / scale for each in constraints if each.constraint.least is not None]
     held = within_legs(placed, poses, facts.anatomy, up=facts.up, lowered=lowered)
     kept = onto_stances(
@@ -104,6 +86,34 @@ def on_feet(
     )
     goals = {goal.foot.leg.ankle: goal for goal in kept.goals}
     return found, [part for each in constraints for part in _with_goals(each, goals, constraints, sized)]
+
+
+def _placed(
+    facts: ClipFacts, stances: Sequence[tuple[AsksToStand, Foot, Stance]], path: NewPath | None, lowered: float
+) -> tuple[Motion, WorldPoses, list[tuple[Foot, Stance]]]:
+    """Return the clip's motion carried to where its feet shall stand, its world transforms, and the stances there."""
+    placed: list[tuple[Foot, Stance]] = []
+    lifts = []
+    for ask, foot, stance in stances:
+        moved = stance if path is None or not ask.follows_path else carried(stance, path)
+        lifted = moved if ask.height is None else on_height(moved, ask.height, facts.up)
+        lifts.append((moved, lifted))
+        placed.append((foot, lifted))
+    lift = body_shift(lifts, facts.clip.motion.frame_time, facts.up)
+    total = lift if path is None else path.shift + lift
+    motion, poses = facts.clip.motion, facts.poses
+    if np.any(total):
+        motion = shifted(motion, total, facts.travel, poses=poses)
+        motion = motion if path is None else turned(motion, path, poses, facts.travel)
+        poses = forward(motion)
+    low = lowered * facts.anatomy.leg_length
+    within = [
+        (foot, within_reach(stance, poses.positions[:, foot.leg.thigh], reach_of(poses, foot), low, facts.up))
+        if ask.follows_path
+        else (foot, stance)
+        for (ask, _, _), (foot, stance) in zip(stances, placed, strict=True)
+    ]
+    return motion, poses, within
 
 
 def _heels_let_go(asked: Sequence[tuple[Foot, Stance]], held: Sequence[tuple[Foot, Stance]]) -> tuple[str, ...]:

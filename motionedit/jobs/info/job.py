@@ -6,13 +6,13 @@ import math
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
+from motionedit.core.blocks import blocks_of
 from motionedit.core.body import ground
 from motionedit.core.body.bends import find_bends
 from motionedit.core.body.contacts import foot_plants
 from motionedit.core.body.hinges import find_hinges
 from motionedit.core.body.quality import find_defects
 from motionedit.core.body.steps import own_steps
-from motionedit.core.trace import blocks_of
 from motionedit.core.units import STANDARD_LEG
 from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError, MotionEditError, together

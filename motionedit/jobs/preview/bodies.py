@@ -8,7 +8,7 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.body.bones import below
-from motionedit.core.body.limbs import zero_pose
+from motionedit.core.body.tree import zero_pose
 from motionedit.report.preview.body import Ball, Body, Hull, Limb, Side
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ from motionedit.core.euler import (
     solve_angles,
     solved_tracks,
 )
-from motionedit.core.euler_pieces import piece_angles, runs, touched_angles, touched_pieces
+from motionedit.core.euler_pieces import piece_angles, touched_angles, touched_pieces
 from motionedit.core.motion import Motion
 from motionedit.core.skeleton import Skeleton
 
@@ -199,11 +199,6 @@ def test_joint_angles_fill_every_column():
 
     motion = motion_from_channels(skeleton, values, frame_time=0.01)
     np.testing.assert_allclose(joint_angles(motion, start=values[0]), values, atol=1e-9)
-
-
-def test_runs_are_found():
-    assert runs(np.array([], dtype=bool)) == []
-    assert runs(np.array([True, True, False, True])) == [(0, 2), (3, 4)]
 
 
 AXES = (2, 0, 1)

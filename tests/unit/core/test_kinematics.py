@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from motionedit.core import kinematics, rotations
-from motionedit.core.kinematics import Effector, effector_positions, forward, forward_of
+from motionedit.core.kinematics import Effector, effector_positions, forward, forward_of, shifted
 from motionedit.core.motion import Motion
 from motionedit.core.skeleton import Skeleton
 
@@ -104,3 +104,15 @@ def test_the_motion_is_not_changed():
     forward(motion)
     np.testing.assert_array_equal(motion.rotations, kept[0])
     np.testing.assert_array_equal(motion.translations, kept[1])
+
+
+@pytest.mark.parametrize("travel", [0, 3])
+@pytest.mark.parametrize("known", [False, True])
+def test_a_shifted_motion_is_that_far_from_where_it_was_with_all_that_hangs_on_the_travel(travel, known):
+    motion, shift = random_motion(5), np.random.default_rng(1).normal(size=(5, 3))
+    before = forward(motion)
+    after = forward(shifted(motion, shift, travel, poses=before if known else None))
+    carried = [travel in motion.skeleton.chain(joint) for joint in range(8)]
+    moved = np.where(np.array(carried)[:, None], shift[:, None], 0.0)
+    np.testing.assert_allclose(after.positions, before.positions + moved, atol=1e-13)
+    np.testing.assert_allclose(after.rotations, before.rotations, atol=1e-13)

@@ -1,9 +1,6 @@
 /* A layer's rows of M, B and its step from G = J J^T: what _damped_step of layers.py gets from eigenvectors. Part of
    solver.c. */
 
-/* A pivot below this share of the trace is rounding: what is left of a row on a rigid part that has enough rows. */
-#define ROUNDING 1e-13
-
 /* What factoring a layer of k rows takes at most: a damped step, W and N, y and t. */
 static size_t factor_scratch(int k)
 {
@@ -15,29 +12,6 @@ static V damping(V s, V d)
 {
     const V near = root_of(larger(s * (d - s), all(0.0)));
     return choose(less(0.5 * d, s), only(~less(d, s), near), 0.5 * d);
-}
-
-/* A = L L^T in the lower triangle, in place; A is k x k, positive definite. The diagonal comes out inverted. */
-static void cholesky(V *A, int k)
-{
-    for (int j = 0; j < k; j++) {
-        const V pivot = A[j * k + j] - dot_in_order(A + j * k, A + j * k, j);
-        A[j * k + j] = 1.0 / root_of(larger(pivot, all(DBL_MIN)));
-        for (int i = j + 1; i < k; i++)
-            A[i * k + j] = (A[i * k + j] - dot_in_order(A + i * k, A + j * k, j)) * A[j * k + j];
-    }
-}
-
-/* x <- (L L^T)^-1 x */
-static void cholesky_solve(const V *L, int k, V *x)
-{
-    for (int i = 0; i < k; i++)
-        x[i] = (x[i] - dot_in_order(L + i * k, x, i)) * L[i * k + i];
-    for (int i = k - 1; i >= 0; i--) {
-        x[i] *= L[i * k + i];
-        for (int p = 0; p < i; p++)
-            x[p] -= L[i * k + p] * x[i];
-    }
 }
 
 /* The trace of a layer's S = A~ A~^T. */

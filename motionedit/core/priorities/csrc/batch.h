@@ -1,6 +1,6 @@
 /* The layered solver in C: a batch of frames on their way, side by side in lanes, and who does what with it.
 
-   The method is that of layers.py, homing.py and numpy_solver.py above this folder; what differs is how the same numbers are
+   The method is that of layers.py, homing.py, numpy_step.py and numpy_solver.py above this folder; what differs is how the same numbers are
    found. The unknowns of a step are a world-axis increment for each column, or the angles of its hinges alone where it
    has one or two, and the root's shift, all over their mobility: n = 3 K + 3 without hinges. The Jacobian J of a frame is never formed. Every row of every task is a force
    f at a point and a torque t, shared by the columns of a chain:
@@ -14,7 +14,7 @@
        G = M M^T,    J = M Q,    Q_l = B_l (J_l - M_l Q_above)
 
    Rows that take no part in a lane, one-sided ones that are on their side, are zeros of G there. Joints that a layer of
-   postures holds are no rows: held_above.c takes them out. */
+   postures holds are no rows: held.c takes them out. */
 
 #ifndef MOTIONEDIT_BATCH_H
 #define MOTIONEDIT_BATCH_H

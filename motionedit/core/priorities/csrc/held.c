@@ -1,5 +1,17 @@
-/* The step of a layer that holds joints, its damping, and its place among the layers: held_above.c says how. Part of
-   solver.c. */
+/* Layers that hold joints: the rows of a posture are its own unknowns, and leave the system with them. Part of solver.c.
+
+   With the orthonormal rows Q of the layers above, the unknowns U that are held, of scale D, and F, the others, the step
+   of such a layer is
+
+       w_U least in |D w_U - b|^2 + lambda^2 |w|^2 with Q w = 0, and w_F = -Q_F^+ Q_U w_U, the least that makes up for it
+
+   Q_F = M B^-1 is factored as a layer's rows are: B Q_F is orthonormal. Rows of Q that get a direction there cost |B Q_U
+   w_U|^2, those that get none, Pi Q, may not be moved at all. L has both, sqrt(lambda^2) B and Pi, and with K = D^2 + lambda^2
+
+       w_U = K^-1 (D b - Q_U^T L^T v),    (1 or 0 + L Q_U K^-1 Q_U^T L^T) v = L Q_U K^-1 D b
+
+   as many unknowns as there are rows above. The layers below see F alone, and those above there as one layer. Its rows are
+   formed: X. */
 
 /* Y = XU diag(weight) XU^T, whole. */
 static void weighted_gram(const Hold *hold, const V *weight, V *Y)
@@ -11,11 +23,6 @@ static void weighted_gram(const Hold *hold, const V *weight, V *Y)
         for (int s = 0; s <= r; s++)
             Y[r * k + s] = Y[s * k + r] = dot_product(hold->W, hold->XU + s * m, m);
     }
-}
-
-static int is_nothing(const V *row, int k)
-{
-    return !any(~is_zero(dot_product(row, row, k)));
 }
 
 /* out = A B^T, k x k: many rows are nothing in any lane. */
@@ -33,29 +40,6 @@ static void times_rows(const Hold *hold, const V *A, const V *B, V *out)
         for (int j = 0; j < many; j++)
             out[i * k + some[j]] = dot_product(A + i * k, B + some[j] * k, k);
     }
-}
-
-/* As cholesky, of what is positive semidefinite: a pivot that is rounding comes out as 0. Returns how many are none. */
-static V cholesky_of_rank(V *A, int k)
-{
-    V trace = all(0.0), rank = trace;
-    for (int j = 0; j < k; j++)
-        trace += A[j * k + j];
-    for (int j = 0; j < k; j++) {
-        const V pivot = A[j * k + j] - dot_in_order(A + j * k, A + j * k, j);
-        const Mask kept = less(ROUNDING * trace, pivot);
-        A[j * k + j] = only(kept, 1.0 / root_of(choose(kept, pivot, all(1.0))));
-        rank += only(kept, all(1.0));
-        for (int i = j + 1; i < k; i++)
-            A[i * k + j] = (A[i * k + j] - dot_in_order(A + i * k, A + j * k, j)) * A[j * k + j];
-    }
-    return rank;
-}
-
-/* tr(A B^T), k x k */
-static V trace_of(const V *A, const V *B, int k)
-{
-    return dot_product(A, B, k * k);
 }
 
 /* |A~^+|^2 without damping, from weight = D^-2 and Y: of w_U and w_F,
@@ -120,21 +104,6 @@ static void subtract_held_transposed(const Hold *hold, const V *v, V *out)
 {
     for (int r = 0; r < hold->k; r++)
         add_multiple(out, -v[r], hold->XU + r * hold->m, hold->m);
-}
-
-/* out = A v, and out = A^T v; k x k */
-static void matrix_times(const V *A, const V *v, int k, V *out)
-{
-    for (int i = 0; i < k; i++)
-        out[i] = dot_product(A + i * k, v, k);
-}
-
-static void transposed_times(const V *A, const V *v, int k, V *out)
-{
-    for (int i = 0; i < k; i++)
-        out[i] = all(0.0);
-    for (int i = 0; i < k; i++)
-        add_multiple(out, v[i], A + i * k, k);
 }
 
 /* D b + soft times what w_U has of the pull z, itself and by w_F. */

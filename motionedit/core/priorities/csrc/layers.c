@@ -1,13 +1,5 @@
 /* The pass down the layers among the rows of J: layers.py's `descend`, in rank space. Part of solver.c. */
 
-/* Numbers of a layer's rows less what the layers above account for: rows - M_l q_above. */
-static void less_above(const Batch *batch, const Layer *layer, const V *rows, const V *above, V *rest)
-{
-    const int64_t R = batch->rows;
-    for (int r = 0; r < layer->rows; r++)
-        rest[r] = rows[r] - dot_product(batch->M + (layer->first + r) * R, above, layer->first);
-}
-
 /* b = clamped e - A dm, dm being what the layers above and the hinges on their limits do: these turn by `fixed`, (R,).
    Rows that take no part have none. */
 static void remaining_error(const Batch *batch, const Layer *layer, const V *fixed, V largest, V *b)
@@ -58,14 +50,6 @@ static void free_gram(Batch *batch)
     without_inactive_rows(batch);
 }
 
-/* A layer's part of Q v from what is left of J v below the layers above. */
-static void own_rank_space(const Layer *layer, const V *rest, V *Qv)
-{
-    const int k = layer->rows;
-    for (int q = 0; q < k; q++)
-        Qv[layer->first + q] = dot_product(layer->B + q * k, rest, layer->full ? k : q + 1);
-}
-
 /* J times what is done already: the steps of joints that are held and all above them, hinges on their limits. */
 static void rows_of_fixed(Batch *batch, V *fixed)
 {
@@ -109,37 +93,5 @@ static void descend(Batch *batch, const V *Jz)
         less_above(batch, layer, Jz + layer->first, batch->Qz, rest);
         factor_layer(batch, layer, b, rest, largest, batch->c + layer->first);
         own_rank_space(layer, rest, batch->Qz);
-    }
-}
-
-/* Q v from J v; shapes (R,). */
-static void into_rank_space(const Batch *batch, const V *Jv, V *Qv)
-{
-    V *rest = batch->scratch_rows;
-    for (int l = 0; l < batch->chain_count; l++) {
-        const Layer *layer = batch->chain[l];
-        less_above(batch, layer, Jv + layer->first, Qv, rest);
-        own_rank_space(layer, rest, Qv);
-    }
-}
-
-/* y with J^T y = Q^T q; shapes (R,). q is used up. */
-static void out_of_rank_space(const Batch *batch, V *q, V *y)
-{
-    const int64_t R = batch->rows;
-    for (int l = batch->chain_count - 1; l >= 0; l--) {
-        const Layer *layer = batch->chain[l];
-        const int k = layer->rows;
-        V *own = y + layer->first;
-        for (int r = 0; r < k; r++)
-            own[r] = all(0.0);
-        for (int p = 0; p < k; p++)
-            for (int r = 0; r < (layer->full ? k : p + 1); r++)
-                own[r] += q[layer->first + p] * layer->B[p * k + r];
-        for (int r = 0; r < k; r++) {
-            const V *row = batch->M + (layer->first + r) * R;
-            for (int p = 0; p < layer->first; p++)
-                q[p] -= own[r] * row[p];
-        }
     }
 }

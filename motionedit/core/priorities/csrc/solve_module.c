@@ -59,36 +59,25 @@ static const struct {
     {"limits", sizeof(Limit), LIMIT_FIELDS},
 };
 
-/* The buffers of `solve`, by their names, held as long as it runs. */
-enum { MOST_BUFFERS = 24 };
-typedef struct {
-    PyObject *given; /* a dictionary */
-    Py_buffer held[MOST_BUFFERS];
-    int count;
-} Buffers;
-
-/* Whether the buffer `name` has `count` items of so many bytes; `place` is then where they are. */
-static int take_buffer(Buffers *buffers, const char *name, int64_t count, size_t bytes, int writable, void *place)
+/* Whether the buffer `name` of a dictionary has `count` items of so many bytes; `place` is then where they are. */
+static int take(Held *held, PyObject *given, const char *name, int64_t count, size_t bytes, int writable, void *place)
 {
-    PyObject *given = PyDict_GetItemString(buffers->given, name);
-    Py_buffer *held = buffers->held + buffers->count;
-    if (given == NULL) {
+    PyObject *buffer = PyDict_GetItemString(given, name);
+    if (buffer == NULL) {
         PyErr_Format(PyExc_ValueError, "%s is missing", name);
         return 0;
     }
-    if (PyObject_GetBuffer(given, held, writable ? PyBUF_WRITABLE : PyBUF_SIMPLE) < 0)
-        return 0;
-    buffers->count++;
-    memcpy(place, &held->buf, sizeof held->buf);
-    return has_size(held, count, bytes, name);
+    void *items = items_of(held, buffer, count, bytes, writable, name);
+    memcpy(place, &items, sizeof items);
+    return !PyErr_Occurred();
 }
 
-/* How many items of so many bytes the buffer `name` has, 0 where there is none: `take_buffer` then says so. */
-static int64_t count_of(const Buffers *buffers, const char *name, size_t bytes)
+/* How many items of so many bytes the buffer `name` has, 0 where there is none: `take` then says so. */
+static int64_t count_of(PyObject *given, const char *name, size_t bytes)
 {
-    PyObject *given = PyDict_GetItemString(buffers->given, name);
+    PyObject *buffer = PyDict_GetItemString(given, name);
     Py_buffer seen;
-    if (given == NULL || PyObject_GetBuffer(given, &seen, PyBUF_SIMPLE) < 0) {
+    if (buffer == NULL || PyObject_GetBuffer(buffer, &seen, PyBUF_SIMPLE) < 0) {
         PyErr_Clear();
         return 0;
     }
@@ -98,13 +87,13 @@ static int64_t count_of(const Buffers *buffers, const char *name, size_t bytes)
 }
 
 /* Read the problem out of the buffers. */
-static int read_problem(Problem *problem, Buffers *buffers)
+static int read_problem(Problem *problem, Held *held, PyObject *given)
 {
     const Settings *of;
     const Constants *constants;
     enum { READ, WRITE };
-    if (!take_buffer(buffers, "settings", 1, sizeof *of, READ, &of) ||
-        !take_buffer(buffers, "constants", 1, sizeof *constants, READ, &constants))
+    if (!take(held, given, "settings", 1, sizeof *of, READ, &of) ||
+        !take(held, given, "constants", 1, sizeof *constants, READ, &constants))
         return 0;
     problem->of = *of, problem->constants = *constants;
     if (settings_fault(of) != NULL) {
@@ -112,30 +101,29 @@ static int read_problem(Problem *problem, Buffers *buffers)
         return 0;
     }
     const size_t integer = sizeof(int64_t), number = sizeof(double);
-    const int64_t N = count_of(buffers, "frames", integer), pulls = count_of(buffers, "reference_root", number);
-    const int64_t F = of->joints == 0 ? 0 : count_of(buffers, "rotations", number) / (4 * of->joints);
-    const int64_t levels = F == 0 ? of->layers : count_of(buffers, "ranks", integer) / F;
+    const int64_t N = count_of(given, "frames", integer), pulls = count_of(given, "reference_root", number);
+    const int64_t F = of->joints == 0 ? 0 : count_of(given, "rotations", number) / (4 * of->joints);
+    const int64_t levels = F == 0 ? of->layers : count_of(given, "ranks", integer) / F;
     problem->count = N, problem->motion_frames = F, problem->levels = levels, problem->pulls_root = pulls > 0;
-    if (!(take_buffer(buffers, "nodes", of->nodes, sizeof(Node), READ, &problem->node) &&
-            take_buffer(buffers, "column_nodes", of->columns, integer, READ, &problem->column_node) &&
-            take_buffer(buffers, "mobility", of->columns + 1, number, READ, &problem->mobility) &&
-            take_buffer(buffers, "tasks", of->tasks, sizeof(Task), READ, &problem->task) &&
-            take_buffer(buffers, "hinges", of->hinges, sizeof(Hinge), READ, &problem->hinge) &&
-            take_buffer(buffers, "limits", of->limits, sizeof(Limit), READ, &problem->limit) &&
-            take_buffer(buffers, "recruited", of->tasks * of->columns, 1, READ, &problem->recruited) &&
-            take_buffer(buffers, "targets", of->targets, number, READ, &problem->targets) &&
-            take_buffer(buffers, "frames", N, integer, READ, &problem->frames) &&
-            take_buffer(
-                buffers, "reference_rotations", 4 * F * of->joints, number, READ, &problem->reference_rotations) &&
-            take_buffer(buffers, "reference_root", pulls > 0 ? 3 * F : 0, number, READ, &problem->reference_root) &&
-            take_buffer(buffers, "softness", N * of->layers, number, READ, &problem->softness) &&
-            take_buffer(buffers, "rotations", 4 * F * of->joints, number, WRITE, &problem->rotations) &&
-            take_buffer(buffers, "translations", 3 * F * of->translated, number, WRITE, &problem->translations) &&
-            take_buffer(buffers, "levels", of->layers, integer, READ, &problem->level) &&
-            take_buffer(buffers, "iterations", F, integer, WRITE, &problem->iterations) &&
-            take_buffer(buffers, "converged", F, 1, WRITE, &problem->converged) &&
-            take_buffer(buffers, "ranks", F * levels, integer, WRITE, &problem->ranks) &&
-            take_buffer(buffers, "left", F * levels, number, WRITE, &problem->left)))
+    if (!(take(held, given, "nodes", of->nodes, sizeof(Node), READ, &problem->node) &&
+            take(held, given, "column_nodes", of->columns, integer, READ, &problem->column_node) &&
+            take(held, given, "mobility", of->columns + 1, number, READ, &problem->mobility) &&
+            take(held, given, "tasks", of->tasks, sizeof(Task), READ, &problem->task) &&
+            take(held, given, "hinges", of->hinges, sizeof(Hinge), READ, &problem->hinge) &&
+            take(held, given, "limits", of->limits, sizeof(Limit), READ, &problem->limit) &&
+            take(held, given, "recruited", of->tasks * of->columns, 1, READ, &problem->recruited) &&
+            take(held, given, "targets", of->targets, number, READ, &problem->targets) &&
+            take(held, given, "frames", N, integer, READ, &problem->frames) &&
+            take(held, given, "reference_rotations", 4 * F * of->joints, number, READ, &problem->reference_rotations) &&
+            take(held, given, "reference_root", pulls > 0 ? 3 * F : 0, number, READ, &problem->reference_root) &&
+            take(held, given, "softness", N * of->layers, number, READ, &problem->softness) &&
+            take(held, given, "rotations", 4 * F * of->joints, number, WRITE, &problem->rotations) &&
+            take(held, given, "translations", 3 * F * of->translated, number, WRITE, &problem->translations) &&
+            take(held, given, "levels", of->layers, integer, READ, &problem->level) &&
+            take(held, given, "iterations", F, integer, WRITE, &problem->iterations) &&
+            take(held, given, "converged", F, 1, WRITE, &problem->converged) &&
+            take(held, given, "ranks", F * levels, integer, WRITE, &problem->ranks) &&
+            take(held, given, "left", F * levels, number, WRITE, &problem->left)))
         return 0;
     if (problem_fault(problem) != NULL)
         PyErr_SetString(PyExc_ValueError, problem_fault(problem));
@@ -175,30 +163,28 @@ static Solver solver_of(const char *name)
 
 static PyObject *solve(PyObject *self, PyObject *arguments)
 {
-    Buffers buffers = {0};
+    Held held = {.count = 0};
+    PyObject *given;
     Problem problem = {0};
     long long begin, end;
     const char *name = NULL;
     int status = -2;
     (void)self;
-    if (!PyArg_ParseTuple(arguments, "OLLp|z", &buffers.given, &begin, &end, &problem.in_order, &name))
+    if (!PyArg_ParseTuple(arguments, "OLLp|z", &given, &begin, &end, &problem.in_order, &name))
         return NULL;
     const Solver solver = solver_of(name);
     if (solver == NULL)
         return NULL;
-    if (!PyDict_Check(buffers.given))
+    if (!PyDict_Check(given))
         PyErr_SetString(PyExc_TypeError, "buffers come in a dictionary");
-    else if (read_problem(&problem, &buffers)) {
+    else if (read_problem(&problem, &held, given)) {
         if (0 <= begin && begin <= end && end <= problem.count) {
             Py_BEGIN_ALLOW_THREADS status = solver(&problem, begin, end);
             Py_END_ALLOW_THREADS if (status < 0) PyErr_NoMemory();
         } else
             PyErr_SetString(PyExc_ValueError, "no such frames");
     }
-    release(buffers.held, buffers.count);
-    if (status < 0)
-        return NULL;
-    Py_RETURN_NONE;
+    return let_go_none_if(status >= 0, &held);
 }
 
 static PyObject *record_of(const Field *fields, size_t bytes)

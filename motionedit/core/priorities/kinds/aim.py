@@ -11,9 +11,10 @@ from motionedit.core import rotations as rot
 from motionedit.core.kinematics import effector_positions
 from motionedit.core.measure import Measure
 from motionedit.core.priorities.constants import NO_DIRECTION
-from motionedit.core.priorities.kinds.constraint import ConstraintErrors, Targets
+from motionedit.core.priorities.kinds.constraint import ConstraintErrors
 from motionedit.core.priorities.kinds.effector import EffectorConstraint
 from motionedit.core.priorities.problem import CompiledTask
+from motionedit.core.priorities.task_targets import Targets
 from motionedit.core.priorities.trajectories import position_targets
 from motionedit.core.units import METRES_PER_RADIAN
 from motionedit.dataclass import dataclass

@@ -9,10 +9,11 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.body.center_of_mass import Masses, center_of_mass, subtree_centers
 from motionedit.core.measure import WORLD, Measure
-from motionedit.core.priorities.kinds.constraint import Constraint, ConstraintErrors, Movable, Symbol, Targets
+from motionedit.core.priorities.kinds.constraint import Constraint, ConstraintErrors, Movable, Symbol
 from motionedit.core.priorities.points import lever_rows
 from motionedit.core.priorities.problem import CompiledTask
 from motionedit.core.priorities.recruiting import EVERYTHING, RecruitRule, Recruits, recruit_body
+from motionedit.core.priorities.task_targets import Targets
 from motionedit.core.priorities.trajectories import position_targets
 from motionedit.dataclass import dataclass
 

@@ -11,14 +11,13 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 
-from motionedit.core import rotations as rot
 from motionedit.core.kinematics import Effector
 from motionedit.core.priorities.points import point_of, recruited_of
 from motionedit.core.priorities.trajectories import active_interval, share_of
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping
     from typing import Self
 
     from motionedit.core.arrays import FloatArray, IntArray
@@ -29,6 +28,7 @@ if TYPE_CHECKING:
     from motionedit.core.priorities.problem import Task
     from motionedit.core.priorities.recruiting import Recruits
     from motionedit.core.priorities.sight import Sight
+    from motionedit.core.priorities.task_targets import Targets
     from motionedit.core.priorities.trajectories import ControlPoint, Curve
     from motionedit.core.skeleton import Skeleton
 
@@ -46,113 +46,6 @@ class Movable:
 
 
 @dataclass(frozen=True, eq=False)
-class Targets:
-    """Where a constraint's task shall be: frames `first` to `last`.
-
-    Positions (n, 3), rotations (n, 4), lengths (n,), None of what it has none of.
-    """
-
-    first: int
-    last: int
-    positions: FloatArray | None = None
-    rotations: FloatArray | None = None
-    lengths: FloatArray | None = None
-
-    @property
-    def span(self) -> slice:
-        """Their frames."""
-        return slice(self.first, self.last + 1)
-
-    @property
-    def all_positions(self) -> FloatArray:
-        """The positions, of targets that have them."""
-        if self.positions is None:
-            raise ValueError("these targets have no positions")
-        return self.positions
-
-    @property
-    def parts(self) -> tuple[FloatArray | None, FloatArray | None, FloatArray | None]:
-        """Positions, rotations and lengths."""
-        return self.positions, self.rotations, self.lengths
-
-    def within(self, frames: slice) -> Targets:
-        """Return the targets at some of their frames."""
-        if frames.start == self.first and frames.stop == self.last + 1:
-            return self
-        here = slice(frames.start - self.first, frames.stop - self.first)
-        return Targets(frames.start, frames.stop - 1, *(None if part is None else part[here] for part in self.parts))
-
-    def since(self, frame: int) -> Targets:
-        """Return the same targets of a motion that begins at a frame of this one."""
-        return self if frame == 0 else Targets(self.first - frame, self.last - frame, *self.parts)
-
-    def with_part(self, part: Targets) -> Targets:
-        """Return the targets with those at some of their frames replaced."""
-        here = slice(part.first - self.first, part.last + 1 - self.first)
-        parts = [None if own is None else own.copy() for own in self.parts]
-        for own, new in zip(parts, part.parts, strict=True):
-            if own is not None and new is not None:
-                own[here] = new
-        return Targets(self.first, self.last, *parts)
-
-    def positions_at(self, frames: IntArray) -> FloatArray:
-        """Return the positions at frames of the clip, shape (N, 3)."""
-        return _at(self.positions, frames, self.first, "positions")
-
-    def rotations_at(self, frames: IntArray) -> FloatArray:
-        """Return the rotations at frames of the clip, shape (N, 4)."""
-        return _at(self.rotations, frames, self.first, "rotations")
-
-    @property
-    def all_lengths(self) -> FloatArray:
-        """The lengths, of targets that have them."""
-        if self.lengths is None:
-            raise ValueError("these targets have no lengths")
-        return self.lengths
-
-    def lengths_at(self, frames: IntArray) -> FloatArray:
-        """Return the lengths at frames of the clip, shape (N,)."""
-        return _at(self.lengths, frames, self.first, "lengths")
-
-
-def _at(values: FloatArray | None, frames: IntArray, first: int, name: str) -> FloatArray:
-    """Return values, those of frames from `first` on, at growing frames; those that follow each other are a view."""
-    if values is None:
-        raise ValueError(f"these targets have no {name}")
-    start, count = int(frames[0]) - first, len(frames)
-    if int(frames[-1]) - first == start + count - 1:
-        return values[start : start + count]
-    at: FloatArray = values[frames - first]
-    return at
-
-
-def between(one: Targets, other: Targets, share: FloatArray) -> Targets:
-    """Return targets on the way from one to another of the same frames, so much of it each, shape (n,)."""
-    positions, rotations, lengths = one.positions, one.rotations, one.lengths
-    if positions is not None:
-        positions = positions + share[:, None] * (other.all_positions - positions)
-    if rotations is not None and other.rotations is not None:
-        arc = rot.log(rot.between(rotations, other.rotations))
-        rotations = rot.multiply(rotations, rot.exp(share[:, None] * arc))
-    if lengths is not None:
-        lengths = lengths + share * (other.all_lengths - lengths)
-    return Targets(one.first, one.last, positions, rotations, lengths)
-
-
-def moved(targets: Targets, before: Targets, after: Targets, share: FloatArray) -> Targets:
-    """Return targets moved along from where one motion has a task to where another has it, so much each, shape (n,)."""
-    positions, rotations, lengths = targets.positions, targets.rotations, targets.lengths
-    if positions is not None:
-        positions = positions + share[:, None] * (after.all_positions - before.all_positions)
-    if rotations is not None and before.rotations is not None and after.rotations is not None:
-        turn = rot.log(rot.between(before.rotations, after.rotations))
-        rotations = rot.multiply(rotations, rot.exp(share[:, None] * turn))
-    if lengths is not None:
-        lengths = lengths + share * (after.all_lengths - before.all_lengths)
-    return Targets(targets.first, targets.last, positions, rotations, lengths)
-
-
-@dataclass(frozen=True, eq=False)
 class ConstraintErrors:
     """What is left of a constraint: frames `first` on; lengths (n,) and radians (n,), None where it has none.
 
@@ -164,18 +57,6 @@ class ConstraintErrors:
     positions: FloatArray | None
     angles: FloatArray | None
     places: FloatArray | None = None
-
-
-def joined(parts: Sequence[ConstraintErrors], first: int) -> ConstraintErrors:
-    """Return what is left of a constraint from frame `first` on, of parts that follow one another."""
-    if len(parts) == 1 and parts[0].first == first:
-        return parts[0]
-
-    def whole(name: str) -> FloatArray | None:
-        arrays = [array for array in (getattr(part, name) for part in parts) if array is not None]
-        return np.concatenate(arrays) if len(arrays) > 1 else arrays[0] if arrays else None
-
-    return ConstraintErrors(first, whole("positions"), whole("angles"), whole("places"))
 
 
 @dataclass(frozen=True, eq=False)

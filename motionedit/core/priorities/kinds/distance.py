@@ -9,12 +9,13 @@ import numpy as np
 from motionedit.core.kinematics import Effector, effector_positions
 from motionedit.core.measure import Measure
 from motionedit.core.priorities.constants import NO_DIRECTION
-from motionedit.core.priorities.kinds.constraint import ConstraintErrors, Targets
+from motionedit.core.priorities.kinds.constraint import ConstraintErrors
 from motionedit.core.priorities.kinds.effector import EffectorConstraint
 from motionedit.core.priorities.lengths import length_targets
 from motionedit.core.priorities.points import moved_by
 from motionedit.core.priorities.problem import CompiledTask
 from motionedit.core.priorities.recruiting import Recruits, recruit_chains
+from motionedit.core.priorities.task_targets import Targets
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:

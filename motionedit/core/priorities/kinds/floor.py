@@ -8,10 +8,11 @@ import numpy as np
 
 from motionedit.core.kinematics import Effector, effector_positions
 from motionedit.core.measure import Measure
-from motionedit.core.priorities.kinds.constraint import Constraint, ConstraintErrors, Movable, Targets
+from motionedit.core.priorities.kinds.constraint import Constraint, ConstraintErrors, Movable
 from motionedit.core.priorities.points import moved_by
 from motionedit.core.priorities.problem import CompiledTask
 from motionedit.core.priorities.recruiting import EVERYTHING, RecruitRule, Recruits, recruit_chains
+from motionedit.core.priorities.task_targets import Targets
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:

@@ -11,8 +11,9 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from typing import Any, Self
 
-    from motionedit.core.feet.asked import GivenPlants
-    from motionedit.core.priorities.kinds.constraint import Scene, Targets
+    from motionedit.core.priorities.asks_to_stand import GivenPlants
+    from motionedit.core.priorities.kinds.constraint import Scene
+    from motionedit.core.priorities.task_targets import Targets
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.priorities.kinds.constraint import ConstraintErrors, Symbol, Targets
 from motionedit.core.priorities.kinds.effector import EffectorConstraint
 from motionedit.core.priorities.problem import CompiledTask
 from motionedit.core.priorities.rotation_trajectories import rotation_targets
+from motionedit.core.priorities.task_targets import Targets
 from motionedit.core.units import METRES_PER_RADIAN
 from motionedit.dataclass import dataclass
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.motion import Motion
-    from motionedit.core.priorities.kinds.constraint import Scene, Stage
+    from motionedit.core.priorities.kinds.constraint import ConstraintErrors, Scene, Stage, Symbol
     from motionedit.core.priorities.points import Point
     from motionedit.core.priorities.sight import Sight
 

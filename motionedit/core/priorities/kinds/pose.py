@@ -6,17 +6,17 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from motionedit.core.priorities.kinds.constraint import ConstraintErrors, Targets
 from motionedit.core.priorities.kinds.effector import EffectorConstraint
 from motionedit.core.priorities.kinds.orientation import OrientationTask, orientation_task, turned
 from motionedit.core.priorities.kinds.position import PositionTask, joint_goal, placed, position_task
+from motionedit.core.priorities.task_targets import Targets
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.motion import Motion
-    from motionedit.core.priorities.kinds.constraint import Scene, Stage
+    from motionedit.core.priorities.kinds.constraint import ConstraintErrors, Scene, Stage
     from motionedit.core.priorities.problem import CompiledTask
     from motionedit.core.priorities.sight import Sight
 

@@ -8,10 +8,11 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.kinematics import Effector
-from motionedit.core.priorities.kinds.constraint import Constraint, ConstraintErrors, Movable, Symbol, Targets
+from motionedit.core.priorities.kinds.constraint import Constraint, ConstraintErrors, Movable, Symbol
 from motionedit.core.priorities.points import Point, Recruited, turn_to_local
 from motionedit.core.priorities.problem import CompiledTask
 from motionedit.core.priorities.recruiting import Recruits
+from motionedit.core.priorities.task_targets import Targets
 from motionedit.core.units import METRES_PER_RADIAN
 from motionedit.dataclass import dataclass
 

@@ -300,9 +300,9 @@ def test_compiled_plants_are_those_of_numpy(seed, monkeypatch):
 @pytest.mark.skipif(solver_name() == "numpy", reason="nothing compiled here")
 def test_tracks_of_another_size_are_an_error_and_no_crash():
     rules = (1, 1, 1, 2, 1, *[1.0] * 7)
-    with pytest.raises(ValueError, match="tracks: 72 bytes do not fit"):
+    with pytest.raises(ValueError, match="tracks has 72 bytes instead of"):
         compiled().stands(np.zeros((3, 1, 3)), np.zeros(1, np.int64), UP, 4, 1, 1.0, rules)
-    with pytest.raises(ValueError, match="up: 16 bytes do not fit"):
+    with pytest.raises(ValueError, match="up has 16 bytes instead of"):
         compiled().stands(np.zeros((3, 1, 3)), np.zeros(1, np.int64), np.zeros(2), 3, 1, 1.0, rules)
     with pytest.raises(ValueError, match="too few frames"):
         compiled().stands(np.zeros((1, 1, 3)), np.zeros(1, np.int64), UP, 1, 1, 1.0, rules)

@@ -8,12 +8,13 @@ from human import skeleton_of, standing
 
 from motionedit.core import rotations as rot
 from motionedit.core.body.bends import find_bends
+from motionedit.core.body.bent_back import bent_back
 from motionedit.core.body.center_of_mass import center_of_mass, find_masses
 from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.body.in_one_loop import read_off
 from motionedit.core.body.limits import human_limits
 from motionedit.core.body.quality import squared_jerks
-from motionedit.core.body.ranges import bent_back, beyond_range, regions_of
+from motionedit.core.body.ranges import beyond_range, regions_of
 from motionedit.core.body.steps import change_steps, own_steps
 from motionedit.core.body.up import _ways_up
 from motionedit.core.compiled import compiled, solver_name
@@ -105,19 +106,19 @@ def test_joints_and_arrays_that_are_none_are_an_error_and_no_crash():
     for joints in ([2], [-1]):
         with pytest.raises(ValueError, match=f"no joint {joints[0]}"):
             read_off("cones", None, turns, np.array(joints), np.ones(3), shape=(1, 6))
-    with pytest.raises(ValueError, match="results: 8 bytes do not fit"):
+    with pytest.raises(ValueError, match="results has 8 bytes instead of"):
         read_off("cones", None, turns, np.array([0]), np.ones(3), shape=(1,))
-    with pytest.raises(ValueError, match="results: 24 bytes do not fit"):
+    with pytest.raises(ValueError, match="results has 24 bytes instead of"):
         read_off("center", places, turns, np.array([0]), np.ones(3), np.ones(1), shape=(1, 3))
-    with pytest.raises(ValueError, match="numbers: 16 bytes do not fit"):
+    with pytest.raises(ValueError, match="numbers has 16 bytes instead of"):
         read_off("carried", places, turns, np.array([0]), np.zeros(2), shape=(5, 1, 3))
     with pytest.raises(ValueError, match="no positions"):
         read_off("carried", None, turns, np.array([0]), np.zeros(3), shape=(5, 1, 3))
-    with pytest.raises(ValueError, match="positions: 24 bytes do not fit"):
+    with pytest.raises(ValueError, match="positions has 24 bytes instead of"):
         read_off("carried", np.zeros(3), turns, np.array([0]), np.zeros(3), shape=(5, 1, 3))
     with pytest.raises(ValueError, match="no such frames"):
         compiled().jerks(places, 2, 2, np.zeros(0))
-    with pytest.raises(ValueError, match="results: 8 bytes do not fit"):
+    with pytest.raises(ValueError, match="results has 8 bytes instead of"):
         compiled().jerks(places, 5, 2, np.zeros(1))
     with pytest.raises(ValueError, match="no such frames"):
         read_off("cones", None, turns, np.array([0]), np.ones(3), shape=(1, 6), first=5)
@@ -127,7 +128,7 @@ def test_joints_and_arrays_that_are_none_are_an_error_and_no_crash():
         with pytest.raises(ValueError, match="no positions or rotations, or no such frames"):
             compiled().bends(*given, 5, 2, first, limbs, *how, *out)
     for i, name in enumerate(("straight", "axes", "bones", "lower", "turns")):
-        with pytest.raises(ValueError, match=f"{name}: 0 bytes do not fit"):
+        with pytest.raises(ValueError, match=f"{name} has 0 bytes instead of"):
             compiled().bends(places, turns, 5, 2, 0, limbs, *how, *out[:i], np.zeros(0), *out[i + 1 :])
     with pytest.raises(ValueError, match="no joint 2"):
         compiled().bends(places, turns, 5, 2, 0, limbs + 2, *how, *out)
@@ -136,17 +137,17 @@ def test_joints_and_arrays_that_are_none_are_an_error_and_no_crash():
             compiled().median_ways(given, frames, 2, limbs, 1, np.zeros(3))
     with pytest.raises(ValueError, match="no joint 2"):
         compiled().median_ways(places, 5, 2, limbs + 2, 1, np.zeros(3))
-    with pytest.raises(ValueError, match="results: 16 bytes do not fit"):
+    with pytest.raises(ValueError, match="results has 16 bytes instead of"):
         compiled().median_ways(places, 5, 2, limbs, 1, np.zeros(2))
     with pytest.raises(ValueError, match="numbers of other frames"):
         compiled().same(turns, turns[:4], places, places, 5, np.zeros(5, bool))
-    with pytest.raises(ValueError, match="frames: 4 bytes do not fit"):
+    with pytest.raises(ValueError, match="frames has 4 bytes instead of"):
         compiled().same(turns, turns, places, places, 5, np.zeros(4, bool))
-    with pytest.raises(ValueError, match="rotations: 320 bytes do not fit"):
+    with pytest.raises(ValueError, match="rotations has 320 bytes instead of"):
         compiled().turned(turns, turns, 5, 0.1, np.zeros(5, bool))
-    with pytest.raises(ValueError, match="rotations: 320 bytes do not fit"):
+    with pytest.raises(ValueError, match="rotations has 320 bytes instead of"):
         compiled().stepping(turns, turns, 4, 2, 0.9, np.zeros(2, bool))
     with pytest.raises(ValueError, match="no rotations"):
         compiled().steps(turns, None, 5, 2, 0, np.zeros(2), np.zeros(2, int))
-    with pytest.raises(ValueError, match="frames: 8 bytes do not fit"):
+    with pytest.raises(ValueError, match="frames has 8 bytes instead of"):
         compiled().steps(None, turns, 5, 2, 0, np.zeros(2), np.zeros(1, int))

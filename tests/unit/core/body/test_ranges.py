@@ -5,9 +5,10 @@ import pytest
 from human import BONES, above, skeleton_of, split, standing, with_rotation
 
 from motionedit.core.body.bends import find_bends
+from motionedit.core.body.bent_back import bent_back
 from motionedit.core.body.bones import travel_joint
 from motionedit.core.body.find_anatomy import find_anatomy
-from motionedit.core.body.ranges import bent_back, beyond_range, regions_of
+from motionedit.core.body.ranges import beyond_range, regions_of
 from motionedit.core.kinematics import forward
 
 

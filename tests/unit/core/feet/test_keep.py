@@ -12,12 +12,13 @@ from motionedit.core.body.bends import find_bends
 from motionedit.core.body.contacts import Plant, sole_tracks
 from motionedit.core.body.quality import jerk_rms
 from motionedit.core.feet.goals import ground_under
-from motionedit.core.feet.keep import keep_feet, onto_stances, shifted
+from motionedit.core.feet.keep import onto_stances, within_legs
 from motionedit.core.feet.knees import eased_ways, knee_of
 from motionedit.core.feet.legs import LegGoal, legs_onto
 from motionedit.core.feet.pelvis import drop_needed, smooth_cover
+from motionedit.core.feet.reach import CALMS_ANOTHER, CALMS_OWN
 from motionedit.core.feet.stance import feet_of, foot_path, stance_of
-from motionedit.core.kinematics import forward
+from motionedit.core.kinematics import forward, shifted
 from motionedit.jobs.clip.facts import facts_of
 
 DATA = Path(__file__).parents[4] / "data"
@@ -28,30 +29,33 @@ def facts(name):
     return facts_of(motionedit.read(DATA / name))
 
 
+def keep_feet(motion, mine, theirs):
+    """Return a motion of a clip with feet that stand where another version of the clip has them, or it itself."""
+    poses, own = forward(motion), motion is theirs.clip.motion
+    stances = []
+    for foot in feet_of(mine.anatomy):
+        here = [plant for plant in theirs.phases if plant.foot == foot.side]
+        stances.append((foot, stance_of(foot_path(theirs.poses, foot), here)))
+    held = within_legs(stances, poses, mine.anatomy, up=mine.up)
+    ground, calms = ground_under(mine.anatomy, mine.up), CALMS_OWN if own else CALMS_ANOTHER
+    return onto_stances(motion, poses, held, mine.anatomy, ground, travel=mine.travel, first=mine.first, calms=calms)
+
+
 def kept(name, reference=None):
-    mine, theirs = facts(name), facts(reference or name)
-    return keep_feet(
-        mine.clip.motion,
-        theirs.clip.motion,
-        mine.anatomy,
-        theirs.phases,
-        up=mine.up,
-        travel=mine.travel,
-        first=mine.first,
-    )
+    return keep_feet(facts(name).clip.motion, facts(name), facts(reference or name))
 
 
 def raised(name, share):
     """Return the clip of a name with its body raised by a share of a leg."""
     clip = facts(name)
     way = np.tile(share * clip.anatomy.leg_length * clip.up, (len(clip.clip.motion), 1))
-    return shifted(clip.clip.motion, way, clip.poses, clip.travel)
+    return shifted(clip.clip.motion, way, clip.travel, poses=clip.poses)
 
 
 def kept_raised(name, share):
     """Return such a clip with its feet kept where they were."""
     clip = facts(name)
-    return keep_feet(raised(name, share), clip.clip.motion, clip.anatomy, clip.phases, up=clip.up, travel=clip.travel)
+    return keep_feet(raised(name, share), clip, clip)
 
 
 def drift(motion, of, plants=None):

@@ -100,7 +100,7 @@ def test_plants_and_joints_that_are_none_are_an_error_and_no_crash():
         with pytest.raises(ValueError, match="plant 0 is at no frames, or of no point"):
             compiled().phases(tracks, UP, legs, np.array([span]), *sizes, *RULES)
     plant = np.array([(0, 0, 0, 0, 1)])
-    with pytest.raises(ValueError, match="legs: 1120 bytes do not fit"):
+    with pytest.raises(ValueError, match="legs has 1120 bytes instead of"):
         compiled().phases(tracks, UP, legs, plant, 5, 4, 3, 1, 1.0, 0.01, *RULES)
     with pytest.raises(ValueError, match="no frames around one"):
         compiled().phases(tracks, UP, legs, plant, *sizes, (0, *RULES[0][1:]), RULES[1])
@@ -108,5 +108,5 @@ def test_plants_and_joints_that_are_none_are_an_error_and_no_crash():
     for joints in ((0, 1, 2, 3), (0, 1, -1, 2), (0, 1, 2, -2)):
         with pytest.raises(ValueError, match="no joint"):
             compiled().leg_paths(places, turns, 5, 3, np.array([joints]), UP, 1, 1.0, np.zeros((5, 14)))
-    with pytest.raises(ValueError, match="paths: 8 bytes do not fit"):
+    with pytest.raises(ValueError, match="paths has 8 bytes instead of"):
         compiled().leg_paths(places, turns, 5, 3, np.array([(0, 1, 2, -1)]), UP, 1, 1.0, np.zeros(1))

@@ -52,5 +52,5 @@ def test_plants_beyond_the_frames_and_arrays_of_another_size_are_an_error_and_no
     for span in ((0, 0, 5), (1, -1, 2), (0, 3, 2)):
         with pytest.raises(ValueError, match="plant 0 is at no frames"):
             compiled().stance(*given, np.array([span]), *out, 5, 1)
-    with pytest.raises(ValueError, match="turn: 120 bytes do not fit"):
+    with pytest.raises(ValueError, match="turn has 120 bytes instead of"):
         compiled().stance(three, three, three, three, np.zeros((0, 3), np.int64), *out, 5, 0)

@@ -1,4 +1,4 @@
-"""The compiled solver, kinematics and smoothing beside numpy's, on random skeletons, tasks, ranks and hinges."""
+"""The compiled solver beside numpy's, on random skeletons, tasks, ranks and hinges."""
 
 import os
 from dataclasses import dataclass, fields, replace
@@ -10,19 +10,17 @@ from arms import arms_of, solved
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from person import edited, end, held_feet, swaying
-from random_bodies import FEASIBLE, FRAMES, INFEASIBLE, by_numpy, difference, others_are_same, same_bits
+from random_bodies import FEASIBLE, FRAMES, INFEASIBLE, by_numpy, difference, motion_of, others_are_same, same_bits
 
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
 from motionedit.core.body.bends import turns_about
 from motionedit.core.body.center_of_mass import Masses
-from motionedit.core.body.hinges import Hinge, plain_hinge
+from motionedit.core.body.hinges import Hinge
 from motionedit.core.compiled import CHOICE, compiled, solver_name
-from motionedit.core.kinematics import Effector, forward
+from motionedit.core.kinematics import Effector
 from motionedit.core.measure import Measure
-from motionedit.core.motion import Motion
 from motionedit.core.priorities import compiled_solver
-from motionedit.core.priorities.continuity import smoothed_displacement
 from motionedit.core.priorities.edit import edit_by_priorities
 from motionedit.core.priorities.kinds import KINDS, CenterOfMass, Position
 from motionedit.core.priorities.kinds.position import PositionTask
@@ -30,25 +28,10 @@ from motionedit.core.priorities.recruiting import RecruitRule
 from motionedit.core.priorities.settings import Body, LayeredSettings, PaperFilter, Passes
 from motionedit.core.priorities.solver import prepare_problem
 from motionedit.core.priorities.trajectories import ControlPoint
-from motionedit.core.skeleton import Skeleton
 
 pytestmark = pytest.mark.skipif(solver_name() == "numpy", reason="no compiled solver here")
 
 NAMES = ("position", "orientation", "pose", "com", "aim", "posture")
-
-
-def skeleton_of(rng, joints):
-    parents = np.array([-1, *(int(rng.integers(max(0, j - 4), j)) for j in range(1, joints))])
-    offsets = rng.normal(scale=0.25, size=(joints, 3))
-    rotation = ("Zrotation", "Xrotation", "Yrotation")
-    channels = (("Xposition", "Yposition", "Zposition", *rotation), *(rotation for _ in range(joints - 1)))
-    return Skeleton(tuple(f"J{j}" for j in range(joints)), frozen(parents), frozen(offsets), channels)
-
-
-def motion_of(rng, skeleton, frames=FRAMES):
-    start = rng.normal(scale=0.5, size=(1, len(skeleton), 3))
-    sway = rng.normal(scale=0.05, size=(frames, len(skeleton), 3))
-    return Motion(skeleton, rot.exp(start + sway), rng.normal(scale=0.1, size=(frames, 1, 3)), 0.01)
 
 
 def masses_of(rng, skeleton):
@@ -98,8 +81,8 @@ def constraint_of(rng, skeleton, number, reach):
 
 def problem_of(seed, joints, count, reach):
     rng = np.random.default_rng(seed)
-    skeleton = skeleton_of(rng, joints)
-    motion = motion_of(rng, skeleton)
+    motion = motion_of(rng, joints)
+    skeleton = motion.skeleton
     hinges = hinges_of(rng, skeleton, motion) if rng.uniform() < 0.7 else ()
     body = Body(masses_of(rng, skeleton), hinges, 0, 0)
     return motion, [constraint_of(rng, skeleton, i, reach) for i in range(count)], body
@@ -252,88 +235,14 @@ def test_both_smooth_alike(patch, seed, smoothing):
 @pytest.mark.parametrize("threads", [2, 3, 7])
 def test_the_number_of_threads_changes_no_bit(threads):
     rng = np.random.default_rng(4)
-    skeleton = skeleton_of(rng, 12)
-    motion = motion_of(rng, skeleton, 300)
+    motion = motion_of(rng, 12, 300)
     hold = ControlPoint("hold", 0, 299, shift=np.ones(3) * 0.05)
     hand = Position(name="hand", effector=Effector(11, np.zeros(3)), points=(hold,))
-    body = Body(masses_of(rng, skeleton), (), 0, 0)
+    body = Body(masses_of(rng, motion.skeleton), (), 0, 0)
     one = edit_by_priorities(motion, [hand], body, LayeredSettings())
     other = edit_by_priorities(motion, [hand], body, replace(LayeredSettings(), threads=threads))
     np.testing.assert_array_equal(one.motion.rotations, other.motion.rotations)
     np.testing.assert_array_equal(one.iterations, other.iterations)
-
-
-@pytest.mark.parametrize("joints", [1, 2, 31])
-def test_kinematics_are_the_same(patch, joints):
-    rng = np.random.default_rng(joints)
-    motion = motion_of(rng, skeleton_of(rng, joints), 20)
-    mine, theirs = forward(motion), by_numpy(patch, lambda: forward(motion))
-    np.testing.assert_allclose(mine.positions, theirs.positions, atol=1e-14)
-    np.testing.assert_allclose(mine.rotations, theirs.rotations, atol=1e-14)
-
-
-@pytest.mark.parametrize(("first", "sigma"), [(0, 1.5), (2, 3.0), (0, 40.0), (19, 1.0), (0, 0.0)])
-def test_smoothing_is_the_same(patch, first, sigma):
-    rng = np.random.default_rng(1)
-    before = motion_of(rng, skeleton_of(rng, 6), 20)
-    turned = before.rotations.copy()
-    turned[4:9, 2] = rot.multiply(turned[4:9, 2], rot.exp(rng.normal(scale=1.5, size=(5, 3))))
-    after = Motion(before.skeleton, turned, before.translations + rng.normal(size=(20, 1, 3)), before.frame_time)
-    mine = smoothed_displacement(before, after, sigma=sigma, first=first)
-    theirs = by_numpy(patch, lambda: smoothed_displacement(before, after, sigma=sigma, first=first))
-    np.testing.assert_allclose(mine.rotations, theirs.rotations, atol=1e-13)
-    np.testing.assert_allclose(mine.translations, theirs.translations, atol=1e-13)
-    still = [j for j in range(6) if j != 2]
-    np.testing.assert_array_equal(mine.rotations[:, still], before.rotations[:, still])
-
-
-def two_alike(patch, before, after, **how):
-    """Return a smoothed displacement as C has it, numpy's being the same."""
-    mine = smoothed_displacement(before, after, **how)
-    theirs = by_numpy(patch, lambda: smoothed_displacement(before, after, **how))
-    np.testing.assert_allclose(mine.rotations, theirs.rotations, atol=1e-13)
-    return mine
-
-
-@pytest.mark.parametrize("first", [0, 3])
-def test_hinges_are_smoothed_about_their_axes_alike(patch, first):
-    rng = np.random.default_rng(2)
-    before = motion_of(rng, skeleton_of(rng, 6), 40)
-    axes = rng.normal(size=(2, 3))
-    axes /= np.linalg.norm(axes, axis=1, keepdims=True)
-    hinges = tuple(plain_hinge(joint, axis, (-9.0, 9.0)) for joint, axis in zip((2, 4), axes, strict=True))
-    turned = before.rotations.copy()
-    for hinge in hinges:
-        by = rng.normal(scale=0.4, size=(40, 1)) * hinge.axis
-        turned[:, hinge.joint] = rot.multiply(rot.exp(by), turned[:, hinge.joint])
-    turned[:, 3] = rot.multiply(turned[:, 3], rot.exp(rng.normal(scale=0.4, size=(40, 3))))
-    after = Motion(before.skeleton, turned, before.translations, before.frame_time)
-    smooth = two_alike(patch, before, after, sigma=2.0, first=first, hinges=hinges)
-    for hinge in hinges:
-        v = rot.log(rot.multiply(smooth.rotations[:, hinge.joint], rot.conjugate(before.rotations[:, hinge.joint])))
-        assert np.linalg.norm(np.cross(v, hinge.axis), axis=1).max() < 1e-12
-        assert 0.0 < np.abs(np.diff(v @ hinge.axis)[first:]).max() < 0.3
-    # Of a joint that is no hinge the displacement is another on that side: taking it for one would show.
-    assert (
-        rot.angle_between(smooth.rotations, two_alike(patch, before, after, sigma=2.0, first=first).rotations).max()
-        > 0.0
-    )
-
-
-@pytest.mark.parametrize("is_hinge", [False, True])
-def test_a_change_that_passes_half_a_turn_is_smoothed_through_it(patch, is_hinge):
-    rng = np.random.default_rng(3)
-    before = motion_of(rng, skeleton_of(rng, 4), 60)
-    axis = np.array([0.6, 0.0, 0.8])
-    # From 1 to 5.5 rad and on: a rotation vector would turn round at pi.
-    angles = np.linspace(1.0, 5.5, 60)
-    turned, turns = before.rotations.copy(), rot.exp(angles[:, None] * axis)
-    turned[:, 2] = rot.multiply(turns, turned[:, 2]) if is_hinge else rot.multiply(turned[:, 2], turns)
-    after = Motion(before.skeleton, turned, before.translations, before.frame_time)
-    hinges = (plain_hinge(2, axis, (-9.0, 9.0)),) if is_hinge else ()
-    smooth = two_alike(patch, before, after, sigma=2.0, first=0, hinges=hinges)
-    # A straight line stays as it is.
-    assert rot.angle_between(smooth.rotations[:, 2], turned[:, 2]).max() < 1e-7
 
 
 def test_a_variable_of_the_environment_keeps_the_compiled_part_out(patch):

@@ -12,8 +12,8 @@ from motionedit.core.motion import Motion
 from motionedit.core.priorities.edit import edit_by_priorities, prepare
 from motionedit.core.priorities.frames import run_of, solve_frames
 from motionedit.core.priorities.giving_way import given_way
+from motionedit.core.priorities.homing import attraction
 from motionedit.core.priorities.kinds import CenterOfMass, Position, Posture
-from motionedit.core.priorities.numpy_solver import attraction
 from motionedit.core.priorities.problem import Reference
 from motionedit.core.priorities.settings import LayeredSettings, Passes
 from motionedit.core.priorities.targets import lefts_of

@@ -6,7 +6,7 @@ from person import UP, edited, end, path, swaying
 
 from motionedit.core.compiled import CHOICE
 from motionedit.core.measure import Level
-from motionedit.core.priorities import numpy_solver
+from motionedit.core.priorities import numpy_step
 from motionedit.core.priorities.kinds import Floor
 from motionedit.core.priorities.layers import Descent
 from motionedit.core.priorities.one_sided import Evaluated, Rows, Sides
@@ -85,7 +85,7 @@ def shifted_root(monkeypatch):
             return home
 
         monkeypatch.setenv(CHOICE, "numpy")
-        monkeypatch.setattr(numpy_solver, "accelerated", wild)
+        monkeypatch.setattr(numpy_step, "accelerated", wild)
 
     return shift
 

@@ -6,9 +6,9 @@ from person import BODY, end, held_feet, path, swaying
 
 from motionedit.core.priorities.edit import prepare
 from motionedit.core.priorities.kinds import Position
-from motionedit.core.priorities.kinds.constraint import Targets
 from motionedit.core.priorities.ramps import apart, ends_in, led_frames, led_to, ramps_of
 from motionedit.core.priorities.settings import LayeredSettings
+from motionedit.core.priorities.task_targets import Targets
 from motionedit.core.priorities.trajectories import ControlPoint
 
 FRAMES = 80

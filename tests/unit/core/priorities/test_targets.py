@@ -1,12 +1,10 @@
-"""Targets between others, targets moved along, and where a motion has the task of each kind."""
+"""Where a motion has the task of each kind, what it leaves of it, and how far constraints are eased in."""
 
 from dataclasses import replace
 from itertools import pairwise, starmap
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from person import BODY, FEET, SKELETON, end, joint, swaying
 
 from motionedit.core import rotations as rot
@@ -15,12 +13,11 @@ from motionedit.core.motion import Motion
 from motionedit.core.priorities import targets as of_all
 from motionedit.core.priorities.edit import prepare
 from motionedit.core.priorities.kinds import Aim, CenterOfMass, Distance, Floor, Orientation, Pose, Position, Posture
-from motionedit.core.priorities.kinds.constraint import Targets, between, moved
 from motionedit.core.priorities.lengths import LengthPoint
 from motionedit.core.priorities.settings import LayeredSettings, PaperFilter
 from motionedit.core.priorities.targets import errors_of, reached
+from motionedit.core.priorities.task_targets import Targets
 from motionedit.core.priorities.trajectories import ControlPoint, share_of
-from motionedit.core.slerp import slerp
 
 FRAMES = 14
 MOTION = swaying(FRAMES)
@@ -117,39 +114,6 @@ def test_what_has_no_place_to_go_back_to_keeps_its_targets(constraint):
     assert constraint.reached(targets, None) is targets
 
 
-def random_targets(seed, n=9):
-    rng = np.random.default_rng(seed)
-    return Targets(
-        3, 2 + n, rng.normal(size=(n, 3)), rot.exp(rng.normal(scale=0.8, size=(n, 3))), rng.uniform(0.1, 2.0, size=n)
-    )
-
-
-@given(st.integers(0, 1000), st.integers(0, 1000), st.floats(0.0, 1.0))
-def test_between_two_targets_every_part_is_on_the_straight_way(one, other, share):
-    a, b = random_targets(one), random_targets(other)
-    found = between(a, b, np.full(9, share))
-    assert (found.first, found.last) == (3, 11)
-    np.testing.assert_allclose(found.positions, (1 - share) * a.positions + share * b.positions, atol=1e-12)
-    np.testing.assert_allclose(found.lengths, (1 - share) * a.lengths + share * b.lengths, atol=1e-12)
-    expected = slerp(a.rotations, b.rotations, np.full(9, share))
-    assert rot.angle_between(found.rotations, expected).max() < 1e-7
-
-
-@given(st.integers(0, 1000), st.integers(0, 1000), st.integers(0, 1000))
-def test_targets_are_moved_by_so_much_of_the_way_as_their_share(wanted, one, other):
-    targets, before, after = map(random_targets, (wanted, one, other))
-    none, half, whole = (moved(targets, before, after, np.full(9, share)) for share in (0.0, 0.5, 1.0))
-    np.testing.assert_array_equal(none.positions, targets.positions)
-    np.testing.assert_allclose(half.positions - targets.positions, 0.5 * (after.positions - before.positions))
-    np.testing.assert_allclose(whole.lengths - targets.lengths, after.lengths - before.lengths)
-    turn = rot.multiply(rot.conjugate(before.rotations), after.rotations)
-    assert rot.angle_between(whole.rotations, rot.multiply(targets.rotations, turn)).max() < 1e-7
-    # What rides where the one motion has it goes to where the other has it.
-    rides = moved(before, before, after, np.ones(9))
-    np.testing.assert_allclose(rides.positions, after.positions, atol=1e-12)
-    assert rot.angle_between(rides.rotations, after.rotations).max() < 1e-7
-
-
 def test_a_share_is_all_in_the_points_and_rises_and_falls_as_hermites_cubic():
     share = share_of([ControlPoint("hold", 20, 30)], ease_in=10.0, ease_out=5.0, frames=60)
     np.testing.assert_array_equal(share[20:31], 1.0)
@@ -168,13 +132,3 @@ def test_a_share_whose_ramps_the_clip_cuts_is_a_part_of_the_whole_one():
     whole = shares(20, 60)
     np.testing.assert_allclose(shares(4, 14), whole[16:30], atol=1e-12)
     assert 0.0 < shares(4, 14)[0] < shares(4, 14)[1]
-
-
-def test_targets_say_what_they_do_not_have():
-    empty = Targets(0, 3)
-    with pytest.raises(ValueError, match="no positions"):
-        _ = empty.all_positions
-    with pytest.raises(ValueError, match="no lengths"):
-        _ = empty.all_lengths
-    with pytest.raises(ValueError, match="no rotations"):
-        empty.rotations_at(np.arange(2))

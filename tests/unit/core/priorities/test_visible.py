@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from person import BODY, held_feet, joint, swaying
 
+from motionedit.core import blocks
 from motionedit.core import rotations as rot
-from motionedit.core import trace
 from motionedit.core.motion import Motion
 from motionedit.core.priorities.edit import prepare
 from motionedit.core.priorities.passes import solve_in_passes
@@ -100,6 +100,6 @@ def test_a_frame_that_jerks_twice_as_much_as_it_did_is_seen_and_no_less():
 def test_a_long_motion_is_seen_as_a_short_one_block_by_block(monkeypatch, block):
     run, after = prepared(), turned(30.0, [13, 14, 60])
     steps, jerks = steps_at(run, after), jerks_of(run, after)[0]
-    monkeypatch.setattr(trace, "BLOCK_FRAMES", block)
+    monkeypatch.setattr(blocks, "BLOCK_FRAMES", block)
     np.testing.assert_array_equal(steps_at(run, after), steps)
     np.testing.assert_allclose(jerks_of(run, after)[0], jerks, rtol=1e-12)

@@ -13,8 +13,8 @@ sys.path.append(str(Path(__file__).parents[2] / "core"))
 
 from human import skeleton_of, standing, with_rotation
 
+from motionedit.core.blocks import BLOCK_FRAMES
 from motionedit.core.bvh import new_bytes, parse_clip
-from motionedit.core.trace import BLOCK_FRAMES
 from motionedit.errors import ClipError
 from motionedit.jobs.clip import facts
 

@@ -1,4 +1,4 @@
-"""What metrics need of a motion, taken block by block: a long motion's world transforms are several times its file."""
+"""What metrics need of a motion, taken block by block."""
 
 from __future__ import annotations
 
@@ -9,18 +9,14 @@ import numpy as np
 from motionedit.core.arrays import frozen
 from motionedit.core.body.center_of_mass import center_of_mass
 from motionedit.core.body.quality import JerkMeter
-from motionedit.core.kinematics import WorldPoses, forward
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable
 
     from motionedit.core.arrays import FloatArray
     from motionedit.core.body.center_of_mass import Masses
-    from motionedit.core.motion import Motion
-
-# Frames of a block, whose arrays stay near the processor.
-BLOCK_FRAMES = 1 << 10
+    from motionedit.core.kinematics import WorldPoses
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,21 +66,3 @@ def trace_of(
         jerk.add(poses.positions)
     center = frozen(np.concatenate(centers)) if centers else None
     return Trace(frozen(np.concatenate(tracks)), center, jerk.rms(frame_time=frame_time), jerk.worst)
-
-
-def blocks_of(poses: WorldPoses) -> Iterator[WorldPoses]:
-    """Yield world transforms in blocks of frames; views."""
-    for block in frame_blocks(len(poses.positions)):
-        yield WorldPoses(poses.positions[block], poses.rotations[block])
-
-
-def forward_blocks(motions: Iterable[Motion]) -> Iterator[WorldPoses]:
-    """Yield the world transforms of blocks of a motion."""
-    for motion in motions:
-        yield forward(motion)
-
-
-def frame_blocks(frames: int) -> Iterator[slice]:
-    """Yield so many frames in blocks."""
-    for start in range(0, frames, BLOCK_FRAMES):
-        yield slice(start, min(start + BLOCK_FRAMES, frames))

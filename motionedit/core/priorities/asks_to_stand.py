@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from typing import Self
 
     from motionedit.core.kinematics import Effector
-    from motionedit.core.priorities.kinds.constraint import Targets
+    from motionedit.core.priorities.task_targets import Targets
 
 # The part that stands, heel or toe, from the first frame to the last, both in.
 GivenPlants = tuple[tuple[str, int, int], ...]

@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 from human import skeleton_of, standing, with_rotation
 
+from motionedit.core import blocks
 from motionedit.core import rotations as rot
-from motionedit.core import trace
-from motionedit.core.arrays import median, percentile
+from motionedit.core.blocks import blocks_of, forward_blocks, frame_blocks
 from motionedit.core.body import center_of_mass as center_of_mass_module
 from motionedit.core.body.center_of_mass import center_of_mass, find_masses
 from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.body.quality import jerk_rms
+from motionedit.core.body.trace import trace_of
 from motionedit.core.kinematics import forward
-from motionedit.core.trace import blocks_of, forward_blocks, frame_blocks, trace_of
 
 HAND = skeleton_of().names.index("LeftHand")
 JOINTS, OFFSETS = np.array([HAND, 1]), np.array([[0.1, -0.3, 0.2], [0.0, 0.0, 0.0]])
@@ -33,12 +33,12 @@ def moving():
 @pytest.mark.parametrize("size", [1, 2, 5, 1000])
 @pytest.mark.parametrize("first", [0, 3])
 def test_a_trace_by_blocks_is_that_of_the_whole_motion(moving, monkeypatch, size, first):
-    monkeypatch.setattr(trace, "BLOCK_FRAMES", size)
+    monkeypatch.setattr(blocks, "BLOCK_FRAMES", size)
     poses = forward(moving)
     masses = find_masses(moving.skeleton, find_anatomy(moving.skeleton))
     parts = (moving.at(block) for block in frame_blocks(len(moving)))
-    for blocks in (blocks_of(poses), forward_blocks(parts)):
-        found = trace_of(blocks, tracks_of, frame_time=moving.frame_time, first=first, masses=masses)
+    for each in (blocks_of(poses), forward_blocks(parts)):
+        found = trace_of(each, tracks_of, frame_time=moving.frame_time, first=first, masses=masses)
         np.testing.assert_allclose(found.tracks, tracks_of(poses), atol=1e-12)
         np.testing.assert_allclose(found.center, center_of_mass(poses, masses), atol=1e-12)
         assert found.jerk_rms == pytest.approx(jerk_rms(poses.positions, frame_time=moving.frame_time, first=first))
@@ -47,19 +47,6 @@ def test_a_trace_by_blocks_is_that_of_the_whole_motion(moving, monkeypatch, size
 
 def test_without_masses_there_is_no_path_of_their_center(moving):
     assert trace_of(blocks_of(forward(moving)), tracks_of, frame_time=0.01, first=0).center is None
-
-
-@pytest.mark.parametrize("shape", [(1,), (2,), (7, 3), (8, 3)])
-def test_the_median_is_numpys(shape):
-    values = np.random.default_rng(1).normal(size=shape)
-    np.testing.assert_array_equal(median(values), np.median(values, axis=0))
-
-
-@pytest.mark.parametrize("rows", [2, 3, 50, 51, 145])
-@pytest.mark.parametrize("share", [2.0, 95.0])
-def test_the_percentile_is_numpys(rows, share):
-    values = np.random.default_rng(rows).normal(size=(rows, 4))
-    np.testing.assert_allclose(percentile(values, share), np.percentile(values, share, axis=0), rtol=1e-13)
 
 
 def test_the_center_of_mass_does_not_depend_on_the_frames_that_are_taken_together(moving, monkeypatch):
