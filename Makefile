@@ -10,7 +10,7 @@ BIN := $(VENV)/bin
 endif
 STAMP := $(VENV)/.installed
 OUT ?= out
-CSRC := $(wildcard motionedit/core/csrc/*.[ch] motionedit/core/*/csrc/*.[ch])
+CSRC := $(wildcard motionedit/core/csrc/*.[ch] motionedit/core/*/csrc/*.[ch] motionedit/core/*/*/csrc/*.[ch])
 JOBS ?= 2
 
 # One BLAS thread: the results do not depend on the machine's cores, and small solves are faster.

@@ -14,11 +14,11 @@ from benchmarks.clock import Row, best_of
 from motionedit.core.bvh import read_clip
 from motionedit.core.compiled import CHOICE, solver_name
 from motionedit.core.motion import Motion
-from motionedit.core.priorities import numpy_solver
+from motionedit.core.priorities.continuity.passes import solve_in_passes
 from motionedit.core.priorities.edit import PrioritizedEdit, edit_by_priorities, prepare
 from motionedit.core.priorities.frames import solve_from_input
-from motionedit.core.priorities.passes import solve_in_passes
 from motionedit.core.priorities.settings import Body, LayeredSettings, Passes
+from motionedit.core.priorities.solver import numpy_solver
 from motionedit.jobs.batch.plan import ClipTask
 from motionedit.jobs.edit_prioritized.job import EditByPriorities
 from motionedit.spec.load import load_spec

@@ -31,5 +31,5 @@ cones=tests/unit/core/priorities/test_cones.py::test_joints_stay_within_their_co
   tests/unit/core/test_rotations.py tests/unit/core/test_euler.py tests/unit/core/test_kinematics.py \
   tests/unit/core/body/test_contacts.py tests/unit/core/body/test_in_one_loop.py tests/unit/core/body/test_ranges.py \
   tests/unit/core/feet/test_measures.py tests/unit/core/feet/test_phases.py tests/unit/core/feet/test_stance.py \
-  tests/unit/core/timeline/test_sampled_rows.py tests/properties/test_compiled_text.py \
+  tests/unit/core/timeline/test_interpolation.py tests/unit/core/timeline/test_sampled_rows.py tests/properties/test_compiled_text.py \
   tests/bvh_files/test_short_edits.py

@@ -18,7 +18,7 @@ from motionedit.core.body.find_anatomy import anatomy_of
 from motionedit.core.bvh import new_bytes, read_clip
 from motionedit.core.kinematics import forward
 from motionedit.core.motion import Motion
-from motionedit.core.priorities.trajectories import ControlPoint, position_targets
+from motionedit.core.priorities.trajectories.positions import ControlPoint, position_targets
 from motionedit.core.units import STANDARD_LEG
 
 if TYPE_CHECKING:

@@ -23,7 +23,7 @@ from motionedit.core.priorities.edit import PrioritizedEdit, edit_by_priorities,
 from motionedit.core.priorities.frames import solve_frames
 from motionedit.core.priorities.kinds import CenterOfMass, Position
 from motionedit.core.priorities.settings import Body, LayeredSettings, Passes
-from motionedit.core.priorities.trajectories import ControlPoint, position_targets
+from motionedit.core.priorities.trajectories.positions import ControlPoint, position_targets
 from motionedit.core.units import STANDARD_LEG
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.bvh import edited_bytes, read_clip
 from motionedit.core.kinematics import Effector, forward
-from motionedit.core.priorities.points import Columns, Point, Recruited
+from motionedit.core.priorities.solver.points import Columns, Point, Recruited
 from studies.lab import joint_positions
 from studies.paper.drawing import BLUE, GREY, INK, ORANGE, Camera, Stage, body, new_figure
 from studies.paper.study import ALGORITHM_1, Findings, Table, club_head, joint

@@ -38,20 +38,35 @@ def test_the_two_papers_do_not_know_each_other():
             assert not [each for each in GRAPH[name] if each.startswith(stranger)], name
 
 
-def room_of(module):
-    """Return the room of a module of `core` or `jobs`: a folder in there, or that itself."""
-    inside = ".".join(module.split(".")[:3])
+def room_of(module, floor):
+    """Return the room of a module on a floor: a folder in there, or that itself."""
+    inside = ".".join(module.split(".")[: floor.count(".") + 2])
     return inside if any(name.startswith(f"{inside}.") for name in GRAPH) else inside.rpartition(".")[0]
+
+
+def rooms_of(floor):
+    """Return the rooms of a floor, and which others each imports."""
+    rooms = {}
+    for name in (name for name in GRAPH if name.startswith(f"{floor}.")):
+        others = {room_of(each, floor) for each in GRAPH[name] if each.startswith(f"{floor}.")}
+        rooms.setdefault(room_of(name, floor), set()).update(others - {room_of(name, floor)})
+    return rooms
 
 
 @pytest.mark.parametrize("floor", ["motionedit.core", "motionedit.jobs"])
 def test_the_rooms_of_a_floor_do_not_import_each_other_in_a_circle(floor):
-    rooms = {}
-    for name in (name for name in GRAPH if name.startswith(f"{floor}.")):
-        others = {room_of(each) for each in GRAPH[name] if each.startswith(f"{floor}.")}
-        rooms.setdefault(room_of(name), set()).update(others - {room_of(name)})
+    rooms = rooms_of(floor)
     assert len(rooms) > 5
     assert circles(rooms) == []
+
+
+def test_the_edit_by_priorities_has_its_rooms_in_one_order():
+    """What stands beside them is in the middle: it uses some, and is used by others."""
+    floor = "motionedit.core.priorities"
+    rooms = {room: others - {floor} for room, others in rooms_of(floor).items() if room != floor}
+    assert {room.rpartition(".")[2] for room in rooms} == {"solver", "trajectories", "kinds", "continuity"}
+    assert circles(rooms) == []
+    assert not any(f"{floor}.continuity" in others for others in rooms.values())
 
 
 def test_the_compiled_part_is_reached_from_one_file():
@@ -113,7 +128,7 @@ def test_no_page_asks_for_a_kind(path):
     assert not re.findall(r"\bkind\s*(?:[=!]==|\))", path.read_text(encoding="utf-8"))
 
 
-@pytest.mark.parametrize("path", sorted((PRIORITIES / "csrc").glob("*.[ch]")), ids=lambda path: path.name)
+@pytest.mark.parametrize("path", sorted((PRIORITIES / "solver" / "csrc").glob("*.[ch]")), ids=lambda path: path.name)
 def test_the_compiled_part_knows_kinds_by_their_table_alone(path):
     text = path.read_text(encoding="utf-8")
     assert not re.findall(r"->kind\s*[=!<>]=|switch\s*\([^)]*kind", text)

@@ -13,7 +13,7 @@ from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.kinematics import forward
 from motionedit.core.motion import Motion
 from motionedit.core.priorities.kinds.com import CenterOfMassTask
-from motionedit.core.priorities.points import Columns, Recruited
+from motionedit.core.priorities.solver.points import Columns, Recruited
 
 STEP = 1e-6
 HUMAN = skeleton_of()

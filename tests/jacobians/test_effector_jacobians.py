@@ -9,7 +9,7 @@ from motionedit.core.kinematics import Effector, effector_positions, forward
 from motionedit.core.motion import Motion
 from motionedit.core.priorities.kinds.orientation import OrientationTask
 from motionedit.core.priorities.kinds.position import PositionTask
-from motionedit.core.priorities.points import Columns, Point, Recruited
+from motionedit.core.priorities.solver.points import Columns, Point, Recruited
 from motionedit.core.skeleton import Skeleton
 from motionedit.core.units import METRES_PER_RADIAN
 

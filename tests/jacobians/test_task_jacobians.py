@@ -18,7 +18,7 @@ from motionedit.core.priorities.kinds.orientation import OrientationTask
 from motionedit.core.priorities.kinds.pose import PoseTask
 from motionedit.core.priorities.kinds.position import PositionTask
 from motionedit.core.priorities.kinds.posture import PostureTask
-from motionedit.core.priorities.points import Columns, Point, Recruited
+from motionedit.core.priorities.solver.points import Columns, Point, Recruited
 
 STEP = 1e-6
 FRAMES = 3

@@ -11,14 +11,14 @@ from motionedit.core import rotations as rot
 from motionedit.core.blocks import frame_blocks
 from motionedit.core.body.bones import below
 from motionedit.core.compiled import compiled
-from motionedit.core.priorities.continuity import NO_DISPLACEMENT
+from motionedit.core.priorities.continuity.passes import solve
+from motionedit.core.priorities.continuity.switching import eased_from_others
 from motionedit.core.priorities.frames import run_of
 from motionedit.core.priorities.kinds.constraint import Movable
-from motionedit.core.priorities.passes import solve
 from motionedit.core.priorities.ramps import led_to
 from motionedit.core.priorities.recruiting import Breach, Reach, Recruits, breaches, expanded
 from motionedit.core.priorities.settings import Passes
-from motionedit.core.priorities.switching import eased_from_others
+from motionedit.core.priorities.solver.constants import NO_DISPLACEMENT
 from motionedit.core.priorities.targets import NOBODY, Follows, errors_of, with_targets
 from motionedit.dataclass import dataclass, replace
 

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.kinematics import shifted
-from motionedit.core.priorities.constants import LARGEST_ERROR
 from motionedit.core.priorities.groups import seen_by
+from motionedit.core.priorities.solver.constants import LARGEST_ERROR
 
 if TYPE_CHECKING:
     from motionedit.core.motion import Motion

@@ -13,8 +13,8 @@ from motionedit.core.motion import Motion
 from motionedit.core.priorities.far_floors import lifted
 from motionedit.core.priorities.far_turns import parts_of
 from motionedit.core.priorities.groups import Asked, Group, groups_of, part_of, retargeted, spans_of
-from motionedit.core.priorities.problem import LayeredSolution, Reference
-from motionedit.core.priorities.solver import solve_layers
+from motionedit.core.priorities.solver.layered import solve_layers
+from motionedit.core.priorities.solver.problem import LayeredSolution, Reference
 from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:

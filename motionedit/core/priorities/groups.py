@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motionedit.core.priorities.continuity import NO_DISPLACEMENT
 from motionedit.core.priorities.held_columns import held_columns
 from motionedit.core.priorities.kinds.constraint import Stage
 from motionedit.core.priorities.plans import frames_together, plan_of
-from motionedit.core.priorities.problem import Problem, WeightedTask, order_of_layers
 from motionedit.core.priorities.sight import sight_of
-from motionedit.core.priorities.solver import Prepared, prepare_problem
+from motionedit.core.priorities.solver.constants import NO_DISPLACEMENT
+from motionedit.core.priorities.solver.layered import Prepared, prepare_problem
+from motionedit.core.priorities.solver.problem import Problem, WeightedTask, order_of_layers
 from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
@@ -24,11 +24,11 @@ if TYPE_CHECKING:
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.kinds.constraint import Constraint
-    from motionedit.core.priorities.points import Columns
-    from motionedit.core.priorities.problem import Task
     from motionedit.core.priorities.recruiting import Recruits
     from motionedit.core.priorities.settings import Body, LayeredSettings
     from motionedit.core.priorities.sight import Sight
+    from motionedit.core.priorities.solver.points import Columns
+    from motionedit.core.priorities.solver.problem import Task
     from motionedit.core.priorities.task_targets import Targets
 
 

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motionedit.core.priorities.problem import HingeColumns, LimitColumns
+from motionedit.core.priorities.solver.problem import HingeColumns, LimitColumns
 from motionedit.dataclass import replace
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.body.hinges import Hinge
     from motionedit.core.body.limits import Limits
-    from motionedit.core.priorities.points import Columns
     from motionedit.core.priorities.settings import Body
+    from motionedit.core.priorities.solver.points import Columns
 
 
 @lru_cache(maxsize=2)

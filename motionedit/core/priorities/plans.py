@@ -9,16 +9,16 @@ import numpy as np
 
 from motionedit.core.arrays import frozen
 from motionedit.core.blocks import BLOCK_FRAMES
-from motionedit.core.priorities.points import columns_of
-from motionedit.core.priorities.problem import order_of_layers
+from motionedit.core.priorities.solver.points import columns_of
+from motionedit.core.priorities.solver.problem import order_of_layers
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from motionedit.core.arrays import IntArray
-    from motionedit.core.priorities.points import Columns
     from motionedit.core.priorities.recruiting import Recruits
+    from motionedit.core.priorities.solver.points import Columns
     from motionedit.core.skeleton import Skeleton
 
 

@@ -13,8 +13,8 @@ import numpy as np
 
 from motionedit.core.arrays import frozen
 from motionedit.core.blocks import BLOCK_FRAMES
-from motionedit.core.priorities.continuity import NO_DISPLACEMENT
 from motionedit.core.priorities.groups import Ramp, seen_by
+from motionedit.core.priorities.solver.constants import NO_DISPLACEMENT
 from motionedit.core.priorities.task_targets import Targets, moved
 from motionedit.dataclass import replace
 

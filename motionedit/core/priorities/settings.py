@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from motionedit.core.body.center_of_mass import Masses
     from motionedit.core.body.hinges import Hinge
     from motionedit.core.body.limits import Limits
-    from motionedit.core.priorities.trajectories import Curve
+    from motionedit.core.priorities.trajectories.positions import Curve
 
 RecruitingRule = Literal["expand", "error", "ignore"]
 

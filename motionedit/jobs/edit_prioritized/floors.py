@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from motionedit.core.priorities.kinds.constraint import Constraint
-    from motionedit.core.priorities.trajectories import Curve
+    from motionedit.core.priorities.trajectories.positions import Curve
     from motionedit.jobs.edit_prioritized.body import SizedClip
     from motionedit.spec.edit_prioritized import EditPrioritizedSpec
     from motionedit.spec.load import LoadedSpec

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from motionedit.core.arrays import median
-from motionedit.core.priorities.problem import order_of_layers
+from motionedit.core.priorities.solver.problem import order_of_layers
 from motionedit.jobs.clip.edit_record import EditRecord, worst_status
 from motionedit.jobs.clip.effector_record import effector_record
 from motionedit.jobs.edit_prioritized.recruits import recruited_names

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from motionedit.core.body.bones import below
 from motionedit.core.priorities.kinds.constraint import Movable
-from motionedit.core.priorities.problem import order_of_layers
 from motionedit.core.priorities.recruiting import Recruits
+from motionedit.core.priorities.solver.problem import order_of_layers
 from motionedit.jobs.clip import resolve
 
 if TYPE_CHECKING:

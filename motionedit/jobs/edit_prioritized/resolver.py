@@ -14,9 +14,9 @@ from motionedit.core.kinematics import Effector
 from motionedit.core.measure import Level
 from motionedit.core.priorities.kinds import KINDS
 from motionedit.core.priorities.kinds.constraint import Movable
-from motionedit.core.priorities.lengths import LengthPoint
 from motionedit.core.priorities.recruiting import NotOnTheWayError, RecruitRule
-from motionedit.core.priorities.trajectories import ControlPoint, active_interval
+from motionedit.core.priorities.trajectories.lengths import LengthPoint
+from motionedit.core.priorities.trajectories.positions import ControlPoint, active_interval
 from motionedit.dataclass import dataclass
 from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.axes import GivenAxes

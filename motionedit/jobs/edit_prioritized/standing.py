@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from motionedit.core.feet.stance import Foot
     from motionedit.core.priorities.asks_to_stand import AsksToStand
     from motionedit.core.priorities.kinds.constraint import Constraint
-    from motionedit.core.priorities.trajectories import Curve
+    from motionedit.core.priorities.trajectories.positions import Curve
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.jobs.edit_prioritized.body import SizedClip
     from motionedit.jobs.edit_prioritized.constraints import ClipConstraint

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.priorities.blame import blame_of
-from motionedit.core.priorities.problem import order_of_layers
 from motionedit.core.priorities.settings import LayeredSettings, PaperFilter
+from motionedit.core.priorities.solver.problem import order_of_layers
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:

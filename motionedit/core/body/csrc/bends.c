@@ -6,7 +6,7 @@
 #include <string.h>
 
 #define ONE_LANE
-#include "../../priorities/csrc/rotations.h"
+#include "../../csrc/rotations.h"
 
 /* A limb at one frame. */
 typedef struct {

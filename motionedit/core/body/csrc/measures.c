@@ -7,7 +7,7 @@
 
 #include "../../csrc/jacobi.h"
 #define ONE_LANE
-#include "../../priorities/csrc/rotations.h"
+#include "../../csrc/rotations.h"
 
 #define PI 3.14159265358979323846
 

@@ -2,7 +2,7 @@
 
 #include "touched_rows.h"
 
-#include "../../priorities/csrc/arrays.h"
+#include "../../csrc/arrays.h"
 
 #include <math.h>
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 #define ONE_LANE
-#include "../../priorities/csrc/rotations.h"
+#include "../../csrc/rotations.h"
 
 /* Let heels come up once the hip is out of their reach, where the toe stays down: as reach.released. */
 static void release(const HipReach *leg, int64_t frames, const StanceFound *stance)

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #define ONE_LANE
-#include "../../priorities/csrc/rotations.h"
+#include "../../csrc/rotations.h"
 
 static double way_between(const double *from, const double *to, double *way)
 {

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #define ONE_LANE
-#include "../../priorities/csrc/rotations.h"
+#include "../../csrc/rotations.h"
 
 /* Numbers that are known of a leg at a frame, and those of its toe's place. */
 enum { NUMBERS = sizeof(LegPath) / sizeof(double) + 3 };

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 #define ONE_LANE
-#include "../../priorities/csrc/rotations.h"
+#include "../../csrc/rotations.h"
 
 /* What is known of a plant at each of its frames, and as much room again for a median. */
 typedef struct {

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #define ONE_LANE
-#include "../../priorities/csrc/rotations.h"
+#include "../../csrc/rotations.h"
 
 /* A frame at which a heel and a toe are down. */
 typedef struct {

@@ -10,11 +10,11 @@ from motionedit.core import rotations as rot
 from motionedit.core.body.center_of_mass import Masses, center_of_mass, subtree_centers
 from motionedit.core.measure import WORLD, Measure
 from motionedit.core.priorities.kinds.constraint import Constraint, ConstraintErrors, Movable, Symbol
-from motionedit.core.priorities.points import lever_rows
-from motionedit.core.priorities.problem import CompiledTask
 from motionedit.core.priorities.recruiting import EVERYTHING, RecruitRule, Recruits, recruit_body
+from motionedit.core.priorities.solver.points import lever_rows
+from motionedit.core.priorities.solver.problem import CompiledTask
 from motionedit.core.priorities.task_targets import Targets
-from motionedit.core.priorities.trajectories import position_targets
+from motionedit.core.priorities.trajectories.positions import position_targets
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.kinds.constraint import Scene, Stage
-    from motionedit.core.priorities.points import Columns, Recruited
     from motionedit.core.priorities.sight import Sight
+    from motionedit.core.priorities.solver.points import Columns, Recruited
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 import numpy as np
 
 from motionedit.core.kinematics import Effector
-from motionedit.core.priorities.points import point_of, recruited_of
-from motionedit.core.priorities.trajectories import active_interval, share_of
+from motionedit.core.priorities.solver.points import point_of, recruited_of
+from motionedit.core.priorities.trajectories.positions import active_interval, share_of
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -24,12 +24,12 @@ if TYPE_CHECKING:
     from motionedit.core.body.center_of_mass import Masses
     from motionedit.core.measure import Level
     from motionedit.core.motion import Motion
-    from motionedit.core.priorities.points import Columns, Point, Recruited
-    from motionedit.core.priorities.problem import Task
     from motionedit.core.priorities.recruiting import Recruits
     from motionedit.core.priorities.sight import Sight
+    from motionedit.core.priorities.solver.points import Columns, Point, Recruited
+    from motionedit.core.priorities.solver.problem import Task
     from motionedit.core.priorities.task_targets import Targets
-    from motionedit.core.priorities.trajectories import ControlPoint, Curve
+    from motionedit.core.priorities.trajectories.positions import ControlPoint, Curve
     from motionedit.core.skeleton import Skeleton
 
 # How a page marks where a constraint is: a ring with a cross, a quartered ball, an arc.

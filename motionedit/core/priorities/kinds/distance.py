@@ -8,14 +8,14 @@ import numpy as np
 
 from motionedit.core.kinematics import Effector, effector_positions
 from motionedit.core.measure import Measure
-from motionedit.core.priorities.constants import NO_DIRECTION
 from motionedit.core.priorities.kinds.constraint import ConstraintErrors
 from motionedit.core.priorities.kinds.effector import EffectorConstraint
-from motionedit.core.priorities.lengths import length_targets
-from motionedit.core.priorities.points import moved_by
-from motionedit.core.priorities.problem import CompiledTask
 from motionedit.core.priorities.recruiting import Recruits, recruit_chains
+from motionedit.core.priorities.solver.constants import NO_DIRECTION
+from motionedit.core.priorities.solver.points import moved_by
+from motionedit.core.priorities.solver.problem import CompiledTask
 from motionedit.core.priorities.task_targets import Targets
+from motionedit.core.priorities.trajectories.lengths import length_targets
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.kinds.constraint import Movable, Scene, Stage
-    from motionedit.core.priorities.lengths import Bound, LengthPoint
-    from motionedit.core.priorities.points import Point
     from motionedit.core.priorities.sight import Sight
+    from motionedit.core.priorities.solver.points import Point
+    from motionedit.core.priorities.trajectories.lengths import Bound, LengthPoint
 
 # One number is measured.
 _LENGTH = Measure(counted=(0,))

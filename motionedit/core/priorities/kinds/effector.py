@@ -11,8 +11,8 @@ from motionedit.core import rotations as rot
 from motionedit.core.kinematics import Effector, effector_positions
 from motionedit.core.measure import WORLD, Measure
 from motionedit.core.priorities.kinds.constraint import Constraint, ConstraintErrors, Movable
-from motionedit.core.priorities.points import moved_by
 from motionedit.core.priorities.recruiting import EVERYTHING, RecruitRule, Recruits, recruit_chain
+from motionedit.core.priorities.solver.points import moved_by
 from motionedit.core.priorities.task_targets import Targets
 from motionedit.dataclass import dataclass
 

@@ -9,9 +9,9 @@ import numpy as np
 from motionedit.core.kinematics import Effector, effector_positions
 from motionedit.core.measure import Measure
 from motionedit.core.priorities.kinds.constraint import Constraint, ConstraintErrors, Movable
-from motionedit.core.priorities.points import moved_by
-from motionedit.core.priorities.problem import CompiledTask
 from motionedit.core.priorities.recruiting import EVERYTHING, RecruitRule, Recruits, recruit_chains
+from motionedit.core.priorities.solver.points import moved_by
+from motionedit.core.priorities.solver.problem import CompiledTask
 from motionedit.core.priorities.task_targets import Targets
 from motionedit.dataclass import dataclass
 
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from motionedit.core.measure import Level
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.kinds.constraint import Scene, Stage
-    from motionedit.core.priorities.points import Point
     from motionedit.core.priorities.sight import Sight
+    from motionedit.core.priorities.solver.points import Point
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

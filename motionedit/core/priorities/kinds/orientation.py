@@ -8,9 +8,9 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.priorities.kinds.effector import EffectorConstraint
-from motionedit.core.priorities.problem import CompiledTask
-from motionedit.core.priorities.rotation_trajectories import rotation_targets
+from motionedit.core.priorities.solver.problem import CompiledTask
 from motionedit.core.priorities.task_targets import Targets
+from motionedit.core.priorities.trajectories.rotations import rotation_targets
 from motionedit.core.units import METRES_PER_RADIAN
 from motionedit.dataclass import dataclass
 
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.kinds.constraint import ConstraintErrors, Scene, Stage, Symbol
-    from motionedit.core.priorities.points import Point
     from motionedit.core.priorities.sight import Sight
+    from motionedit.core.priorities.solver.points import Point
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

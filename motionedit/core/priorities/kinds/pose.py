@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.kinds.constraint import ConstraintErrors, Scene, Stage
-    from motionedit.core.priorities.problem import CompiledTask
     from motionedit.core.priorities.sight import Sight
+    from motionedit.core.priorities.solver.problem import CompiledTask
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -9,9 +9,9 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.kinematics import Effector
 from motionedit.core.priorities.kinds.constraint import Constraint, ConstraintErrors, Movable, Symbol
-from motionedit.core.priorities.points import Point, Recruited, turn_to_local
-from motionedit.core.priorities.problem import CompiledTask
 from motionedit.core.priorities.recruiting import Recruits
+from motionedit.core.priorities.solver.points import Point, Recruited, turn_to_local
+from motionedit.core.priorities.solver.problem import CompiledTask
 from motionedit.core.priorities.task_targets import Targets
 from motionedit.core.units import METRES_PER_RADIAN
 from motionedit.dataclass import dataclass
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.kinds.constraint import Scene, Stage
-    from motionedit.core.priorities.points import Columns
     from motionedit.core.priorities.sight import Sight
+    from motionedit.core.priorities.solver.points import Columns
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

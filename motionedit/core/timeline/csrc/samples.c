@@ -3,8 +3,8 @@
 #define ONE_LANE
 #include "samples.h"
 
-#include "../../priorities/csrc/arrays.h"
-#include "../../priorities/csrc/rotations.h"
+#include "../../csrc/arrays.h"
+#include "../../csrc/rotations.h"
 
 #include <math.h>
 

@@ -8,9 +8,9 @@ from motionedit.core.body.bends import turns_about
 from motionedit.core.kinematics import Effector, effector_positions, forward
 from motionedit.core.motion import Motion
 from motionedit.core.priorities.kinds.position import PositionTask
-from motionedit.core.priorities.points import Columns, Point, Recruited
-from motionedit.core.priorities.problem import HingeColumns, LayeredSolution, Problem, Reference, WeightedTask
-from motionedit.core.priorities.solver import prepare_problem, solve_layers
+from motionedit.core.priorities.solver.layered import prepare_problem, solve_layers
+from motionedit.core.priorities.solver.points import Columns, Point, Recruited
+from motionedit.core.priorities.solver.problem import HingeColumns, LayeredSolution, Problem, Reference, WeightedTask
 from motionedit.core.skeleton import Skeleton
 
 

@@ -9,7 +9,7 @@ from motionedit.core.kinematics import Effector, effector_positions, forward
 from motionedit.core.priorities.edit import edit_by_priorities
 from motionedit.core.priorities.kinds import Position
 from motionedit.core.priorities.settings import Body, LayeredSettings, PaperFilter, Passes
-from motionedit.core.priorities.trajectories import ControlPoint
+from motionedit.core.priorities.trajectories.positions import ControlPoint
 
 SKELETON = skeleton_of()
 FEET = ("LeftFoot", "LeftToeBase", "RightFoot", "RightToeBase")

@@ -10,11 +10,11 @@ from motionedit.core.compiled import CHOICE, compiled
 from motionedit.core.kinematics import Effector, effector_positions, forward
 from motionedit.core.measure import Level
 from motionedit.core.motion import Motion
-from motionedit.core.priorities import compiled_solver
 from motionedit.core.priorities.kinds import CenterOfMass, Distance, Floor, Orientation, Position, Posture
-from motionedit.core.priorities.lengths import LengthPoint
 from motionedit.core.priorities.settings import Body
-from motionedit.core.priorities.trajectories import ControlPoint
+from motionedit.core.priorities.solver import compiled_solver
+from motionedit.core.priorities.trajectories.lengths import LengthPoint
+from motionedit.core.priorities.trajectories.positions import ControlPoint
 from motionedit.core.skeleton import Skeleton
 
 FRAMES = 5

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from person import HARD, edited, held, held_feet, swaying
 
-from motionedit.core.priorities.annealing import Annealing
-from motionedit.core.priorities.constants import ANNEALED_ITERATIONS, HASTY_ITERATIONS, STALE_ITERATIONS
 from motionedit.core.priorities.settings import LayeredSettings, Passes
+from motionedit.core.priorities.solver.annealing import Annealing
+from motionedit.core.priorities.solver.constants import ANNEALED_ITERATIONS, HASTY_ITERATIONS, STALE_ITERATIONS
 
 MOST = 40
 LAST = MOST - ANNEALED_ITERATIONS

@@ -15,7 +15,7 @@ from motionedit.core import rotations as rot
 from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.bvh import read_clip
 from motionedit.core.kinematics import Effector, effector_positions, forward
-from motionedit.core.priorities.trajectories import (
+from motionedit.core.priorities.trajectories.positions import (
     ControlPoint,
     active_interval,
     eased,

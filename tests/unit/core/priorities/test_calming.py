@@ -8,18 +8,18 @@ from person import BODY, edited, end, held_feet, path, swaying
 
 from motionedit.core import rotations as rot
 from motionedit.core.kinematics import forward
-from motionedit.core.priorities import calming
-from motionedit.core.priorities.calming import calmed
+from motionedit.core.priorities.continuity import calming
+from motionedit.core.priorities.continuity.calming import calmed
+from motionedit.core.priorities.continuity.giving_way import within_reach
+from motionedit.core.priorities.continuity.passes import solve_in_passes
+from motionedit.core.priorities.continuity.smoothing import PassedBefore
+from motionedit.core.priorities.continuity.visible import Seen
 from motionedit.core.priorities.edit import prepare
 from motionedit.core.priorities.frames import run_of, solve_frames
-from motionedit.core.priorities.giving_way import within_reach
 from motionedit.core.priorities.kinds import CenterOfMass, Position
-from motionedit.core.priorities.passes import solve_in_passes
 from motionedit.core.priorities.settings import LayeredSettings, Passes
-from motionedit.core.priorities.smoothing import PassedBefore
 from motionedit.core.priorities.targets import lefts_of
-from motionedit.core.priorities.trajectories import ControlPoint
-from motionedit.core.priorities.visible import Seen
+from motionedit.core.priorities.trajectories.positions import ControlPoint
 
 FRAMES = 90
 MOTION = swaying(FRAMES)

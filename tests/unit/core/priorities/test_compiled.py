@@ -20,14 +20,14 @@ from motionedit.core.body.hinges import Hinge
 from motionedit.core.compiled import CHOICE, compiled, solver_name
 from motionedit.core.kinematics import Effector
 from motionedit.core.measure import Measure
-from motionedit.core.priorities import compiled_solver
 from motionedit.core.priorities.edit import edit_by_priorities
 from motionedit.core.priorities.kinds import KINDS, CenterOfMass, Position
 from motionedit.core.priorities.kinds.position import PositionTask
 from motionedit.core.priorities.recruiting import RecruitRule
 from motionedit.core.priorities.settings import Body, LayeredSettings, PaperFilter, Passes
-from motionedit.core.priorities.solver import prepare_problem
-from motionedit.core.priorities.trajectories import ControlPoint
+from motionedit.core.priorities.solver import compiled_solver
+from motionedit.core.priorities.solver.layered import prepare_problem
+from motionedit.core.priorities.trajectories.positions import ControlPoint
 
 pytestmark = pytest.mark.skipif(solver_name() == "numpy", reason="no compiled solver here")
 

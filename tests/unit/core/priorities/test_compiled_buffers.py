@@ -7,7 +7,7 @@ import pytest
 from arms import arms_of, solved
 
 from motionedit.core.compiled import compiled, solver_name
-from motionedit.core.priorities.solver import prepare_problem
+from motionedit.core.priorities.solver.layered import prepare_problem
 
 pytestmark = pytest.mark.skipif(solver_name() == "numpy", reason="no compiled solver here")
 

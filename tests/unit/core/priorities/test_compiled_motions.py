@@ -7,10 +7,10 @@ import pytest
 from person import BODY, held_feet, swaying
 
 from motionedit.core import rotations as rot
+from motionedit.core.priorities.continuity.visible import steps_at
 from motionedit.core.priorities.edit import changes, prepare
 from motionedit.core.priorities.frames import Known, known_again
 from motionedit.core.priorities.settings import LayeredSettings
-from motionedit.core.priorities.visible import steps_at
 
 MOTION = swaying(60)
 

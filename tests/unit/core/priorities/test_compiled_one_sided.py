@@ -23,11 +23,11 @@ from random_bodies import (
 
 from motionedit.core.compiled import compiled, solver_name
 from motionedit.core.measure import Level
-from motionedit.core.priorities import compiled_solver
 from motionedit.core.priorities.edit import edit_by_priorities, prepare
 from motionedit.core.priorities.kinds import Distance, Floor
-from motionedit.core.priorities.lengths import LengthPoint
 from motionedit.core.priorities.settings import LayeredSettings, PaperFilter
+from motionedit.core.priorities.solver import compiled_solver
+from motionedit.core.priorities.trajectories.lengths import LengthPoint
 
 pytestmark = pytest.mark.skipif(solver_name() == "numpy", reason="no compiled solver here")
 

@@ -23,10 +23,10 @@ from random_bodies import (
 
 from motionedit.core.arrays import frozen
 from motionedit.core.compiled import solver_name
-from motionedit.core.priorities import compiled_solver
 from motionedit.core.priorities.edit import edit_by_priorities
 from motionedit.core.priorities.kinds import CenterOfMass, Posture
 from motionedit.core.priorities.settings import LayeredSettings, PaperFilter, Passes
+from motionedit.core.priorities.solver import compiled_solver
 
 pytestmark = pytest.mark.skipif(solver_name() == "numpy", reason="no compiled solver here")
 

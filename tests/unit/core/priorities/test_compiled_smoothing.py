@@ -9,7 +9,7 @@ from motionedit.core.body.hinges import plain_hinge
 from motionedit.core.compiled import solver_name
 from motionedit.core.kinematics import forward
 from motionedit.core.motion import Motion
-from motionedit.core.priorities.continuity import smoothed_displacement
+from motionedit.core.priorities.continuity.displacement import smoothed_displacement
 
 pytestmark = pytest.mark.skipif(solver_name() == "numpy", reason="no compiled solver here")
 

@@ -15,7 +15,7 @@ from motionedit.core.priorities.edit import edit_by_priorities, prepare
 from motionedit.core.priorities.kinds import Position
 from motionedit.core.priorities.settings import LayeredSettings, PaperFilter
 from motionedit.core.priorities.targets import lefts_of
-from motionedit.core.priorities.trajectories import ControlPoint
+from motionedit.core.priorities.trajectories.positions import ControlPoint
 
 FRAMES = 40
 MOTION = swaying(FRAMES)

@@ -5,7 +5,7 @@ from human import skeleton_of, standing, with_rotation
 
 from motionedit.core import rotations as rot
 from motionedit.core.motion import Motion
-from motionedit.core.priorities.continuity import filtered_root, fir_low_pass, smoothed_displacement
+from motionedit.core.priorities.continuity.displacement import filtered_root, fir_low_pass, smoothed_displacement
 
 
 def test_the_fir_filter_keeps_a_constant_and_takes_away_what_is_fast():

@@ -11,9 +11,9 @@ from motionedit.core import rotations as rot
 from motionedit.core.motion import Motion
 from motionedit.core.priorities.kinds import CenterOfMass, Distance
 from motionedit.core.priorities.kinds.constraint import Movable
-from motionedit.core.priorities.lengths import LengthPoint
 from motionedit.core.priorities.recruiting import NotOnTheWayError, RecruitRule
 from motionedit.core.priorities.settings import LayeredSettings, Passes
+from motionedit.core.priorities.trajectories.lengths import LengthPoint
 
 FRAMES = 12
 MM = 1e-3

@@ -10,7 +10,7 @@ from motionedit.core.kinematics import forward
 from motionedit.core.priorities.edit import prepare
 from motionedit.core.priorities.kinds import Orientation
 from motionedit.core.priorities.settings import LayeredSettings
-from motionedit.core.priorities.trajectories import ControlPoint
+from motionedit.core.priorities.trajectories.positions import ControlPoint
 
 FRAMES = 60
 

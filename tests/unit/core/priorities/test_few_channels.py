@@ -18,7 +18,7 @@ from motionedit.core.motion import Motion
 from motionedit.core.priorities.edit import edit_by_priorities
 from motionedit.core.priorities.kinds import Position
 from motionedit.core.priorities.settings import Body, LayeredSettings, Passes
-from motionedit.core.priorities.trajectories import ControlPoint
+from motionedit.core.priorities.trajectories.positions import ControlPoint
 
 PAIRS = [(a, b) for a in "XYZ" for b in "XYZ" if a != b]
 FRAMES = 9

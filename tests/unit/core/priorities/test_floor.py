@@ -17,7 +17,7 @@ from motionedit.core.priorities.kinds import CenterOfMass, Floor
 from motionedit.core.priorities.kinds.constraint import Movable
 from motionedit.core.priorities.recruiting import RecruitRule
 from motionedit.core.priorities.settings import Body, LayeredSettings, Passes
-from motionedit.core.priorities.trajectories import ControlPoint
+from motionedit.core.priorities.trajectories.positions import ControlPoint
 from motionedit.core.skeleton import Skeleton
 
 FRAMES = 12

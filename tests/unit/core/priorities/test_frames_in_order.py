@@ -9,7 +9,7 @@ from motionedit.core.priorities.edit import edit_by_priorities
 from motionedit.core.priorities.kinds import Position
 from motionedit.core.priorities.recruiting import RecruitRule
 from motionedit.core.priorities.settings import LayeredSettings, PaperFilter
-from motionedit.core.priorities.trajectories import ControlPoint
+from motionedit.core.priorities.trajectories.positions import ControlPoint
 
 # One iteration a frame: how far each comes shows where it started.
 IN_ORDER = LayeredSettings(smoothing=PaperFilter(0), max_iterations=1)

@@ -9,15 +9,15 @@ from person import BODY, HARD, edited, end, held, held_feet, joint, path, swayin
 from motionedit.core import rotations as rot
 from motionedit.core.kinematics import forward
 from motionedit.core.motion import Motion
+from motionedit.core.priorities.continuity.giving_way import given_way
 from motionedit.core.priorities.edit import edit_by_priorities, prepare
 from motionedit.core.priorities.frames import run_of, solve_frames
-from motionedit.core.priorities.giving_way import given_way
-from motionedit.core.priorities.homing import attraction
 from motionedit.core.priorities.kinds import CenterOfMass, Position, Posture
-from motionedit.core.priorities.problem import Reference
 from motionedit.core.priorities.settings import LayeredSettings, Passes
+from motionedit.core.priorities.solver.homing import attraction
+from motionedit.core.priorities.solver.problem import Reference
 from motionedit.core.priorities.targets import lefts_of
-from motionedit.core.priorities.trajectories import ControlPoint
+from motionedit.core.priorities.trajectories.positions import ControlPoint
 
 FRAMES = 90
 MOTION = swaying(FRAMES)
@@ -160,7 +160,7 @@ def test_the_papers_smoothing_gives_way_to_nothing(monkeypatch):
     def never(*_):
         raise AssertionError
 
-    monkeypatch.setattr("motionedit.core.priorities.passes.within_reach", never)
+    monkeypatch.setattr("motionedit.core.priorities.continuity.passes.within_reach", never)
     edited(MOTION, [reaching(SHIFTS[0])], HARD)
     with pytest.raises(AssertionError):
         edited(MOTION, [reaching(SHIFTS[0])], SMOOTH)

@@ -15,7 +15,7 @@ from motionedit.core.motion import Motion
 from motionedit.core.priorities.kinds import Position
 from motionedit.core.priorities.recruiting import RecruitRule
 from motionedit.core.priorities.settings import LayeredSettings, Passes
-from motionedit.core.priorities.trajectories import ControlPoint
+from motionedit.core.priorities.trajectories.positions import ControlPoint
 
 FRAMES = 60
 LIMBS = ("LeftLeg", "RightLeg", "LeftForeArm", "RightForeArm")

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from motionedit.core.priorities.homing import Memory, accelerated
-from motionedit.core.priorities.layers import Descent
+from motionedit.core.priorities.solver.homing import Memory, accelerated
+from motionedit.core.priorities.solver.layers import Descent
 
 SIZE = 9
 PULL = np.random.default_rng(0).normal(size=(1, SIZE))

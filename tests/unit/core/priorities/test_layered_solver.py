@@ -14,7 +14,7 @@ from motionedit.core.priorities.edit import RecruitingError, edit_by_priorities
 from motionedit.core.priorities.kinds import Aim, CenterOfMass, Orientation, Pose, Position, Posture
 from motionedit.core.priorities.recruiting import RecruitRule
 from motionedit.core.priorities.settings import Body, LayeredSettings, PaperFilter, Passes
-from motionedit.core.priorities.trajectories import ControlPoint
+from motionedit.core.priorities.trajectories.positions import ControlPoint
 
 SKELETON = skeleton_of()
 NAMES = SKELETON.names

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from motionedit.core.priorities.lengths import LengthPoint, length_targets
+from motionedit.core.priorities.trajectories.lengths import LengthPoint, length_targets
 
 FRAMES = 40
 OWN = 0.5 + 0.2 * np.sin(np.linspace(0.0, 5.0, FRAMES))

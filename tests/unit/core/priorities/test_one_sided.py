@@ -6,11 +6,11 @@ from person import UP, edited, end, path, swaying
 
 from motionedit.core.compiled import CHOICE
 from motionedit.core.measure import Level
-from motionedit.core.priorities import numpy_step
 from motionedit.core.priorities.kinds import Floor
-from motionedit.core.priorities.layers import Descent
-from motionedit.core.priorities.one_sided import Evaluated, Rows, Sides
 from motionedit.core.priorities.settings import LayeredSettings, Passes
+from motionedit.core.priorities.solver import numpy_step
+from motionedit.core.priorities.solver.layers import Descent
+from motionedit.core.priorities.solver.one_sided import Evaluated, Rows, Sides
 
 E = np.array([[-1.0, 0.2, -0.5, -2.0], [-1.0, -0.2, -0.5, -2.0]])
 J = np.broadcast_to(np.eye(4), (2, 4, 4))

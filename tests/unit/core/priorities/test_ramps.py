@@ -9,7 +9,7 @@ from motionedit.core.priorities.kinds import Position
 from motionedit.core.priorities.ramps import apart, ends_in, led_frames, led_to, ramps_of
 from motionedit.core.priorities.settings import LayeredSettings
 from motionedit.core.priorities.task_targets import Targets
-from motionedit.core.priorities.trajectories import ControlPoint
+from motionedit.core.priorities.trajectories.positions import ControlPoint
 
 FRAMES = 80
 MOTION = swaying(FRAMES)

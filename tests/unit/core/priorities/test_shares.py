@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from motionedit.core.priorities.shares import shares_of
+from motionedit.core.priorities.continuity.shares import shares_of
 
 WANTED = st.lists(st.booleans(), min_size=1, max_size=60).map(lambda each: np.array(each, dtype=np.bool_))
 

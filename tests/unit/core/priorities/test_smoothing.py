@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from person import BODY, held, held_feet, swaying
 
-from motionedit.core.priorities import smoothing
+from motionedit.core.priorities.continuity import smoothing
 from motionedit.core.priorities.edit import prepare
 from motionedit.core.priorities.frames import solve_from_input
 from motionedit.core.priorities.settings import LayeredSettings, Passes

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as nps
 from scipy.interpolate import CubicHermiteSpline
 
-from motionedit.core.priorities.splines import basis_of, kochanek_bartels
+from motionedit.core.priorities.trajectories.splines import basis_of, kochanek_bartels
 
 KNOTS = np.array([0.0, 1.0, 4.0, 4.5, 9.0])
 VALUES = np.random.default_rng(7).normal(size=(5, 3))

@@ -13,7 +13,7 @@ from motionedit.core.priorities.edit import edit_by_priorities
 from motionedit.core.priorities.kinds import Orientation, Position
 from motionedit.core.priorities.recruiting import RecruitRule
 from motionedit.core.priorities.settings import Body, LayeredSettings, Passes
-from motionedit.core.priorities.trajectories import ControlPoint
+from motionedit.core.priorities.trajectories.positions import ControlPoint
 
 # Thighs hang on the hips: hip joints between them would let the hips down without a knee.
 SKELETON = skeleton_of(

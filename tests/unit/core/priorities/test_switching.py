@@ -5,12 +5,12 @@ import pytest
 from person import BODY, edited, end, held, held_feet, path, swaying
 
 from motionedit.core import rotations as rot
+from motionedit.core.priorities.continuity.switching import eased_from_others
 from motionedit.core.priorities.edit import prepare
 from motionedit.core.priorities.kinds import Orientation, Position
 from motionedit.core.priorities.settings import LayeredSettings, PaperFilter, Passes
-from motionedit.core.priorities.switching import eased_from_others
 from motionedit.core.priorities.targets import reached
-from motionedit.core.priorities.trajectories import ControlPoint
+from motionedit.core.priorities.trajectories.positions import ControlPoint
 
 FRAMES = 80
 MOTION = swaying(FRAMES)

@@ -13,11 +13,11 @@ from motionedit.core.motion import Motion
 from motionedit.core.priorities import targets as of_all
 from motionedit.core.priorities.edit import prepare
 from motionedit.core.priorities.kinds import Aim, CenterOfMass, Distance, Floor, Orientation, Pose, Position, Posture
-from motionedit.core.priorities.lengths import LengthPoint
 from motionedit.core.priorities.settings import LayeredSettings, PaperFilter
 from motionedit.core.priorities.targets import errors_of, reached
 from motionedit.core.priorities.task_targets import Targets
-from motionedit.core.priorities.trajectories import ControlPoint, share_of
+from motionedit.core.priorities.trajectories.lengths import LengthPoint
+from motionedit.core.priorities.trajectories.positions import ControlPoint, share_of
 
 FRAMES = 14
 MOTION = swaying(FRAMES)

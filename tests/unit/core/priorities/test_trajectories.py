@@ -19,10 +19,10 @@ from trajectories_through_points import (
     whole,
 )
 
-from motionedit.core.priorities.rotation_trajectories import rotation_targets
-from motionedit.core.priorities.trajectories import (
+from motionedit.core.priorities.trajectories.positions import (
     active_interval,
 )
+from motionedit.core.priorities.trajectories.rotations import rotation_targets
 
 
 def test_without_points_the_targets_are_the_input_over_the_whole_clip():

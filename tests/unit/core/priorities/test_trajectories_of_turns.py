@@ -5,7 +5,7 @@ import pytest
 from trajectories_through_points import SHIFT, TURN, TURNS, T, at, during, hold, largest_turn_jump, turned
 
 from motionedit.core import rotations as rot
-from motionedit.core.priorities.rotation_trajectories import rotation_targets
+from motionedit.core.priorities.trajectories.rotations import rotation_targets
 from motionedit.core.slerp import slerp
 
 

@@ -7,10 +7,10 @@ from person import BODY, held_feet, joint, swaying
 from motionedit.core import blocks
 from motionedit.core import rotations as rot
 from motionedit.core.motion import Motion
+from motionedit.core.priorities.continuity.passes import solve_in_passes
+from motionedit.core.priorities.continuity.visible import jerks_of, seen_of, steps_at
 from motionedit.core.priorities.edit import prepare
-from motionedit.core.priorities.passes import solve_in_passes
 from motionedit.core.priorities.settings import LayeredSettings, Passes
-from motionedit.core.priorities.visible import jerks_of, seen_of, steps_at
 
 FRAMES = 90
 MOTION = swaying(FRAMES)

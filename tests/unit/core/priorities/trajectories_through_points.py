@@ -3,11 +3,11 @@
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.priorities.rotation_trajectories import rotation_targets
-from motionedit.core.priorities.trajectories import (
+from motionedit.core.priorities.trajectories.positions import (
     ControlPoint,
     position_targets,
 )
+from motionedit.core.priorities.trajectories.rotations import rotation_targets
 
 # Frames so fine that a difference between two of them is a derivative: 10 s at 1000 frames a second.
 FRAMES, RATE = 10001, 1000.0
