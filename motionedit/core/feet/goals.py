@@ -123,14 +123,14 @@ def _standing(stance: Stance, path: FootPath, turns: FloatArray) -> FloatArray:
 def _at_ways(ankle: FloatArray, hip: FloatArray, ways: FloatArray) -> FloatArray:
     """Return ankles (F, 3) brought to a way (F,) from their hips, in the direction that they have."""
     way = ankle - hip
-    share = ways / np.maximum(np.linalg.norm(way, axis=1), np.finfo(float).tiny)
+    share = ways / np.maximum(rot.length(way), np.finfo(float).tiny)
     brought: FloatArray = hip + share[:, None] * way
     return brought
 
 
 def _bends(corrections: FloatArray, leg: float) -> float:
     """Return how slowly an ankle's corrections (n, 3) bend, s, for a leg of this length."""
-    largest = float(np.linalg.norm(corrections, axis=1).max(initial=0.0))
+    largest = float(rot.length(corrections).max(initial=0.0))
     return float(np.interp(largest / leg, _SMALL_TO_LARGE, _SLOWLY))
 
 
@@ -161,12 +161,12 @@ def _roll_onto(toe: FloatArray, arm: FloatArray, hip: FloatArray, ways: FloatArr
     But no ankle goes below the floor, where there is one.
     """
     way = hip - toe
-    long, short = np.linalg.norm(way, axis=1), np.linalg.norm(arm, axis=1)
+    long, short = rot.length(way), rot.length(arm)
     scale = np.maximum(long * short, _NO_WAY * np.maximum(long, 1.0))
     wanted = np.arccos(np.clip((long**2 + short**2 - ways**2) / (2.0 * scale), -1.0, 1.0))
-    now = np.arccos(np.clip(np.sum(way * arm, axis=1) / scale, -1.0, 1.0))
+    now = np.arccos(np.clip(rot.dot(way, arm) / scale, -1.0, 1.0))
     axis = rot.cross(arm, way)
-    unit = axis / np.maximum(np.linalg.norm(axis, axis=1, keepdims=True), np.finfo(float).tiny)
+    unit = axis / np.maximum(rot.length(axis)[:, None], np.finfo(float).tiny)
     roll: FloatArray = (now - wanted)[:, None] * unit
     if ground.height is None:
         return roll
@@ -178,11 +178,11 @@ def _roll_onto(toe: FloatArray, arm: FloatArray, hip: FloatArray, ways: FloatArr
 
 def _roll_out(heel: FloatArray, arm: FloatArray, up: FloatArray, floor: float) -> FloatArray:
     """Return rotation vectors (F, 3) about heels that bring toes, at heel + arm, onto a floor where they are deeper."""
-    height, rise, length = arm @ up, floor - heel @ up, np.linalg.norm(arm, axis=1)
+    height, rise, length = arm @ up, floor - heel @ up, rot.length(arm)
     # A floor out of the toe's reach leaves the foot upright.
     scale = np.maximum(np.maximum(length, np.abs(rise)), np.finfo(float).tiny)
     now, least = np.arcsin(np.clip(height / scale, -1.0, 1.0)), np.arcsin(rise / scale)
     axis = rot.cross(arm, np.broadcast_to(up, arm.shape))
-    unit = axis / np.maximum(np.linalg.norm(axis, axis=1, keepdims=True), np.finfo(float).tiny)
+    unit = axis / np.maximum(rot.length(axis)[:, None], np.finfo(float).tiny)
     roll: FloatArray = np.maximum(least - now, 0.0)[:, None] * unit
     return roll

@@ -81,10 +81,10 @@ def knee_of(skeleton: Skeleton, poses: WorldPoses, leg: Leg, bend: Bend) -> Knee
     hip, knee, ankle = (poses.positions[:, j] for j in (leg.thigh, leg.knee, leg.ankle))
     upper, lower = knee - hip, ankle - knee
     axis = rot.rotate(poses.rotations[:, skeleton.parents[leg.knee]], np.broadcast_to(bend.axis, upper.shape))
-    along = np.sum(upper * axis, axis=1) * np.sum(lower * axis, axis=1)
-    cosine = np.sum(upper * lower, axis=1) - along
-    sine = np.sum(upper * rot.cross(axis, lower), axis=1)
-    squares = np.sum(upper**2, axis=1) + np.sum(lower**2, axis=1)
+    along = rot.dot(upper, axis) * rot.dot(lower, axis)
+    cosine = rot.dot(upper, lower) - along
+    sine = rot.dot(upper, rot.cross(axis, lower))
+    squares = rot.dot(upper, upper) + rot.dot(lower, lower)
     return Knee(axis, -np.arctan2(sine, cosine), squares + 2.0 * along, 2.0 * np.hypot(cosine, sine))
 
 
@@ -109,8 +109,8 @@ def eased_ways(
     known, back : shape (F,)
         Where the ankle stays where it is, and where its knee is bent back there.
     """
-    ways = np.linalg.norm(ankle - hip, axis=1)
-    own, now = knee.lowered(np.linalg.norm(before - hip, axis=1)), np.where(back, -1.0, 1.0) * knee.bent(ways)
+    ways = rot.length(ankle - hip)
+    own, now = knee.lowered(rot.length(before - hip)), np.where(back, -1.0, 1.0) * knee.bent(ways)
     slack = 0.5 * (own + np.hypot(own, _SLACK))
     change = _unfolded(now - own, slack)
     change = _folded(eased(change[:, None], known, frame_time, bends=_BENDS, order=_ORDER)[:, 0], slack)

@@ -67,7 +67,7 @@ def legs_onto(
         wanted = goal.places - hip - (0.0 if shift is None else shift)
         upper, lower = middle - hip, ankle - middle
         knee = goal.knee
-        angle = knee.bent(np.linalg.norm(wanted, axis=1))
+        angle = knee.bent(rot.length(wanted))
         flexion = _axis_turn(
             knee.axis, (angle if goal.back is None else np.where(goal.back, -angle, angle)) - knee.angle
         )
@@ -89,8 +89,8 @@ def _axis_turn(axis: FloatArray, angle: FloatArray) -> FloatArray:
 
 def _smallest_turn(start: FloatArray, stop: FloatArray) -> FloatArray:
     """Return the smallest rotations from directions to directions, shapes (F, 3), quaternions (F, 4)."""
-    scale = np.linalg.norm(start, axis=1) * np.linalg.norm(stop, axis=1)
-    q = np.concatenate(((scale + np.sum(start * stop, axis=1))[:, None], rot.cross(start, stop)), axis=1)
+    scale = rot.length(start) * rot.length(stop)
+    q = np.concatenate(((scale + rot.dot(start, stop))[:, None], rot.cross(start, stop)), axis=1)
     length = np.linalg.norm(q, axis=1, keepdims=True)
     turn: FloatArray = np.where(length > 0.0, q / np.maximum(length, np.finfo(float).tiny), rot.IDENTITY)
     return turn
