@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.arrays import frozen
+from motionedit.core.blocks import BLOCK_FRAMES
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray
@@ -41,23 +42,24 @@ def eased(
         Of the difference: 2 goes on less far in what it was about.
     """
     found = np.where(known[:, None], values, 0.0)
-    frames = np.flatnonzero(known)
-    if not len(frames):
+    if not known.any():
         return found
     reach = max(order, round(_FADED / frame_time))
     weight = (bends / frame_time) ** (2 * order)
-    for start, stop in _stretches(known, reach, order):
-        mask = known[start:stop]
-        extension = _extension(mask.tobytes(), weight, order)
-        found[start:stop][~mask] = extension @ found[start:stop][mask]
+    # Of a short clip several corrections are known at the same frames.
+    find = _stretches_again if len(known) <= BLOCK_FRAMES else _stretches
+    for stretch, mask in find(known.tobytes(), reach, order):
+        part = found[stretch]
+        part[~mask] = _extension(mask.tobytes(), weight, order) @ part[mask]
     return found
 
 
-def _stretches(known: BoolArray, reach: int, order: int) -> list[tuple[int, int]]:
-    """Return (start, stop) of the stretches that are solved by themselves: each with something known and something not.
+def _stretches(given: bytes, reach: int, order: int) -> tuple[tuple[slice, BoolArray], ...]:
+    """Return the stretches that are solved by themselves, each with something known and something not, and what is.
 
     They end within runs of at least `order` known frames, or where the correction has faded away.
     """
+    known = np.frombuffer(given, dtype=np.bool_)
     fixed = known.copy()
     at = np.flatnonzero(known)
     distance = np.full(len(known), len(known))
@@ -75,7 +77,10 @@ def _stretches(known: BoolArray, reach: int, order: int) -> list[tuple[int, int]
             found[-1] = (found[-1][0], end, stop)
         else:
             found.append((begin, end, stop))
-    return [(begin, end) for begin, end, _ in found]
+    return tuple((slice(begin, end), known[begin:end]) for begin, end, _ in found)
+
+
+_stretches_again = lru_cache(maxsize=16)(_stretches)
 
 
 @lru_cache(maxsize=512)
