@@ -41,11 +41,19 @@ ROOMS = [
     "tests/cli",
 ]
 C_ROOMS = [
-    "tests/properties/test_compiled_text.py", "tests/unit/core/priorities/test_compiled.py",
-    "tests/unit/core/priorities/test_compiled_one_sided.py", "tests/unit/core/priorities/test_compiled_postures.py",
-    "tests/unit/core/priorities/test_compiled_smoothing.py", "tests/unit/core/priorities/test_compiled_buffers.py",
-    "tests/unit/core/priorities/test_few_channels.py",
-]  # fmt: skip
+    "tests/properties/test_compiled_text.py",
+    *(
+        f"tests/unit/core/priorities/{test}.py"
+        for test in (
+            "solver/test_compiled",
+            "solver/test_compiled_one_sided",
+            "solver/test_compiled_postures",
+            "continuity/test_compiled_smoothing",
+            "solver/test_compiled_buffers",
+            "solver/test_few_channels",
+        )
+    ),
+]
 PATIENCE = 60.0  # seconds; a fault whose tests take longer counts as one that hangs
 
 

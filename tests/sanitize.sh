@@ -20,16 +20,16 @@ cd "$folder"
 "$python" -c "from motionedit.core import _compiled"  # else the tests would be skipped
 # What holds the numpy solver beside the compiled one is left out where other tests give that the same frames: it takes
 # two thirds of the time, and numpy's part of it has no sanitizer.
-cones=tests/unit/core/priorities/test_cones.py::test_joints_stay_within_their_cones_and_the_feet_stay_where_they_are
+rooms=tests/unit/core/priorities
+cones=$rooms/solver/test_cones.py::test_joints_stay_within_their_cones_and_the_feet_stay_where_they_are
 "$python" -m pytest -q -p no:cacheprovider -n "${JOBS:-2}" \
   -k "not hold_joints_alike and not keep_limits_alike and not move_a_body_alike and not keep_cones_alike" \
   --deselect "$cones[numpy]" \
-  tests/unit/core/priorities/test_compiled.py tests/unit/core/priorities/test_compiled_buffers.py \
-  tests/unit/core/priorities/test_compiled_one_sided.py tests/unit/core/priorities/test_compiled_postures.py \
-  tests/unit/core/priorities/test_compiled_smoothing.py \
-  tests/unit/core/priorities/test_cones.py tests/unit/core/priorities/test_few_channels.py \
+  $rooms/solver/test_compiled.py $rooms/solver/test_compiled_buffers.py $rooms/solver/test_compiled_one_sided.py \
+  $rooms/solver/test_compiled_postures.py $rooms/solver/test_cones.py $rooms/solver/test_few_channels.py \
+  $rooms/continuity/test_compiled_smoothing.py \
   tests/unit/core/test_rotations.py tests/unit/core/test_euler.py tests/unit/core/test_kinematics.py \
   tests/unit/core/body/test_contacts.py tests/unit/core/body/test_in_one_loop.py tests/unit/core/body/test_ranges.py \
   tests/unit/core/feet/test_measures.py tests/unit/core/feet/test_phases.py tests/unit/core/feet/test_stance.py \
-  tests/unit/core/timeline/test_interpolation.py tests/unit/core/timeline/test_sampled_rows.py tests/properties/test_compiled_text.py \
-  tests/bvh_files/test_short_edits.py
+  tests/unit/core/timeline/test_interpolation.py tests/unit/core/timeline/test_sampled_rows.py \
+  tests/properties/test_compiled_text.py tests/bvh_files/test_short_edits.py

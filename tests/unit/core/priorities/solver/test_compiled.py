@@ -121,7 +121,7 @@ def test_both_solvers_take_the_same_first_steps(patch, seed):
 
 
 def test_the_compiled_part_is_that_of_this_tree():
-    assert Path(compiled().__file__).is_relative_to(Path(__file__).resolve().parents[4])
+    assert Path(compiled().__file__).is_relative_to(Path(__file__).resolve().parents[5])
 
 
 @given(seed=st.integers(0, 2**32 - 1), joints=st.integers(3, 16), count=st.integers(1, 5))
