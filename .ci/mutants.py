@@ -163,7 +163,7 @@ def build(folder: Path) -> bool:
     target = folder / "motionedit" / "core" / "_compiled.abi3.so"
     for old in target.parent.glob("_compiled*"):
         old.unlink()
-    options = ["-shared", "-fPIC", "-std=c11", "-O1", "-w", "-ffp-contract=off", f"-I{sysconfig.get_path('include')}"]
+    options = ["-shared", "-fPIC", "-std=c11", "-O2", "-w", "-ffp-contract=off", f"-I{sysconfig.get_path('include')}"]
     return (
         subprocess.run(
             ["gcc", *options, *told["sources"], "-o", target], cwd=folder, capture_output=True, check=False
