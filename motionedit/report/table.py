@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-# Of more clips than this, only those that are not ok get a row, unless more is asked for.
-_MOST_ROWS = 40
+# Of more clips than this, only those that are not ok get a row, unless more is asked for; of more components the first.
+MOST_ROWS = 40
 
 
 def text_table(headings: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
@@ -45,7 +45,7 @@ def results_table(records: Sequence[dict[str, Any]], seconds: Sequence[float | N
     `seconds` are the records' own; a clip without any, which an earlier run made, has no row.
     """
     rows, units, goals = [], set(), []
-    every = verbosity > 0 or sum(time is not None for time in seconds) <= _MOST_ROWS
+    every = verbosity > 0 or sum(time is not None for time in seconds) <= MOST_ROWS
     for record, time in zip(records, seconds, strict=True):
         if time is None or not (every or record["status"] != "ok"):
             continue

@@ -98,7 +98,7 @@ def fit(database: Database, loaded: LoadedSpec[FitPcaSpec] | None, *, options: R
         raise _too_few(loaded, spec, count, error.available) from None
     except AllTheSameError as error:
         raise ModelError(f"{error}: there is nothing to learn; give clips that differ", file=database.label) from error
-    return Fit(fitted.model, fit_report(fitted, spec))
+    return Fit(fitted.model, fit_report(fitted, spec, verbosity=options.verbosity))
 
 
 def _body(loaded: LoadedSpec[FitPcaSpec] | None, database: Database, skeleton: Skeleton) -> GivenBody:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from motionedit.dataclass import dataclass
+from motionedit.report.table import MOST_ROWS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,7 +25,10 @@ HEADINGS = ("component", "variance", "share %", "sum %")
 
 @dataclass(frozen=True)
 class FitReport:
-    """What a fit came to: the explained-variance `table` (headings, rows), the report's `record`, lines to print."""
+    """What a fit came to: the explained-variance `table` (headings, rows), the report's `record`, lines to print.
+
+    Of many components the first have a row, unless more is asked for; a note then says what the rest explain.
+    """
 
     table: tuple[Sequence[str], Sequence[Sequence[object]]]
     record: dict[str, Any]
@@ -32,7 +36,7 @@ class FitReport:
     notes: list[str]
 
 
-def fit_report(fitted: FittedModel, spec: FitPcaSpec) -> FitReport:
+def fit_report(fitted: FittedModel, spec: FitPcaSpec, *, verbosity: int = 0) -> FitReport:
     """Return what is to be said of a fit."""
     model, pca = fitted.model, fitted.model.components
     record = {
@@ -57,7 +61,10 @@ def fit_report(fitted: FittedModel, spec: FitPcaSpec) -> FitReport:
         }
     if fitted.streamed is not None:
         record["streamed"] = {"passes": fitted.streamed.passes, "residual": fitted.streamed.residual}
-    return FitReport((HEADINGS, _rows(pca)), record, _warnings(fitted, spec), _notes(fitted, spec))
+    rows = _rows(pca)
+    shown = rows if verbosity > 0 else rows[:MOST_ROWS]
+    notes = [*_rest_note(pca, len(shown)), *_notes(fitted, spec)]
+    return FitReport((HEADINGS, shown), record, _warnings(fitted, spec), notes)
 
 
 def _rows(pca: PrincipalComponents) -> list[tuple[object, ...]]:
@@ -68,6 +75,14 @@ def _rows(pca: PrincipalComponents) -> list[tuple[object, ...]]:
             zip(pca.explained_variance, shares, np.cumsum(shares), strict=True)
         )
     ]
+
+
+def _rest_note(pca: PrincipalComponents, shown: int) -> list[str]:
+    """Return what the components that have no row explain."""
+    rest = pca.explained_variance_ratio[shown:]
+    if not len(rest):
+        return []
+    return [f"{len(rest)} more components explain {100.0 * float(rest.sum()):.3g} % of the variance; -v lists them"]
 
 
 def _warnings(fitted: FittedModel, spec: FitPcaSpec) -> list[str]:

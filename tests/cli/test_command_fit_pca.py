@@ -1,0 +1,44 @@
+"""What `fit-pca` prints: a row for each component, as long as a table can be read."""
+
+import json
+
+import pytest
+
+
+@pytest.fixture
+def fitted(run, clip, tmp_path):
+    """Return a runner of fit-pca on so many small clips: its lines on standard error, and the report."""
+
+    def fit(count, *options):
+        for n in range(count):
+            clip(f"in/walk{n:02d}.bvh", seed=n)
+        (tmp_path / "n.yaml").write_text("schema: motionedit/normalize/v1\n")
+        assert run("normalize", "in", "-s", "n.yaml", "-o", "n", "-q").exit_code == 0
+        result = run("fit-pca", "n", "-o", "m.npz", "--report", "r.json", *options)
+        assert result.exit_code == 0
+        return result.stderr.splitlines(), json.loads((tmp_path / "r.json").read_text())
+
+    return fit
+
+
+def test_every_component_of_a_few_has_its_row(fitted):
+    lines, report = fitted(5)
+    rows = [line.split() for line in lines if line.split()[0].isdecimal()]
+    assert [row[0] for row in rows] == ["1", "2", "3", "4"]
+    assert len(report["explained_variance"]) == 4
+    assert not [line for line in lines if "more components" in line]
+
+
+def test_of_many_components_the_first_have_rows_and_a_line_says_what_the_rest_explain(fitted):
+    lines, report = fitted(50)
+    rows = [line.split() for line in lines if line.split()[0].isdecimal()]
+    assert [int(row[0]) for row in rows] == list(range(1, 41))
+    rest = 100.0 * sum(report["explained_variance_ratio"][40:])
+    assert float(rows[-1][-1]) == pytest.approx(100.0 - rest, abs=0.006)
+    assert f"motionedit: 9 more components explain {rest:.3g} % of the variance; -v lists them" in lines
+
+
+def test_v_lists_every_component(fitted):
+    lines, _ = fitted(50, "-v")
+    assert len([line for line in lines if line.split()[0].isdecimal()]) == 49
+    assert not [line for line in lines if "more components" in line]
