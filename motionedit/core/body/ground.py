@@ -25,9 +25,14 @@ _LEVEL_SHARE = 0.1  # of the hips' width that must remain when it is laid on the
 class Frame:
     """A heading frame: `axes` (3, 3) has the rows left, up, forward in world coordinates, `origin` is (3,)."""
 
-    up: FloatArray
     axes: FloatArray
     origin: FloatArray
+
+    @property
+    def up(self) -> FloatArray:
+        """The unit axis that is up, shape (3,)."""
+        up: FloatArray = self.axes[1]
+        return up
 
     def points(self, world: FloatArray) -> FloatArray:
         """Return world positions in this frame, shape (..., 3), clip units."""
@@ -117,7 +122,7 @@ def stance_frame(poses: WorldPoses, anatomy: Anatomy, *, up: FloatArray, frame: 
 def _frame(left: FloatArray, up: FloatArray, *, under: FloatArray) -> Frame:
     """Return the frame whose origin lies on the ground under a point."""
     axes = np.array([left, up, rot.cross(left, up)])
-    return Frame(frozen(np.array(up)), frozen(axes), frozen(under - (under @ up) * up))
+    return Frame(frozen(axes), frozen(under - (under @ up) * up))
 
 
 def _sideways(anatomy: Anatomy) -> list[tuple[int, int]]:

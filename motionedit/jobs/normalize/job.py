@@ -141,7 +141,8 @@ def _both_phases(
     lines = [measure.lines[line] for measure in used]
     alignments = align_each(lines, heading=align.heading, position=align.position)
     works = [
-        ResampleClip(measure, timeline, alignment, loaded.model.unit, options.verify)
+        # Its lines have done their work, and to send them takes as long as to send the rest.
+        ResampleClip(replace(measure, lines={}), timeline, alignment, loaded.model.unit, options.verify)
         for measure, alignment in zip(used, alignments, strict=True)
     ]
     given = [replace(task, clip=task.clip or by_label[task.label].read) for task in good]
