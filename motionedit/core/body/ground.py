@@ -80,8 +80,9 @@ def axis_vector(name: str) -> FloatArray:
 
 def axis_name(up: FloatArray) -> str:
     """Return the name of a signed unit axis: ``y``, ``-z``."""
-    axis = int(np.argmax(np.abs(up)))
-    return ("-" if up[axis] < 0.0 else "") + "xyz"[axis]
+    parts = up.tolist()
+    axis = parts.index(max(parts, key=abs))
+    return ("-" if parts[axis] < 0.0 else "") + "xyz"[axis]
 
 
 def heading_frame(poses: WorldPoses, anatomy: Anatomy, *, up: FloatArray, frame: int, travel: int) -> Frame:

@@ -73,7 +73,7 @@ def run(loaded: LoadedSpec[NormalizeSpec], clips: Sequence[Path], output: Path, 
     if all(task.current for task in tasks) and (output / NAME).exists():
         return earlier(tasks, options)
     # One clip that changed moves the means: all are made anew.
-    anew = [replace(task, current=False) for task in tasks]
+    anew = [replace(task, current=False) if task.current else task for task in tasks]
     first = partial(_remove_list, output / NAME)
     normalized = normalize(loaded, anew, options=options, before_writing=first, verdicts=verdicts)
     if normalized.normalization is not None and not options.dry_run:
