@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import signal
+from functools import cache
 
 TYPE_CHECKING = False  # typing's takes longer to load than all that stands here
 if TYPE_CHECKING:
@@ -19,10 +20,12 @@ _EXIT_CODE = 130
 
 def leave_at_once() -> None:
     """Let Ctrl-C end the program with its line and its exit code, where it is not ignored (a job in the background)."""
+    clean_up_first.cache_clear()
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, _leave)
 
 
+@cache  # asked for each file that is written, it is done once
 def clean_up_first() -> None:
     """Let Ctrl-C raise a KeyboardInterrupt again: there are files or workers now that must not be left behind."""
     if signal.getsignal(signal.SIGINT) is _leave:

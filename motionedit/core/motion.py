@@ -91,17 +91,17 @@ def write_poses(skeleton: Skeleton, values: FloatArray, *, rotations: FloatArray
         step = max(_BLOCK_VALUES // group.columns.size, 1)
         joints, columns = group.in_a_row
         for start in range(0, len(values), step):
-            angles = values[start : start + step, columns].reshape(-1, *group.columns.shape)
+            angles = values[start : start + step, columns]
             block = rotations[start : start + step, joints]
             if len(set(group.axes)) == 3:
-                # Half of each in radians, as `np.radians` has it: angle by angle, so that each is contiguous.
-                half = np.multiply(np.moveaxis(angles, -1, 0), _HALF_DEGREE, order="C")
+                # Half of each in radians, as `np.radians` has it.
+                half = np.multiply(angles, _HALF_DEGREE, order="C").reshape(-1, *group.columns.shape)
                 in_place = block.flags.c_contiguous and isinstance(joints, slice)
                 turned = rot.from_half_angles(half, group.axes, out=block if in_place else None)
                 if in_place:
                     continue
             else:
-                turned = rot.from_euler(np.radians(angles), group.axes)
+                turned = rot.from_euler(np.radians(angles.reshape(-1, *group.columns.shape)), group.axes)
             rotations[start : start + step, joints] = turned
     translations[:] = skeleton.offsets[skeleton.translated]
     for p, joint in enumerate(skeleton.translated.tolist()):

@@ -263,7 +263,7 @@ def from_euler(angles: FloatArray, axes: Sequence[int]) -> FloatArray:
         Coordinate axes in channel order: (2, 0, 1) is ZXY, R = Rz Rx Ry. Any number of them, none is the identity.
     """
     if len(axes) == 3 and len(set(axes)) == 3:
-        return from_half_angles(np.multiply(np.moveaxis(angles, -1, 0), 0.5, order="C"), axes)
+        return from_half_angles(np.multiply(angles, 0.5, order="C"), axes)
     q = np.broadcast_to(IDENTITY, (*angles.shape[:-1], 4))
     for i, axis in enumerate(axes):
         turn = about_axis(axis, angles[..., i])
@@ -275,18 +275,17 @@ def from_half_angles(half: FloatArray, axes: Sequence[int], *, out: FloatArray |
     """Return the product of three turns about different axes, each as (1, t e_axis) / sqrt(1 + t^2), t = tan(a/2).
 
     One tangent takes the place of a sine and a cosine, which cost ten times as much; near half a turn t is large but
-    finite, and the quotients keep their precision. The halves of the angles, shape (3, ...) rad, are used up; the
+    finite, and the quotients keep their precision. The halves of the angles, shape (..., 3) rad, are used up; the
     quaternions are written to `out`, shape (..., 4), if it is given.
     """
     i, j, k = axes
     sign = 1.0 if (j - i) % 3 == 1 else -1.0  # e_i e_j = sign e_k
     np.tan(half, out=half)
-    q, kernel = np.empty((*half.shape[1:], 4)) if out is None else out, compiled()
+    q, kernel = np.empty((*half.shape[:-1], 4)) if out is None else out, compiled()
     if kernel is not None and q.flags.c_contiguous:
         kernel.from_tangents(half, i, j, k, q)
         return q
-    a, b, c = half
-    c *= sign
+    a, b, c = half[..., 0], half[..., 1], sign * half[..., 2]
     scale = 1.0 / np.sqrt((1.0 + a * a) * (1.0 + b * b) * (1.0 + c * c))
     ab, bc, ac = a * b, b * c, a * c
     q[..., 0] = (1.0 - ab * c) * scale

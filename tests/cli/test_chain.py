@@ -6,6 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from motionedit.core.bvh import read_clip
+from motionedit.jobs.batch import held
+from motionedit.jobs.batch.plan import ClipTask
+
 ROOT = Path(__file__).parents[2]
 SWINGS = ROOT / "data/golf"
 NAMES = sorted(path.name for path in SWINGS.glob("*.bvh"))
@@ -44,6 +48,68 @@ def test_clips_become_a_timeline_a_model_and_edits(run):
     assert run(*one, "--strict").exit_code == 3
     again = run("fit-pca", "normal", "-o", "golf.npz", "--no-overwrite")
     assert (again.exit_code, again.stderr.count("\n")) == (2, 1)
+
+
+@pytest.fixture
+def reads(monkeypatch, tmp_path):
+    """Return a file with a line for each clip that is read, by any process."""
+    path = tmp_path / "reads.txt"
+
+    def read(source, **options):
+        with path.open("a") as stream:
+            stream.write(f"{source.name}\n")
+        return read_clip(source, **options)
+
+    monkeypatch.setattr("motionedit.core.bvh.read_clip", read)
+    return path
+
+
+@pytest.mark.usefixtures("swings")
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_normalize_reads_a_clip_once_where_the_clips_fit_and_writes_the_same_where_they_do_not(
+    run, reads, monkeypatch, jobs
+):
+    normalize = ("normalize", "golf", "-s", "golf-normalize.yaml", "-j", jobs)
+    assert run(*normalize, "-o", "once").exit_code == 0
+    names = reads.read_text().split()
+    assert set(names) == set(NAMES)
+    # Of two workers one may have had time for what the other one holds.
+    assert len(names) == len(NAMES) if jobs == 1 else len(names) < 2 * len(NAMES)
+    monkeypatch.setattr("motionedit.jobs.normalize.job._MOST_HELD", 0)
+    reads.unlink()
+    assert run(*normalize, "-o", "twice").exit_code == 0
+    assert sorted(reads.read_text().split()) == sorted(2 * NAMES)
+    for path in Path("once").iterdir():
+        if not path.name.startswith("."):
+            assert path.read_bytes() == (Path("twice") / path.name).read_bytes()
+
+
+def test_a_run_that_fails_holds_no_clips_for_the_next(run, swings):
+    (swings / "golf/swing02.bvh").write_text("no clip")
+    normalize = ("normalize", "golf", "-s", "golf-normalize.yaml", "-o")
+    assert run(*normalize, "normal").exit_code == 1
+    shutil.copy(SWINGS / "swing02.bvh", swings / "golf")
+    shutil.copy(SWINGS / "swing03.bvh", swings / "golf/swing01.bvh")
+    assert run(*normalize, "normal").exit_code == 0
+    assert (held._HELD.clips, held._HELD.bytes) == ({}, 0)
+    assert run(*normalize, "again").exit_code == 0
+    one, other = (Path(folder, "swing01.bvh").read_bytes() for folder in ("normal", "again"))
+    assert one == other
+
+
+def test_as_many_clips_are_held_as_fit(swings):
+    tasks = [ClipTask(swings / "golf" / name, name, None, name) for name in NAMES]
+    clips = [read_clip(task.source) for task in tasks]
+    sizes = [clip.motion.rotations.nbytes + clip.motion.translations.nbytes for clip in clips]
+    try:
+        for task, clip in zip(tasks, clips, strict=True):
+            held.hold(task, clip, most=sum(sizes[:3]))
+        found = [held.with_held(task).clip for task in tasks]
+    finally:
+        held.let_go()
+    assert [clip is not None for clip in found] == [True] * 3 + [False] * 7
+    assert all(one.motion is other.motion for one, other in zip(found[:3], clips, strict=False))
+    assert all(held.with_held(task) is task for task in tasks)
 
 
 def test_normalize_fails_as_a_whole_unless_told_to_keep_going(run, swings):

@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections import deque
 from functools import partial
 
 import pytest
@@ -171,6 +172,29 @@ def test_a_standing_crew_takes_another_function_and_ends_with_its_context():
         assert [item for _, item in second] == list(range(0, 16, 2))
         assert {process for process, _ in second} <= {process for process, _ in first} - {os.getpid()}
     assert multiprocessing.active_children() == []
+
+
+def test_a_worker_of_a_standing_crew_gets_what_it_had_before_and_then_what_others_have_no_time_for():
+    crew, (one, other) = processes.Crew(name_of=str.casefold), (object(), object())
+
+    def taken(items, worker, waiting, *, most, before=6):
+        return [items[place] for place in crew._take(worker, items, waiting, most=most, before=before)]
+
+    first, again = deque(range(6)), deque(range(6))
+    assert taken("abcdef", one, first, most=2) == ["a", "b"]
+    assert taken("abcdef", other, first, most=2) == ["c", "d"]
+    assert taken("abcdef", one, first, most=2, before=5) == ["e"]
+    assert taken("ABCDEF", other, again, most=3) == ["C", "D"]
+    assert taken("ABCDEF", other, again, most=3) == ["A", "B", "E"]
+    assert (list(first), list(again)) == ([5], [5])
+
+
+def test_a_standing_crew_that_loses_a_worker_gives_all_results_in_order_though_workers_have_items_of_their_own():
+    options = RunOptions(jobs=2)
+    with standing_crew(options, name_of=lambda item: item // 16) as crew:
+        assert list(results_in_order(slow_first, range(100), options=options, crew=crew))[-1] == 99 * 99
+        found = list(results_in_order(die_at_sixty, range(100), options=options, crew=crew))
+    assert [value for value in found if not isinstance(value, WorkerDiedError)] == [n for n in range(100) if n != 60]
 
 
 def test_a_standing_crew_that_was_left_in_the_middle_or_died_begins_anew():

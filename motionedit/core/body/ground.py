@@ -13,6 +13,8 @@ from motionedit.core.arrays import frozen
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from motionedit.core.arrays import FloatArray
     from motionedit.core.body.anatomy import Anatomy
     from motionedit.core.kinematics import WorldPoses
@@ -25,9 +27,18 @@ _LEVEL_SHARE = 0.1  # of the hips' width that must remain when it is laid on the
 class Frame:
     """A heading frame: `axes` (3, 3) has the rows left, up, forward in world coordinates, `origin` is (3,)."""
 
-    up: FloatArray
     axes: FloatArray
     origin: FloatArray
+
+    def __reduce__(self) -> tuple[Callable[..., Frame], tuple[bytes, bytes]]:
+        # Two for each clip of a run go to another process: bytes are packed in a third of an array's time.
+        return _unpacked, (self.axes.tobytes(), self.origin.tobytes())
+
+    @property
+    def up(self) -> FloatArray:
+        """The unit axis that is up, shape (3,)."""
+        up: FloatArray = self.axes[1]
+        return up
 
     def points(self, world: FloatArray) -> FloatArray:
         """Return world positions in this frame, shape (..., 3), clip units."""
@@ -54,6 +65,10 @@ class Frame:
         return float(np.degrees(np.arctan2(forward @ start[0], forward @ start[2])))
 
 
+def _unpacked(axes: bytes, origin: bytes) -> Frame:
+    return Frame(np.frombuffer(axes).reshape(3, 3), np.frombuffer(origin))
+
+
 def reference_axes(up: FloatArray) -> FloatArray:
     """Return the rows left, up, forward of heading 0: left is +x (+y where x is up), forward is left x up."""
     return _reference_axes(*up.tolist())
@@ -75,8 +90,9 @@ def axis_vector(name: str) -> FloatArray:
 
 def axis_name(up: FloatArray) -> str:
     """Return the name of a signed unit axis: ``y``, ``-z``."""
-    axis = int(np.argmax(np.abs(up)))
-    return ("-" if up[axis] < 0.0 else "") + "xyz"[axis]
+    parts = up.tolist()
+    axis = parts.index(max(parts, key=abs))
+    return ("-" if parts[axis] < 0.0 else "") + "xyz"[axis]
 
 
 def heading_frame(poses: WorldPoses, anatomy: Anatomy, *, up: FloatArray, frame: int, travel: int) -> Frame:
@@ -117,7 +133,7 @@ def stance_frame(poses: WorldPoses, anatomy: Anatomy, *, up: FloatArray, frame: 
 def _frame(left: FloatArray, up: FloatArray, *, under: FloatArray) -> Frame:
     """Return the frame whose origin lies on the ground under a point."""
     axes = np.array([left, up, rot.cross(left, up)])
-    return Frame(frozen(np.array(up)), frozen(axes), frozen(under - (under @ up) * up))
+    return Frame(frozen(axes), frozen(under - (under @ up) * up))
 
 
 def _sideways(anatomy: Anatomy) -> list[tuple[int, int]]:

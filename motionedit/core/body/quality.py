@@ -160,8 +160,10 @@ def find_defects(motion: Motion, *, first: int = 0) -> list[Defect]:
     Another Euler branch is no step. Frames before `first`, a rest pose, are left out, and so is the step out of it.
     """
     q = motion.rotations[first:]
-    # A cosine of half the step costs less than the step, and nearly all joints are let off by it.
+    # A cosine of half the step costs less than the step, and nearly all joints, and most motions, are let off by it.
     cosines = rot.half_cosines(q[:-1], q[1:])
+    if cosines.min(initial=1.0) >= _DEFECT_COSINE:
+        return []
     defects = []
     for joint in np.flatnonzero((cosines < _DEFECT_COSINE).any(axis=0)):
         steps = rot.angle_between(q[:-1, joint], q[1:, joint])

@@ -16,6 +16,8 @@ from motionedit.core.compiled import compiled
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
     from motionedit.core.arrays import FloatArray, IntArray
@@ -69,24 +71,34 @@ def find_up(motion: Motion, bones: Skeleton, poses: WorldPoses, anatomy: Anatomy
     if offsets is not None and min(float(offsets.max()), float(stands[offsets.argmax()])) > _AGREED:
         # Where both say so no floor could say otherwise.
         return Up(axis_vector("xyz"[int(offsets.argmax())]))
+    against = {name: 1.0 - along for name, along in _along(stands).items()}
+    said = {"the body mostly stands": axis_name(stands)}
+    if offsets is not None:
+        against = {name: against[name] + _OFFSETS_WEIGHT * (1.0 - along) for name, along in _along(offsets).items()}
+        said = {"the OFFSETs stand": axis_name(offsets), **said}
+    best, _, lead = _best(against, dict.fromkeys(_PRIOR, 0.0))
+    if lead > 1.0 + _SURE and set(said.values()) == {best}:
+        # No floor is worth more than 1: here, too, none could say otherwise.
+        return Up(axis_vector(best))
     # Joint by joint in memory: numpy takes the least of many rows much faster than that of many columns.
     joint_by_joint = np.take(shown, _body(bones, travel), axis=1).swapaxes(0, 1)
     floors = _floors(np.ascontiguousarray(joint_by_joint), size=anatomy.leg_length)
-    standing, folded = _along(stands), None if offsets is None else _along(offsets)
-    costs = {}
-    for name, prior in _PRIOR.items():
-        against = 0.0 if folded is None else _OFFSETS_WEIGHT * (1.0 - folded[name])
-        costs[name] = 1.0 - standing[name] + against + floors[name] + prior
-    best, next_best = sorted(costs, key=lambda name: costs[name])[:2]
-    said = {"the OFFSETs stand": offsets, "the body mostly stands": stands}
-    others = {words: axis_name(way) for words, way in said.items() if way is not None and axis_name(way) != best}
+    best, next_best, lead = _best(against, floors)
+    others = {words: axis for words, axis in said.items() if axis != best}
     settled = all(floors[best] < floors[axis] - _SURE for axis in others.values())
-    if costs[next_best] - costs[best] >= _SURE and settled:
+    if lead >= _SURE and settled:
         return Up(axis_vector(best))
     why = ", ".join(f"{words} along {axis}" for words, axis in others.items()) or f"{next_best} is nearly as likely"
     return Up(
         axis_vector(best), f"up is taken to be {best}, but {why}; 'up' in a spec, --up elsewhere, says which it is"
     )
+
+
+def _best(against: Mapping[str, float], floors: Mapping[str, float]) -> tuple[str, str, float]:
+    """Return the axis that least speaks against, the next, and by how much that is worse."""
+    costs = {name: against[name] + floors[name] + prior for name, prior in _PRIOR.items()}
+    best, next_best = sorted(costs, key=lambda name: costs[name])[:2]
+    return best, next_best, costs[next_best] - costs[best]
 
 
 @lru_cache(maxsize=4)

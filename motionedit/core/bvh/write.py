@@ -85,11 +85,11 @@ def decimals_of_edits(clip: Written) -> int:
 
 def check_finite(clip: Written, values: FloatArray, cells: BoolArray | None = None, *, first: int = 0) -> None:
     """Raise `BvhError` where a value of the chosen cells, or of all, is not finite; row 0 is frame `first`."""
-    bad = ~np.isfinite(values)
+    good = np.isfinite(values)
     if cells is not None:
-        bad &= cells
-    if bad.any():
-        frame = first + int(np.argmax(bad.any(axis=1)))
+        good |= ~cells
+    if not good.all():
+        frame = first + int(np.argmin(good.all(axis=1)))
         message = f"the edit gives values at frame {frame} that are not finite; nothing is written"
         raise BvhError(message, file=clip.label)
 

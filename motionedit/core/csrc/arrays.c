@@ -118,8 +118,8 @@ void from_tangents(const double *tangents, const int *axes, int64_t count, doubl
 {
     const int i = 1 + axes[0], j = 1 + axes[1], k = 1 + axes[2];
     const double sign = (axes[1] - axes[0] + 3) % 3 == 1 ? 1.0 : -1.0; /* e_i e_j = sign e_k */
-    for (int64_t n = 0; n < count; n++, out += 4) {
-        const double a = tangents[n], b = tangents[count + n], c = sign * tangents[2 * count + n];
+    for (int64_t n = 0; n < count; n++, tangents += 3, out += 4) {
+        const double a = tangents[0], b = tangents[1], c = sign * tangents[2];
         const double scale = 1.0 / sqrt((1.0 + a * a) * (1.0 + b * b) * (1.0 + c * c));
         out[0] = (1.0 - a * b * c) * scale;
         out[i] = (a + b * c) * scale;

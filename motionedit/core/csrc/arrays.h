@@ -24,7 +24,7 @@ RowWork scale_vectors;   /* the vectors of quaternions out = b a, of vectors; th
 RowWork scale_shorter; /* out = b times the vectors of quaternions a, with the sign that turns by half a turn at most */
 
 /* Quaternions of `count` products of three turns about the axes, 0 to 2 and different, each by the tangent of half its
-   angle: first all of the first turns, then of the second, of the third. */
+   angle. */
 void from_tangents(const double *tangents, const int *axes, int64_t count, double *out);
 
 /* What the Euler angles of rotations about three axes are arc tangents of, shape (6, joints, frames): sine and cosine of

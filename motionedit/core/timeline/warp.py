@@ -70,9 +70,9 @@ def make_warp(timeline: Timeline, *, first: int, last: int, events: Mapping[str,
         If first frame, events in the timeline's order and last frame do not increase strictly.
     """
     source = [float(first), *(float(events[name]) for name, _ in timeline.events), float(last)]
-    names = ["its first frame", *(f"'{name}'" for name, _ in timeline.events), "its last frame"]
     for i in range(1, len(source)):
         if not source[i] > source[i - 1]:
+            names = ["its first frame", *(f"'{name}'" for name, _ in timeline.events), "its last frame"]
             message = (
                 f"{names[i]} at frame {source[i]:g} is not after {names[i - 1]} at frame {source[i - 1]:g}; "
                 "events must follow each other inside the clip, in the same order in every clip"

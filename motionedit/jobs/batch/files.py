@@ -40,8 +40,8 @@ def atomic_write(path: Path, data: bytes | Iterable[bytes | memoryview]) -> None
         The folder cannot be made or written, or the disk is full.
     """
     clean_up_first()
-    pieces, old = (data,) if isinstance(data, bytes) else data, _mode_of(path)
-    if old is not None and not stat.S_ISREG(old):
+    pieces, old = (data,) if isinstance(data, bytes) else data, status_of(path)
+    if old is not None and not stat.S_ISREG(old.st_mode):
         _write_through(path, pieces)
         return
     try:
@@ -81,12 +81,21 @@ def identity(path: Path) -> tuple[int, int] | str:
 
 
 def _identity(path: Path, place_of: Callable[[Path], str]) -> tuple[int, int] | str:
+    return number_of(status_of(path)) or place_of(path)
+
+
+def status_of(path: Path) -> os.stat_result | None:
+    """Return the status of what a name stands for, through links too; None where it stands for nothing."""
     try:
-        status = path.stat()
-    except OSError:
-        return place_of(path)
+        return os.stat(path)  # noqa: PTH116  of a Path it takes twice as long
+    except OSError:  # whoever reads or writes there says so
+        return None
+
+
+def number_of(status: os.stat_result | None) -> tuple[int, int] | None:
+    """Return the number that the system gives a file; None where there is none."""
     # Some file systems of Windows number no files: every one of theirs would be the same.
-    return (status.st_dev, status.st_ino) if status.st_ino else place_of(path)
+    return (status.st_dev, status.st_ino) if status is not None and status.st_ino else None
 
 
 def place(path: Path) -> str:
@@ -186,21 +195,13 @@ def _held(stream: BinaryIO, path: Path) -> bool:
         return False
 
 
-def _mode_of(path: Path) -> int | None:
-    """Return the type and mode of what a name stands for; None where it stands for nothing."""
-    try:
-        return os.stat(path).st_mode  # noqa: PTH116  of a Path it takes twice as long
-    except OSError:  # whoever writes there says so
-        return None
-
-
-def _take_mode(old: int | None, new: Path) -> None:
+def _take_mode(old: os.stat_result | None, new: Path) -> None:
     """Give a file the mode of the one that it will replace, where there is one."""
     if old is None:
         return
     # Where the old one is another user's the mode may not be ours to give; the content is.
     with contextlib.suppress(OSError):
-        new.chmod(stat.S_IMODE(old))
+        new.chmod(stat.S_IMODE(old.st_mode))
 
 
 def bytes_of(paths: Iterable[Path | None]) -> int:

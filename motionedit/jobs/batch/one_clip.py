@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from motionedit.dataclass import dataclass, replace
 from motionedit.errors import ClipError, MotionEditError
 from motionedit.jobs.batch.files import atomic_write
+from motionedit.jobs.batch.held import with_held
 from motionedit.report.record import without_frames
 
 if TYPE_CHECKING:
@@ -124,14 +125,14 @@ class RunOne:
 
 @dataclass(frozen=True)
 class RunOwn:
-    """All that is done to one clip that has its own work."""
+    """All that is done to one clip that has its own work, and may be held since it was measured."""
 
     options: RunOptions
 
     def __call__(self, pair: tuple[ClipTask, Work]) -> Done:
         """Return what became of the clip."""
         task, work = pair
-        return RunOne(self.options, work)(task)
+        return RunOne(self.options, work)(with_held(task))
 
 
 def _counted(content: bytes | Iterable[bytes | memoryview], sha256: hashlib._Hash) -> Iterator[bytes | memoryview]:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import os
+import stat
 from typing import TYPE_CHECKING
 
 from motionedit.errors import UsageError
-from motionedit.jobs.batch.files import Places
+from motionedit.jobs.batch.files import Places, number_of, status_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -29,21 +30,25 @@ def refuse_clashes(outputs: Iterable[tuple[str, Path | None]], inputs: Iterable[
     inputs
         All files that are read; None is standard input.
     """
-    files = [(what, path) for what, path in outputs if path is not None and str(path) != "-"]
     places = Places()
+    files = [
+        (what, path, places.of(path), status_of(path))
+        for what, path in outputs
+        if path is not None and str(path) != "-"
+    ]
     taken = {places.identity(path) for path in inputs if path is not None}
     refuse_paths(
-        [path for _, path in files if places.identity(path) in taken],
+        [path for _, path, place, status in files if (number_of(status) or place) in taken],
         "is an input of this run, and an input is never overwritten; write to another file or folder",
     )
     first: dict[str, tuple[str, Path]] = {}
-    for what, path in files:
-        if path.exists() and not path.is_file():
+    for what, path, place, status in files:
+        if status is not None and not stat.S_ISREG(status.st_mode):
             continue  # a device takes any number of outputs; a folder is refused where it is written
-        other, _ = first.setdefault(places.of(path), (what, path))
+        other, _ = first.setdefault(place, (what, path))
         if other is not what:
             raise UsageError(f"{other} and {what} would both be written to {path}")
-    folders = {one for folder in {path.parent for _, path in files} for one in (folder, *folder.parents)}
+    folders = {one for folder in {path.parent for _, path, _, _ in files} for one in (folder, *folder.parents)}
     both = [first[one][1] for one in map(places.of, sorted(folders)) if one in first]
     refuse_paths(both, "would be a file and the folder of other outputs; write to another file or folder")
 

@@ -157,7 +157,7 @@ def find_clips(clips: Sequence[Path], *, leave_out: Path | None = None) -> list[
 
 def folder_clips(folder: Path, *, leave_out: Path | None = None) -> list[ClipTask]:
     """Return the clips of one folder as `find_clips` does, none where it has none."""
-    found = sorted((clip.relative_to(folder).as_posix(), clip) for clip in _clips_below(folder, leave_out))
+    found = sorted(_clips_below(folder, leave_out))
     if leave_out is not None and not leave_out.is_dir():
         # An output of an earlier run inside the folder is no clip, unless it is all there is: then it is refused.
         left_out = identity(leave_out)
@@ -261,7 +261,8 @@ def _expand(path: Path, leave_out: Path | None) -> list[ClipTask]:
     return found
 
 
-def _clips_below(top: Path, leave_out: Path | None) -> Iterator[Path]:
+def _clips_below(top: Path, leave_out: Path | None) -> Iterator[tuple[str, Path]]:
+    """Yield the clips of a folder: the path below it with forward slashes, and the whole one."""
     left_out = None if leave_out is None else identity(leave_out)
 
     def refuse(error: OSError) -> None:
@@ -271,9 +272,11 @@ def _clips_below(top: Path, leave_out: Path | None) -> Iterator[Path]:
         subfolders[:] = [
             name for name in subfolders if not name.startswith(".") and identity(Path(folder, name)) != left_out
         ]
+        here = Path(folder)
+        below = "" if here == top else f"{here.relative_to(top).as_posix()}/"
         for name in names:
             if name.lower().endswith(".bvh") and not name.startswith("."):
-                yield Path(folder, name)
+                yield below + name, here / name
 
 
 def _with_outputs(tasks: list[ClipTask], output: str) -> list[ClipTask]:

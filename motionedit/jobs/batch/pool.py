@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import os
 from contextlib import nullcontext
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from motionedit.interrupts import clean_up_first
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Sequence
+    from collections.abc import Callable, Generator, Hashable, Sequence
     from contextlib import AbstractContextManager
 
     from motionedit.jobs.batch.no_result import WorkerDiedError
@@ -49,7 +49,7 @@ def results_in_order(
     clean_up_first()
     if len(items) > 1:
         _keep_memory()
-    workers = min(options.jobs or _cores(), len(items), _MOST_WORKERS)
+    workers = workers_for(len(items), options)
     if workers > 1:
         from motionedit.jobs.batch.processes import in_processes
 
@@ -57,13 +57,23 @@ def results_in_order(
     return _one_by_one(function, items, is_last)
 
 
-def standing_crew(options: RunOptions) -> AbstractContextManager[Crew | None]:
-    """Return the workers of several runs, one after the other, as a context; None where this process does the work."""
+def workers_for(items: int, options: RunOptions) -> int:
+    """Return how many processes of this machine work on so many items, 1 at the least."""
+    return max(min(options.jobs or _cores(), items, _MOST_WORKERS), 1)
+
+
+def standing_crew(
+    options: RunOptions, *, name_of: Callable[[Any], Hashable] | None = None
+) -> AbstractContextManager[Crew | None]:
+    """Return the workers of several runs, one after the other, as a context; None where this process does the work.
+
+    An item goes to the worker that had one of that name in the run before, where it has time for it.
+    """
     if options.jobs == 1 or options.scheduler is not None:
         return nullcontext()
     from motionedit.jobs.batch.processes import Crew
 
-    return Crew()
+    return Crew(name_of)
 
 
 def threads_within(items: int, options: RunOptions) -> int:

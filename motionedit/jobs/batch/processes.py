@@ -16,6 +16,7 @@ import sys
 import threading
 import time
 from collections import deque
+from itertools import takewhile
 from multiprocessing.connection import wait
 from multiprocessing.reduction import ForkingPickler
 from typing import TYPE_CHECKING, Any, NamedTuple, Self, TypeVar
@@ -23,7 +24,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Self, TypeVar
 from motionedit.jobs.batch.no_result import Raised, WorkerDiedError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Iterator, Sequence
+    from collections.abc import Callable, Generator, Hashable, Iterator, Sequence
     from multiprocessing.connection import Connection
     from multiprocessing.context import BaseContext
     from multiprocessing.process import BaseProcess
@@ -111,14 +112,19 @@ class _Worker:
 
 
 class Crew:
-    """The workers of a run, or of several, one after the other; one that dies is replaced where there is more to do."""
+    """The workers of a run, or of several, one after the other; one that dies is replaced where there is more to do.
 
-    def __init__(self) -> None:
+    A worker that had an item of some name in an earlier run gets that of the same name, if it has time for it.
+    """
+
+    def __init__(self, name_of: Callable[[Any], Hashable] | None = None) -> None:
         # Forked workers start in a millisecond with every module loaded; only Linux forks safely.
         self._context = multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
         self._function: Callable[[Any], Any] | None = None
         self._count = 0
         self._workers: list[_Worker] = []
+        self._name_of = name_of
+        self._homes: dict[Hashable, _Worker] = {}
         # Items of a message: as many as are worked on in its time, as fit into it, and whether it is one in any case.
         self._at_once, self._fit = 1, 1
         self._one_by_one = False
@@ -152,13 +158,26 @@ class Crew:
                 return
             # Fewer towards the end, so that all end together.
             most = max(1, min(self._at_once, self._fit, len(waiting) // (IN_HAND * self._count)))
-            places = [waiting.popleft() for _ in range(min(most, before - waiting[0]))]
+            places = self._take(worker, items, waiting, most=most, before=before)
             worker.in_hand.append(places)
             message = ForkingPickler.dumps([items[place] for place in places])
             self._fit = _MOST_BYTES * len(places) // len(message)
             # A worker that is gone is seen where its results are awaited.
             with contextlib.suppress(BrokenPipeError, ConnectionError):
                 worker.pipe.send_bytes(message)
+
+    def _take(self, worker: _Worker, items: Sequence[Any], waiting: deque[int], *, most: int, before: int) -> list[int]:
+        """Take from the places that wait those of a worker's next items: of such as it had before, else the first."""
+        places = list(takewhile(before.__gt__, waiting))
+        name_of, homes = self._name_of, self._homes
+        if name_of is not None:
+            own = [place for place in places if homes.get(name_of(items[place])) is worker]
+            places = (own or places)[:most]
+            homes.update((name_of(items[place]), worker) for place in places)
+        places = places[:most]
+        for place in places:
+            waiting.remove(place)
+        return places
 
     def collect(self, results: dict[int, Any], waiting: deque[int]) -> None:
         """Wait a moment for results; of a worker that died its item is lost, and what it had not begun waits again."""
@@ -185,7 +204,9 @@ class Crew:
             results[in_hand.popleft()[0]] = WorkerDiedError(_DIED)
         elif in_hand:
             self._at_once, self._one_by_one = 1, True
-        waiting.extendleft(reversed([place for places in in_hand for place in places]))
+        again = sorted([*waiting, *(place for places in in_hand for place in places)])
+        waiting.clear()
+        waiting.extend(again)
 
     def end(self) -> None:
         """End all workers, whatever they are at."""

@@ -18,7 +18,6 @@ from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.body.rest_pose import rest_pose_frames
 from motionedit.core.body.steps import own_steps
 from motionedit.core.body.up import find_up
-from motionedit.core.feet.phases import find_phases, leg_paths
 from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError
 
@@ -127,6 +126,8 @@ class ClipFacts:
     @cached_property
     def phases(self) -> tuple[Plant, ...]:
         """The plants cut to what a foot can be held for in one place, as `find_phases`."""
+        from motionedit.core.feet.phases import find_phases, leg_paths  # edits alone ask for them
+
         anatomy, frame_time = self.anatomy, self.clip.motion.frame_time
         (legs,) = self.world.gathered(lambda poses: [leg_paths(poses, anatomy)])
         return tuple(find_phases(self.tracks, legs, anatomy, self.sole_stands, up=self.up, frame_time=frame_time))

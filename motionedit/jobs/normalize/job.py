@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 from motionedit.core.timeline.alignment import align_each
 from motionedit.dataclass import dataclass, replace
 from motionedit.errors import EXIT_CLIP_FAILED, EXIT_USAGE, MotionEditError, UsageError
-from motionedit.jobs.batch.files import bytes_of
+from motionedit.jobs.batch.held import let_go
 from motionedit.jobs.batch.one_clip import write_file
 from motionedit.jobs.batch.plan import find_clips, plan
-from motionedit.jobs.batch.pool import standing_crew
+from motionedit.jobs.batch.pool import standing_crew, workers_for
 from motionedit.jobs.batch.run import BatchResult, earlier, failed_record, map_tasks, run_each
 from motionedit.jobs.batch.verdicts import run_key, verdicts_in
 from motionedit.jobs.normalize.common_timeline import common_timeline, events_out_of_order
@@ -35,9 +35,8 @@ if TYPE_CHECKING:
     from motionedit.spec.normalize import NormalizeSpec
 
 
-# Bytes of files whose clips are held from the first phase to the second, when one process does both: their motions are
-# about as large.
-_MOST_KEPT = 1 << 26
+# Bytes of motions that are held from the first phase to the second, by all workers together.
+_MOST_HELD = 1 << 26
 
 
 @dataclass(frozen=True)
@@ -74,7 +73,7 @@ def run(loaded: LoadedSpec[NormalizeSpec], clips: Sequence[Path], output: Path, 
     if all(task.current for task in tasks) and (output / NAME).exists():
         return earlier(tasks, options)
     # One clip that changed moves the means: all are made anew.
-    anew = [replace(task, current=False) for task in tasks]
+    anew = [replace(task, current=False) if task.current else task for task in tasks]
     first = partial(_remove_list, output / NAME)
     normalized = normalize(loaded, anew, options=options, before_writing=first, verdicts=verdicts)
     if normalized.normalization is not None and not options.dry_run:
@@ -108,8 +107,16 @@ def normalize(
     SpecError
         As `run`.
     """
-    with standing_crew(options) as crew:
-        return _both_phases(loaded, tasks, options, crew, before_writing, verdicts)
+    try:
+        with standing_crew(options, name_of=_source_of) as crew:
+            return _both_phases(loaded, tasks, options, crew, before_writing, verdicts)
+    finally:
+        let_go()
+
+
+def _source_of(item: ClipTask | tuple[ClipTask, ResampleClip]) -> Path | None:
+    """Return the file of an item of either phase."""
+    return (item[0] if isinstance(item, tuple) else item).source
 
 
 def _both_phases(
@@ -120,8 +127,8 @@ def _both_phases(
     before_writing: Callable[[], None],
     verdicts: Verdicts | None,
 ) -> Normalized:
-    keep = options.jobs == 1 and options.scheduler is None and bytes_of(task.source for task in tasks) <= _MOST_KEPT
-    measure = MeasureClip(loaded, options.lenient, tuple(task.relative for task in tasks), keep)
+    held = _MOST_HELD // workers_for(len(tasks), options) if options.scheduler is None else 0
+    measure = MeasureClip(loaded, options.lenient, tuple(task.relative for task in tasks), held)
     measured = map_tasks(measure, tasks, options, crew=crew)
     measures, failures = sound_measures(tasks, measured)
     if failures and (not options.keep_going or not measures):
@@ -141,13 +148,13 @@ def _both_phases(
     lines = [measure.lines[line] for measure in used]
     alignments = align_each(lines, heading=align.heading, position=align.position)
     works = [
-        ResampleClip(measure, timeline, alignment, loaded.model.unit, options.verify)
+        # Its lines have done their work, and to send them takes as long as to send the rest.
+        ResampleClip(replace(measure, lines={}), timeline, alignment, loaded.model.unit, options.verify)
         for measure, alignment in zip(used, alignments, strict=True)
     ]
-    given = [replace(task, clip=task.clip or by_label[task.label].read) for task in good]
     if not options.dry_run:
         before_writing()
-    result = run_each(list(zip(given, works, strict=True)), options, verdicts=verdicts, crew=crew)
+    result = run_each(list(zip(good, works, strict=True)), options, verdicts=verdicts, crew=crew)
     written = [record.get("clip_sha256", "") for record in result.records]
     normalization = None
     if not result.failures:

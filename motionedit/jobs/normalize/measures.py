@@ -8,6 +8,7 @@ from motionedit.core.body.ground import axis_name
 from motionedit.core.skeleton_match import match_joints
 from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError, MotionEditError
+from motionedit.jobs.batch.held import hold
 from motionedit.jobs.batch.one_clip import read_task
 from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.crop import cropped
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from motionedit.core.body.ground import Frame
-    from motionedit.core.bvh import Clip
     from motionedit.core.skeleton import Skeleton
     from motionedit.jobs.batch.plan import ClipTask
     from motionedit.jobs.clip.facts import ClipFacts, Line
@@ -32,7 +32,7 @@ class ClipMeasure:
 
     `first` and `last` are the frames that count, after a rest pose and within the spec's crop; `travel` is the joint
     that carries the travel; `stands` says whether both feet stand side by side where clips are aligned, `lines` by what
-    they may be; `read` holds the clip, without its rows, where the second phase need not read it again.
+    they may be.
     """
 
     label: str
@@ -50,7 +50,6 @@ class ClipMeasure:
     stands: bool
     lines: dict[Line, Frame]
     warnings: tuple[str, ...]
-    read: Clip | None = None
 
     @property
     def duration(self) -> float:
@@ -62,19 +61,20 @@ class ClipMeasure:
 class MeasureClip:
     """The first phase of normalize, on one clip.
 
-    `others` are all clips of the run, as event files call them; `keep` says that the clips are few enough to be held.
+    `others` are all clips of the run, as event files call them; of motions so many bytes are held for the second phase.
     """
 
     loaded: LoadedSpec[NormalizeSpec]
     lenient: bool
     others: tuple[str, ...]
-    keep: bool = False
+    held: int = 0
 
     def __call__(self, task: ClipTask) -> ClipMeasure:
         """Return the clip's measure."""
         spec = self.loaded.model
         clip = read_task(task, lenient=self.lenient)
         digest = clip.sha256  # while the processor has the bytes at hand
+        hold(task, clip, most=self.held)
         given = resolve.body(spec.body, clip.motion.skeleton, resolve.Place(self.loaded, ("body",), task.label))
         facts = facts_of(clip, up=spec.up, keep_rest_pose=spec.rest_pose == "keep", given=given)
         facts.refuse_one_frame()
@@ -99,7 +99,6 @@ class MeasureClip:
             stands=facts.stands(at),
             lines=lines,
             warnings=(*facts.warnings, *warnings),
-            read=clip.without_rows() if self.keep else None,
         )
 
 

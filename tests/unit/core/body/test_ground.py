@@ -1,3 +1,5 @@
+import pickle
+
 import numpy as np
 import pytest
 from human import ANKLE_HEIGHT, BONES, HIPS_HEIGHT, skeleton_of, standing, with_rotation
@@ -113,3 +115,11 @@ def test_feet_at_one_place_and_a_body_without_legs_give_no_frame_of_the_feet():
     assert stance_frame(forward(crossed), find_anatomy(crossed.skeleton), up=axis_vector("y"), frame=0) is None
     thing = standing(skeleton_of([("Hips", None, (0, 0, 0)), ("Tip", "Hips", (0, 1, 0))]))
     assert stance_frame(forward(thing), find_anatomy(thing.skeleton), up=axis_vector("y"), frame=0) is None
+
+
+def test_what_another_process_gets_of_a_frame_is_the_same_and_read_only():
+    frame = frame_of(stand())
+    other = pickle.loads(pickle.dumps(frame))  # noqa: S301  our own
+    for one, its in ((frame.axes, other.axes), (frame.origin, other.origin), (frame.up, other.up)):
+        np.testing.assert_array_equal(its, one, strict=True)
+        assert not its.flags.writeable

@@ -103,6 +103,14 @@ def test_offsets_that_stand_along_no_axis_have_no_say(offsets, body, up):
     assert up_of(leaning(offsets=offsets, body=body))[0] == up
 
 
+def test_a_floor_has_a_say_where_it_could_outweigh_a_body_that_leans_as_its_offsets_do(monkeypatch):
+    none_along_y = {name: float(name == "y") for name in ("x", "y", "z", "-x", "-y", "-z")}
+    monkeypatch.setattr("motionedit.core.body.up._floors", lambda *_, **__: none_along_y)
+    axis, warning = up_of(leaning(offsets=25.0, body=25.0))
+    assert (axis, warning is None) == ("y", False)
+    assert up_of(leaning(offsets=15.0, body=25.0)) == ("y", None)
+
+
 @pytest.mark.parametrize("body", [0.0, 30.0, 55.0])
 def test_offsets_that_stand_nearly_along_an_axis_have_a_say(body):
     assert up_of(leaning(offsets=20.0, body=body))[0] == "y"

@@ -1,5 +1,7 @@
 """Warps, resampling, events and alignment: the normalization of [PC] section 5."""
 
+import pickle
+
 import numpy as np
 import pytest
 from strokes import TIMELINE, place, stroke
@@ -96,3 +98,11 @@ def test_alignment_undoes_itself():
     points = np.random.default_rng(0).normal(size=(5, 3))
     np.testing.assert_allclose(alignment.undo(alignment.apply(points)), points, atol=1e-14)
     assert travel_path(stroke(4), travel).positions.shape == (60, 3)
+
+
+def test_what_another_process_gets_of_an_alignment_is_the_same_and_read_only():
+    alignment, *_ = place(stroke(4, heading=0.7), TIMELINE, hit=36.0)
+    other = pickle.loads(pickle.dumps(alignment))  # noqa: S301  our own
+    for one, its in ((alignment.rotation, other.rotation), (alignment.origin, other.origin)):
+        np.testing.assert_array_equal(its, one, strict=True)
+        assert not its.flags.writeable
