@@ -30,7 +30,8 @@ _COST_OF_AN_ODD_CUT = 0.6
 _COST_ABOVE = 0.1  # per mean bone of length from the chain's first joint to the limb
 _COST_BELOW = 0.2  # per mean bone from the limb to the farthest end
 _COST_OF_ONE_PLACE = 1.0  # where both limbs would start at the same place, as CMU's hip joints and collars do
-_APART = 0.25  # mean bones between the tops of two limbs in the zero pose; hips are 0.35 apart
+# Mean bones between the tops of two limbs in the zero pose: collars start at one place, and hips are 0.35 apart.
+_AT_ONE_PLACE, _APART = 0.25, 0.32
 _LONGEST_ABOVE = 1.5  # mean bones: a collar may be in two pieces
 _LONGEST_BELOW = 1.2  # mean bones: a hand is 0.85 forearms
 _COST_OF_ANOTHER_END = 1.0  # where the limb would not end at the joint that is called hand or foot
@@ -174,7 +175,7 @@ def _bending_joints(
         cuts = [c for c in range(i + 1, k) if c != j and at[c] > at[i] and at[c] != at[j]]
         cost = abs(float(np.log(upper / lower))) + float(np.sum(cut_cost[cuts]))
         cost += float(_COST_ABOVE * at[i] + _COST_BELOW * below) / mean
-        cost += _COST_OF_ONE_PLACE * (apart[i] < _APART * mean)
+        cost += _COST_OF_ONE_PLACE * float(np.interp(apart[i] / mean, (_AT_ONE_PLACE, _APART), (1.0, 0.0)))
         cost += _COST_OF_A_TWIST * float(np.sum(twist[[i, j, k]]))
         cost += _COST_OF_ANOTHER_END * (called_end is not None and k != called_end)
         if best is None or cost < best[0] - 1e-12:
