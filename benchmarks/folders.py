@@ -32,8 +32,11 @@ CONFIGS = ROOT / "configs"
 WALK, SKATING = ROOT / "data" / "walk.bvh", ROOT / "data" / "walk-skating.bvh"
 PROGRAM = Path(sys.executable).parent / "motionedit"
 CLIPS = 20
-# Of what two workers share: enough that a process alone takes a second or two, ten times what it takes to start.
-EDITED, MEASURED, BASE = 200, 1000, 100
+# Of what two workers share: enough that a process alone takes three seconds or more, ten times what it takes to start
+# and to end. A cheaper clip takes more of them.
+EDITED, NORMALIZED, FITTED, BY_MODEL = 400, 3000, 1000, 200
+# Clips of the model that edits by.
+BASE = 100
 LONG = 20_000
 # Clips and frames a second and core.
 LEAST_REACH, LEAST_STANDING, LEAST_FRAMES = 150.0, 60.0, 10_000.0
@@ -102,18 +105,20 @@ def _gains(folder: Path) -> list[Row]:
     walks, swings, model = folder / "walks", folder / "shared-swings", folder / "shared.npz"
     _copies(WALK, walks, EDITED)
     swings.mkdir()
-    for n, swing in enumerate(random_swings(np.random.default_rng(11), MEASURED)):
-        (swings / f"swing{n:04d}.bvh").write_bytes(new_bytes(make_swing(swing)))
-    few = sorted(swings.iterdir())[:BASE]
+    for n, swing in enumerate(random_swings(np.random.default_rng(11), FITTED)):
+        clip = new_bytes(make_swing(swing))
+        for copy in range(NORMALIZED // FITTED):
+            (swings / f"swing{n:04d}-{copy}.bvh").write_bytes(clip)
+    each = sorted(swings.glob("*-0.bvh"))
     normalized, base = folder / "shared-normalized", folder / "base-normalized"
-    for clips, out in (([swings], normalized), (few, base)):
+    for clips, out in ((each, normalized), (each[:BASE], base)):
         process((PROGRAM, "normalize", *clips, "-s", CONFIGS / "golf-normalize.yaml", "-o", out), folder)()
     process((PROGRAM, "fit-pca", base, "-s", CONFIGS / "golf-fit.yaml", "-o", model), folder)()
     commands: dict[str, tuple[str | Path, ...]] = {
         f"edit-prioritized, reach.yaml, {EDITED} clips": ("edit-prioritized", walks, "-s", CONFIGS / "reach.yaml"),
-        f"normalize, {MEASURED:,} clips": ("normalize", swings, "-s", CONFIGS / "golf-normalize.yaml"),
-        f"fit-pca, {MEASURED:,} clips": ("fit-pca", normalized, "-s", CONFIGS / "golf-fit.yaml"),
-        f"edit-pc, {BASE} clips": ("edit-pc", *few, "-m", model, "-s", CONFIGS / "golf-edit.yaml"),
+        f"normalize, {NORMALIZED:,} clips": ("normalize", swings, "-s", CONFIGS / "golf-normalize.yaml"),
+        f"fit-pca, {FITTED:,} clips": ("fit-pca", normalized, "-s", CONFIGS / "golf-fit.yaml"),
+        f"edit-pc, {BY_MODEL} clips": ("edit-pc", *each[:BY_MODEL], "-m", model, "-s", CONFIGS / "golf-edit.yaml"),
     }
     return [_gain(name, command, folder) for name, command in commands.items()]
 
@@ -130,7 +135,7 @@ def _gain(name: str, command: tuple[str | Path, ...], folder: Path) -> Row:
 
         return fresh
 
-    best = best_of({"busy": lambda: _busy(1), "both": lambda: _busy(2), "one": run(1), "two": run(2)}, rounds=3)
+    best = best_of({"busy": lambda: _busy(1), "both": lambda: _busy(2), "one": run(1), "two": run(2)}, rounds=5)
     loops, gain = 2.0 * best["busy"] / best["both"], best["one"] / best["two"]
     return Row(
         f"{name}, -j 2 beside -j 1",
