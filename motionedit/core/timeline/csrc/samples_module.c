@@ -46,8 +46,10 @@ static int take_ways(Held *held, PyObject *rotations, long long joints, PyObject
         return 1;
     const int64_t all = samples->count * joints;
     const double *const whole = items_of(held, parts, 3 * all, sizeof(double), 0, "parts of arcs");
+    if (whole == NULL)
+        return 0;
     ways->first = whole + all, ways->second = whole + 2 * all;
-    return whole != NULL;
+    return 1;
 }
 
 static PyObject *cosines_of_arcs(PyObject *self, PyObject *arguments)

@@ -1,4 +1,4 @@
-"""Where a motion has the task of each kind, what it leaves of it, and how far constraints are eased in."""
+"""Where a motion has the task of each kind, and what it leaves of it."""
 
 from dataclasses import replace
 from itertools import pairwise, starmap
@@ -17,7 +17,7 @@ from motionedit.core.priorities.settings import LayeredSettings, PaperFilter
 from motionedit.core.priorities.targets import errors_of, reached
 from motionedit.core.priorities.task_targets import Targets
 from motionedit.core.priorities.trajectories.lengths import LengthPoint
-from motionedit.core.priorities.trajectories.positions import ControlPoint, share_of
+from motionedit.core.priorities.trajectories.positions import ControlPoint
 
 FRAMES = 14
 MOTION = swaying(FRAMES)
@@ -112,23 +112,3 @@ def test_what_is_left_of_a_constraint_is_the_same_block_by_block(kind, cuts, mon
 def test_what_has_no_place_to_go_back_to_keeps_its_targets(constraint):
     targets = Targets(0, FRAMES - 1)
     assert constraint.reached(targets, None) is targets
-
-
-def test_a_share_is_all_in_the_points_and_rises_and_falls_as_hermites_cubic():
-    share = share_of([ControlPoint("hold", 20, 30)], ease_in=10.0, ease_out=5.0, frames=60)
-    np.testing.assert_array_equal(share[20:31], 1.0)
-    assert not share[:11].any()
-    assert not share[35:].any()
-    s = np.linspace(0.0, 1.0, 11)
-    np.testing.assert_allclose(share[10:21], 3 * s**2 - 2 * s**3, atol=1e-12)
-    np.testing.assert_array_equal(share_of([], ease_in=10.0, ease_out=5.0, frames=4), np.ones(4))
-
-
-def test_a_share_whose_ramps_the_clip_cuts_is_a_part_of_the_whole_one():
-    def shares(start, frames):
-        point = ControlPoint("during", start, start + 6)
-        return share_of([point], ease_in=10.0, ease_out=10.0, frames=frames)
-
-    whole = shares(20, 60)
-    np.testing.assert_allclose(shares(4, 14), whole[16:30], atol=1e-12)
-    assert 0.0 < shares(4, 14)[0] < shares(4, 14)[1]

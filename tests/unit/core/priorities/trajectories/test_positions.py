@@ -19,9 +19,7 @@ from trajectories_through_points import (
     whole,
 )
 
-from motionedit.core.priorities.trajectories.positions import (
-    active_interval,
-)
+from motionedit.core.priorities.trajectories.positions import ControlPoint, active_interval, share_of
 from motionedit.core.priorities.trajectories.rotations import rotation_targets
 
 
@@ -256,3 +254,23 @@ def test_by_index_the_ends_still_have_the_inputs_velocity():
 def test_at_even_keys_index_and_time_are_the_same_curve():
     points = [at(2000, shift=SHIFT), at(3000, shift=-SHIFT), at(4000, position=PLACE)]
     np.testing.assert_allclose(whole(points, curve="index"), whole(points), atol=1e-12)
+
+
+def test_a_share_is_all_in_the_points_and_rises_and_falls_as_hermites_cubic():
+    share = share_of([ControlPoint("hold", 20, 30)], ease_in=10.0, ease_out=5.0, frames=60)
+    np.testing.assert_array_equal(share[20:31], 1.0)
+    assert not share[:11].any()
+    assert not share[35:].any()
+    s = np.linspace(0.0, 1.0, 11)
+    np.testing.assert_allclose(share[10:21], 3 * s**2 - 2 * s**3, atol=1e-12)
+    np.testing.assert_array_equal(share_of([], ease_in=10.0, ease_out=5.0, frames=4), np.ones(4))
+
+
+def test_a_share_whose_ramps_the_clip_cuts_is_a_part_of_the_whole_one():
+    def shares(start, frames):
+        point = ControlPoint("during", start, start + 6)
+        return share_of([point], ease_in=10.0, ease_out=10.0, frames=frames)
+
+    whole = shares(20, 60)
+    np.testing.assert_allclose(shares(4, 14), whole[16:30], atol=1e-12)
+    assert 0.0 < shares(4, 14)[0] < shares(4, 14)[1]
