@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 # Times the furthest clip of the database, each seen from the others: beyond the first it is worth a word, beyond the
 # second the clip is of another kind. Real strokes of one kind lie at 0.4 to 1.1.
 _ODD, _OTHER = 1.25, 1.6
+# Of a clip's square from the mean: what is nearer is made of the others, and says nothing of how far clips lie apart.
+_ROUNDING = 1e-10
 # Times as fast or slow as the database, the mean over the clip.
 _SQUEEZED = 2.5
 
@@ -42,10 +44,16 @@ def unexplained(projection: Projection, model: MotionModel, *, seconds: float) -
 
 
 def _times_the_furthest(projection: Projection, model: MotionModel) -> float:
-    left_out = model.components.left_out
-    if left_out is None or not left_out.residuals.max() > 0.0:
+    pca = model.components
+    if pca.left_out is None:
         return 0.0
-    # What components that are not used would explain is not held against the clip.
-    variance = model.components.explained_variance
-    unused = max(model.components.total_variance - float(variance.sum()), 0.0)
-    return float(np.sqrt(max(projection.residual - unused, 0.0) / left_out.residuals.max()))
+    # Of its own clips, too, it leaves what components that are not used would explain: all clips of many that are
+    # nearly alike lie much farther from those in use than from each other.
+    count = len(pca.coefficients)
+    squares = pca.left_out.deviations * ((count - 1) / count) ** 2
+    furthest = float(np.maximum(pca.left_out.residuals, squares - (pca.coefficients**2).sum(axis=1)).max())
+    # And of a clip as much as of the mean of its own is not held against it.
+    unused = max(pca.total_variance - float(pca.explained_variance.sum()), 0.0)
+    if not furthest > _ROUNDING * float(squares.max()):
+        return 0.0
+    return float(np.sqrt(max(projection.residual - unused, 0.0) / furthest))
