@@ -56,14 +56,16 @@ def _say(result: BatchResult, options: RunOptions) -> None:
             warn(warning)
         if made and not options.dry_run:
             table = results_table(result.records, result.seconds, verbosity=options.verbosity)
-            click.echo(printable(table), err=True)
+            if table:  # of many clips that are ok it has no row
+                click.echo(printable(table), err=True)
         if options.shard is not None and not result.records:
             click.echo(f"no clip belongs to shard {options.shard}: nothing to do", err=True)
         if result.current:
             click.echo(f"{result.current} up to date", err=True)
     statuses = _show_missed(result, options)
     show_failures(result.failures)
-    if len(statuses) > 1 and (made or result.exit_code) and _worth_a_count(result, options):
+    is_news = made or result.exit_code or any(status != "ok" for status in statuses)
+    if len(statuses) > 1 and is_news and _worth_a_count(result, options):
         click.echo(count_line(statuses), err=True)
 
 

@@ -37,10 +37,15 @@ def command(
     """
     if output == "-" or output.lower().endswith(".bvh"):
         raise click.UsageError(f"-o {output}: normalize writes several files; give a folder")
+    from motionedit.cli.boundary import complain
     from motionedit.cli.finish import finish_batch
+    from motionedit.errors import EXIT_CLIP_FAILED
     from motionedit.jobs.normalize import job as normalize
     from motionedit.spec.load import load_spec
 
     loaded = load_spec(spec_path, "normalize", overrides=overrides)
     result = normalize.run(loaded, clips, Path(output), options)
-    return finish_batch(result, options, command="normalize", spec=loaded.data)
+    exit_code = finish_batch(result, options, command="normalize", spec=loaded.data)
+    if exit_code == EXIT_CLIP_FAILED and not (options.keep_going or result.paths):
+        complain("nothing was written, because each clip shifts the means; --keep-going leaves out those that fail")
+    return exit_code

@@ -132,8 +132,9 @@ def main(ctx: click.Context) -> None:
 
     'motionedit COMMAND --help' tells what a command takes.
 
-    Exit codes: 0 done; 1 a clip failed, others were written; 2 a wrong command line or spec, nothing was started;
-    3 a goal out of tolerance or a rough edit with --strict, or another motion in diff; 130 interrupted.
+    Exit codes: 0 done; 1 a clip failed, others were written (by normalize, none); 2 a wrong command line or spec,
+    nothing was started; 3 a goal out of tolerance or a rough edit with --strict, or another motion in diff; 130
+    interrupted.
     """
     if ctx.invoked_subcommand is None:
         click.echo(ctx.get_help(), err=True)

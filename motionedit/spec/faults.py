@@ -84,12 +84,16 @@ def listed(names: Iterable[str]) -> str:
     return f"{shown} and {more} more" if more > 0 else shown
 
 
+# How alike a name must be to the one that was meant, 0 to 1: 'Club' is 0.6 like 'LThumb'.
+_ALIKE = 0.65
+
+
 def nearest(name: str, names: Sequence[str]) -> str | None:
     """Return the name that was probably meant, if any is near."""
     import difflib
 
     folded = {other.casefold(): other for other in reversed(names)}
-    close = difflib.get_close_matches(name.casefold(), list(folded), n=1)
+    close = difflib.get_close_matches(name.casefold(), list(folded), n=1, cutoff=_ALIKE)
     return folded[close[0]] if close else None
 
 

@@ -170,6 +170,13 @@ def test_update_resumes_a_stopped_batch(edit, clip):
     assert (result.exit_code, result.stdout, result.stderr) == (0, "", "2 up to date\n")
 
 
+def test_of_many_clips_that_are_ok_their_number_alone_is_said(edit, clip):
+    for n in range(41):
+        clip(f"in/{n}.bvh")
+    lines = edit("in", "-o", "out").stderr.split("\n")
+    assert [line for line in lines if "warning: " not in line] == ["41 clips: 41 ok", ""]
+
+
 def test_outputs_are_replaced_and_their_time_renewed(edit, clip):
     clip("a.bvh")
     edit("a.bvh", "-o", "out")

@@ -44,8 +44,11 @@ def test_normalize_fails_as_a_whole_unless_told_to_keep_going(run, configs, data
     result = run(*arguments)
     assert result.exit_code == 1
     assert not (tmp_path / "n" / "normalization.json").exists()
+    nothing = "nothing was written, because each clip shifts the means; --keep-going leaves out those that fail"
+    assert result.stderr.splitlines()[-1] == f"motionedit: error: {nothing}"
     result = run(*arguments, "--keep-going")
     assert result.exit_code == 1
+    assert nothing not in result.stderr
     listing = json.loads((tmp_path / "n" / "normalization.json").read_text())
     assert [each["clip"] for each in listing["clips"]] == ["swing01.bvh", "swing02.bvh"]
 

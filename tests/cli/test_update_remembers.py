@@ -34,6 +34,11 @@ def test_a_skipped_clip_keeps_its_place_in_the_report_and_its_exit_code(edit):
     assert json.loads(Path("second.json").read_text()) == json.loads(Path("first.json").read_text())
 
 
+def test_where_nothing_is_to_be_done_what_was_missed_before_is_counted(edit):
+    edit()
+    assert edit("--update").stderr.splitlines()[-1] == "2 clips: 2 unreachable"
+
+
 def test_quietly_what_was_missed_before_is_told_where_it_counts(edit):
     edit()
     assert edit("-q", "--update").stderr == ""

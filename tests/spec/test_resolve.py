@@ -12,6 +12,7 @@ from motionedit.errors import SpecError
 from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.events import event_frames, explicit_events
 from motionedit.jobs.clip.resolve import Place
+from motionedit.spec.faults import nearest
 from motionedit.spec.values import EffectorSpec, parse_orientation
 
 ROTATION = ("Zrotation", "Xrotation", "Yrotation")
@@ -75,6 +76,11 @@ def test_the_prefix_of_a_rig_is_no_hindrance_to_the_hint(place):
 def test_a_joint_like_no_other_is_answered_with_all_of_them(place):
     found = refusal(resolve.joint, "Zzz", SKELETON, place("goals", 1, "relative_to"))
     assert found.endswith("no joint 'Zzz' in walk.bvh; its joints are Hips, Spine1, mix:Head, Toe")
+
+
+def test_a_name_that_has_but_letters_in_common_is_not_what_was_meant():
+    assert nearest("Club", ["Hips", "LThumb"]) is None
+    assert nearest("LeftHnad", ["Hips", "LeftHand"]) == "LeftHand"
 
 
 def test_a_name_that_two_joints_share_is_refused(place):
