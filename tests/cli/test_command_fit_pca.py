@@ -35,7 +35,17 @@ def test_of_many_components_the_first_have_rows_and_a_line_says_what_the_rest_ex
     assert [int(row[0]) for row in rows] == list(range(1, 41))
     rest = 100.0 * sum(report["explained_variance_ratio"][40:])
     assert float(rows[-1][-1]) == pytest.approx(100.0 - rest, abs=0.006)
-    assert f"motionedit: 9 more components explain {rest:.3g} % of the variance; -v lists them" in lines
+    (note,) = [line for line in lines if "more components" in line]
+    assert note.startswith(f"motionedit: 9 more components explain {rest:.3g} % of the variance; -v lists them")
+
+
+def test_where_components_are_left_out_a_line_says_what_is_beyond_them(fitted, tmp_path):
+    (tmp_path / "f.yaml").write_text("schema: motionedit/fit-pca/v1\ncomponents: 2\n")
+    lines, report = fitted(5, "-s", "f.yaml")
+    beyond = 100.0 * (1.0 - sum(report["explained_variance_ratio"]))
+    (note,) = [line for line in lines if "left out in turn" in line]
+    assert f"({beyond:.3g} % of the variance is beyond the components kept)" in note
+    assert not [line for line in fitted(5)[0] if "beyond the components" in line]
 
 
 def test_v_lists_every_component(fitted):

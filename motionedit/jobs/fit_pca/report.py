@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 # A clip this many times as far from the others as the median clip is worth a word: real strokes of one player have come
 # to 1.6.
 ODD = 2.0
+# Of the variance: what is left of it where all components are kept is rounding.
+_NOTHING = 1e-9
 HEADINGS = ("component", "variance", "share %", "sum %")
 
 
@@ -82,7 +84,10 @@ def _rest_note(pca: PrincipalComponents, shown: int) -> list[str]:
     rest = pca.explained_variance_ratio[shown:]
     if not len(rest):
         return []
-    return [f"{len(rest)} more components explain {100.0 * float(rest.sum()):.3g} % of the variance; -v lists them"]
+    more = f"{len(rest)} more components explain {100.0 * float(rest.sum()):.3g} % of the variance"
+    return [
+        f"{more}; -v lists them, and with components or explained_variance in the spec edits have fewer to solve for"
+    ]
 
 
 def _warnings(fitted: FittedModel, spec: FitPcaSpec) -> list[str]:
@@ -123,7 +128,9 @@ def _left_out_note(model: MotionModel) -> list[str]:
     furthest = model.clips[left_out.furthest].name
     times = left_out.times[left_out.furthest]
     share = f"left out in turn, {100.0 * left_out.share:.3g} % of a clip is not explained by the others"
-    return [f"{share}; furthest from them: {furthest}, {times:.3g} times the median"]
+    gone = 1.0 - float(model.components.explained_variance_ratio.sum())
+    kept = f" ({100.0 * gone:.3g} % of the variance is beyond the components kept)" if gone > _NOTHING else ""
+    return [f"{share}{kept}; furthest from them: {furthest}, {times:.3g} times the median"]
 
 
 def _notes(fitted: FittedModel, spec: FitPcaSpec) -> list[str]:

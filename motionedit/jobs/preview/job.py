@@ -30,6 +30,8 @@ _PAGES = (".html",)
 _SHEETS = (".png", ".svg")
 # Clips whose legs differ by more than this are of different units (centimetres and metres), not of different people.
 _LIKE_SIZE = 2.0
+# Clips in one picture: of more a sheet is taller than any program shows, and laid over each other they are a blot.
+_MOST_CLIPS = 100
 
 
 def run(
@@ -52,7 +54,7 @@ def run(
     ------
     UsageError
         Another ending, a clip that does not exist, an output that is an input; a sheet without matplotlib, or with a
-        report; a report that cannot be read, or that fits none of the clips.
+        report; a report that cannot be read, or that fits none of the clips; more than 100 clips.
     ClipError, MotionEditErrors
         Clips that cannot be read: nothing is written; or a picture that cannot be.
     """
@@ -63,6 +65,8 @@ def run(
         raise UsageError("--report is shown on a page; give a name ending in .html", file=str(output))
     tasks = find_clips(clips)
     refuse_clashes([("the preview", output)], [*(task.source for task in tasks), report])
+    if len(tasks) > _MOST_CLIPS:
+        raise UsageError(f"{len(tasks)} clips are too many for one picture; give {_MOST_CLIPS} of them at most")
     if kind in _SHEETS:
         from motionedit.report.sheet import need_matplotlib
 

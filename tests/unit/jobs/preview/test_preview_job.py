@@ -33,6 +33,13 @@ def test_another_ending_is_refused_with_the_ones_there_are(clip, tmp_path):
         preview.run([clip], tmp_path / "swing.gif")
 
 
+def test_more_clips_than_a_picture_shows_are_refused_before_any_is_read(tmp_path):
+    for n in range(101):
+        (tmp_path / f"{n}.bvh").write_text("")
+    with pytest.raises(UsageError, match=r"101 clips are too many for one picture; give 100 of them at most"):
+        preview.run([tmp_path], tmp_path / "all.html")
+
+
 def test_a_sheet_without_matplotlib_names_the_extra(clip, tmp_path, monkeypatch):
     find = importlib.util.find_spec
     monkeypatch.setattr("motionedit.report.sheet.find_spec", lambda name: None if name == "matplotlib" else find(name))
