@@ -175,7 +175,8 @@ def _bending_joints(
         cuts = [c for c in range(i + 1, k) if c != j and at[c] > at[i] and at[c] != at[j]]
         cost = abs(float(np.log(upper / lower))) + float(np.sum(cut_cost[cuts]))
         cost += float(_COST_ABOVE * at[i] + _COST_BELOW * below) / mean
-        cost += _COST_OF_ONE_PLACE * float(np.interp(apart[i] / mean, (_AT_ONE_PLACE, _APART), (1.0, 0.0)))
+        nearness = (_APART - apart[i] / mean) / (_APART - _AT_ONE_PLACE)
+        cost += _COST_OF_ONE_PLACE * min(max(float(nearness), 0.0), 1.0)
         cost += _COST_OF_A_TWIST * float(np.sum(twist[[i, j, k]]))
         cost += _COST_OF_ANOTHER_END * (called_end is not None and k != called_end)
         if best is None or cost < best[0] - 1e-12:

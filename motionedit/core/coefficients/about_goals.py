@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 # Seconds, T: a movement is one about as long; edits hardly differ from 0.3 to 0.8.
 _TOGETHER = 0.3
+# Columns of Theta, the first: the travel's three, and the rotation vector of its joint.
+_ROOT = 6
 
 
 def components_about(
@@ -48,7 +50,7 @@ def components_about(
     E = model.component_rows * weights[:, None]
     if heading or position:
         at = np.clip(np.floor(places + 0.5).astype(np.intp), 0, model.timeline.frames - 1)
-        E[:, :, :6] = _laid_over(model, at, heading=heading, position=position) * weights[:, None]
+        E[:, :, :_ROOT] = _laid_over(model, at, heading=heading, position=position) * weights[:, None]
     rows = frozen(E.reshape(len(E), -1))
     return replace(model, components=replace(model.components, components=rows))
 
@@ -61,7 +63,7 @@ def _laid_over(model: MotionModel, at: IntArray, *, heading: bool, position: boo
     a change dv of its rotation vector is the increment R_ref J_l(v) dv.
     """
     up, mean = model.up, model.mean_rows
-    E = model.component_rows[:, :, :6].copy()
+    E = model.component_rows[:, :, :_ROOT].copy()
     if heading:
         reference = rot.to_matrix(model.space.references[0])
         increments = reference @ exp_and_left_jacobian(mean[:, 3:6])[1]

@@ -37,6 +37,12 @@ class LeftOut:
     residuals: FloatArray
 
     @property
+    def squares(self) -> FloatArray:
+        """Each motion's |x|^2, x its deviation from the mean of all, shape (M,)."""
+        squares: FloatArray = self.deviations / _farther(len(self.deviations))
+        return squares
+
+    @property
     def share(self) -> float:
         """The share of an unseen motion that the database does not explain, 0 to 1."""
         return float(self.residuals.sum() / self.deviations.sum())
@@ -101,6 +107,10 @@ def left_out_of_components(coefficients: FloatArray, variance: FloatArray, squar
 
 
 def _left_out(residuals: FloatArray, squares: FloatArray) -> LeftOut:
-    # The mean of the others lies M / (M - 1) times as far away as the mean of all.
-    deviations = squares * (len(squares) / (len(squares) - 1)) ** 2
+    deviations = squares * _farther(len(squares))
     return LeftOut(frozen(deviations), frozen(np.minimum(residuals, deviations)))
+
+
+def _farther(count: int) -> float:
+    """Return by how much a motion's square from the mean of the others is larger than from that of all."""
+    return (count / (count - 1)) ** 2

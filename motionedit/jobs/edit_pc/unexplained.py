@@ -49,8 +49,7 @@ def _times_the_furthest(projection: Projection, model: MotionModel) -> float:
         return 0.0
     # Of its own clips, too, it leaves what components that are not used would explain: all clips of many that are
     # nearly alike lie much farther from those in use than from each other.
-    count = len(pca.coefficients)
-    squares = pca.left_out.deviations * ((count - 1) / count) ** 2
+    squares = pca.left_out.squares
     furthest = float(np.maximum(pca.left_out.residuals, squares - (pca.coefficients**2).sum(axis=1)).max())
     # And of a clip as much as of the mean of its own is not held against it.
     unused = max(pca.total_variance - float(pca.explained_variance.sum()), 0.0)

@@ -108,13 +108,18 @@ void find_cones(
     }
 }
 
+/* Where a point in a joint's frame is in the world. */
+static void carried_place(const Poses *poses, int64_t frame, int64_t joint, const double *point, double *place)
+{
+    q_turn(joint_turn(poses, frame, joint), point, place);
+    add(place, joint_place(poses, frame, joint));
+}
+
 void carry(const Poses *poses, const int64_t *joints, const double *points, int64_t count, double *out)
 {
     for (int64_t f = 0; f < poses->frames; f++)
-        for (int64_t i = 0; i < count; i++, out += 3) {
-            q_turn(joint_turn(poses, f, joints[i]), points + 3 * i, out);
-            add(out, joint_place(poses, f, joints[i]));
-        }
+        for (int64_t i = 0; i < count; i++, out += 3)
+            carried_place(poses, f, joints[i], points + 3 * i, out);
 }
 
 void find_center(
@@ -124,8 +129,7 @@ void find_center(
     for (int64_t f = 0; f < poses->frames; f++, out += 3)
         for (int64_t i = 0; i < count; i++) {
             double place[3];
-            q_turn(joint_turn(poses, f, joints[i]), points + 3 * i, place);
-            add(place, joint_place(poses, f, joints[i]));
+            carried_place(poses, f, joints[i], points + 3 * i, place);
             for (int a = 0; a < 3; a++)
                 out[a] += shares[i] * place[a];
         }

@@ -16,13 +16,17 @@ static int solve_spline(double *rows, int64_t count, int64_t width)
     for (int64_t i = 0; i < count; i++) {
         double *row = rows + i * width;
         pivots[i] = i == 0 ? 4.0 : 4.0 - 1.0 / pivots[i - 1];
-        for (int64_t k = 0; i > 0 && k < width; k++)
-            row[k] -= row[k - width] / pivots[i - 1];
+        if (i > 0)
+            for (int64_t k = 0; k < width; k++)
+                row[k] -= row[k - width] / pivots[i - 1];
     }
     for (int64_t i = count - 1; i >= 0; i--) {
         double *row = rows + i * width;
+        if (i + 1 < count)
+            for (int64_t k = 0; k < width; k++)
+                row[k] -= row[k + width];
         for (int64_t k = 0; k < width; k++)
-            row[k] = (i + 1 < count ? row[k] - row[k + width] : row[k]) / pivots[i];
+            row[k] /= pivots[i];
     }
     free(pivots);
     return 0;

@@ -59,6 +59,15 @@ def same_bits(one, other):
         np.testing.assert_array_equal(getattr(one, each), getattr(other, each))
 
 
+def assert_no_neighbour_changes_a_bit(monkeypatch, edit_with):
+    """Hold an edit, made by ``edit_with(threads)``, to that of every other width and to that of frames one by one."""
+    wide = edit_with(1)
+    others_are_same(monkeypatch, lambda: edit_with(1), wide)
+    with monkeypatch.context() as parted:
+        parted.setattr(compiled_solver, "_LEAST_SHARE", 1)
+        same_bits(edit_with(FRAMES), wide)
+
+
 def difference(one, other):
     """Return how far two edits are from each other (rad, m)."""
     angles = rot.angle_between(one.motion.rotations, other.motion.rotations).max()

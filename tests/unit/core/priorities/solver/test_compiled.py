@@ -10,7 +10,17 @@ from arms import arms_of, solved
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from person import edited, end, held_feet, swaying
-from random_bodies import FEASIBLE, FRAMES, INFEASIBLE, by_numpy, difference, motion_of, others_are_same, same_bits
+from random_bodies import (
+    FEASIBLE,
+    FRAMES,
+    INFEASIBLE,
+    assert_no_neighbour_changes_a_bit,
+    by_numpy,
+    difference,
+    motion_of,
+    others_are_same,
+    same_bits,
+)
 
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
@@ -129,11 +139,9 @@ def test_the_compiled_part_is_that_of_this_tree():
 def test_neither_the_width_of_vectors_nor_the_neighbours_change_a_bit(patch, seed, joints, count):
     motion, constraints, body = problem_of(seed, joints, count, 0.1)
     setting = LayeredSettings(smoothing=Passes(0), max_iterations=12)
-    wide = edit_by_priorities(motion, constraints, body, setting)
-    others_are_same(patch, lambda: edit_by_priorities(motion, constraints, body, setting), wide)
-    with patch.context() as parted:
-        parted.setattr(compiled_solver, "_LEAST_SHARE", 1)
-        same_bits(edit_by_priorities(motion, constraints, body, replace(setting, threads=FRAMES)), wide)
+    assert_no_neighbour_changes_a_bit(
+        patch, lambda threads: edit_by_priorities(motion, constraints, body, replace(setting, threads=threads))
+    )
 
 
 def test_frames_that_take_a_lane_after_each_other_change_no_bit(patch):

@@ -9,16 +9,14 @@ from hypothesis import strategies as st
 from person import BODY, edited, end, held, held_feet, path, swaying
 from random_bodies import (
     FEASIBLE,
-    FRAMES,
     INFEASIBLE,
+    assert_no_neighbour_changes_a_bit,
     body_of,
     by_numpy,
     constraints_of,
     difference,
     is_met,
     motion_of,
-    others_are_same,
-    same_bits,
 )
 
 from motionedit.core.compiled import compiled, solver_name
@@ -26,7 +24,6 @@ from motionedit.core.measure import Level
 from motionedit.core.priorities.edit import edit_by_priorities, prepare
 from motionedit.core.priorities.kinds import Distance, Floor
 from motionedit.core.priorities.settings import LayeredSettings, PaperFilter
-from motionedit.core.priorities.solver import compiled_solver
 from motionedit.core.priorities.trajectories.lengths import LengthPoint
 
 pytestmark = pytest.mark.skipif(solver_name() == "numpy", reason="no compiled solver here")
@@ -59,11 +56,7 @@ def test_both_solvers_keep_limits_alike(patch, seed, joints, count, reach):
 @given(**SEEDS)
 @settings(max_examples=60, **PATIENT)
 def test_rows_that_take_part_in_a_neighbour_alone_change_no_bit(patch, seed, joints, count):
-    wide = edit_of(seed, joints, count, 0.1)
-    others_are_same(patch, lambda: edit_of(seed, joints, count, 0.1), wide)
-    with patch.context() as parted:
-        parted.setattr(compiled_solver, "_LEAST_SHARE", 1)
-        same_bits(edit_of(seed, joints, count, 0.1, threads=FRAMES), wide)
+    assert_no_neighbour_changes_a_bit(patch, lambda threads: edit_of(seed, joints, count, 0.1, threads=threads))
 
 
 def person_of():

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from person import BODY, SKELETON, edited, held, held_feet, joint, swaying
 from random_bodies import (
     FEASIBLE,
-    FRAMES,
     INFEASIBLE,
+    assert_no_neighbour_changes_a_bit,
     body_of,
     by_numpy,
     constraints_of,
@@ -18,7 +18,6 @@ from random_bodies import (
     is_met,
     motion_of,
     others_are_same,
-    same_bits,
 )
 
 from motionedit.core.arrays import frozen
@@ -26,7 +25,6 @@ from motionedit.core.compiled import solver_name
 from motionedit.core.priorities.edit import edit_by_priorities
 from motionedit.core.priorities.kinds import CenterOfMass, Posture
 from motionedit.core.priorities.settings import LayeredSettings, PaperFilter, Passes
-from motionedit.core.priorities.solver import compiled_solver
 
 pytestmark = pytest.mark.skipif(solver_name() == "numpy", reason="no compiled solver here")
 
@@ -72,11 +70,7 @@ def test_both_solvers_hold_joints_alike(patch, seed, joints, count):
 @given(**SEEDS)
 @settings(max_examples=40, **PATIENT)
 def test_no_lane_knows_what_its_neighbours_hold(patch, seed, joints, count):
-    wide = edit_of(seed, joints, count)
-    others_are_same(patch, lambda: edit_of(seed, joints, count), wide)
-    with patch.context() as parted:
-        parted.setattr(compiled_solver, "_LEAST_SHARE", 1)
-        same_bits(edit_of(seed, joints, count, threads=FRAMES), wide)
+    assert_no_neighbour_changes_a_bit(patch, lambda threads: edit_of(seed, joints, count, threads=threads))
 
 
 def all_but(*names):
