@@ -1,4 +1,4 @@
-"""Work on large matrices by blocks of rows, in threads: the blocks, and so the bits, are those of one thread."""
+"""Work on large matrices by blocks, in threads: the blocks, and so the bits, are those of one thread."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
 
 # Enough that a product takes no longer than as a whole.
-_ROWS = 256
+_ROWS, _COLUMNS = 256, 1024
 
 
 def product(A: FloatArray, B: FloatArray, *, threads: int) -> FloatArray:
     """Return A B."""
     AB = np.empty((len(A), B.shape[1]))
-    _by_rows(lambda rows: np.matmul(A[rows], B, out=AB[rows]), len(A), threads)
+    _in_threads(lambda rows: np.matmul(A[rows], B, out=AB[rows]), _blocks(len(A)), threads)
     return AB
 
 
@@ -29,29 +29,36 @@ def lower_gram(X: FloatArray, *, threads: int) -> FloatArray:
     def multiply(rows: slice) -> None:
         gram[rows, : rows.stop] = X[rows] @ X[: rows.stop].T
 
-    _by_rows(multiply, len(X), threads)
+    _in_threads(multiply, _blocks(len(X)), threads)
     return gram
 
 
-def lower_product(L: FloatArray, B: FloatArray, *, threads: int) -> FloatArray:
-    """Return L B, of a matrix L that is zero above its diagonal."""
-    LB = np.empty((len(L), B.shape[1]))
-    _by_rows(lambda rows: np.matmul(L[rows, : rows.stop], B[: rows.stop], out=LB[rows]), len(L), threads)
-    return LB
+def multiply_lower(L: FloatArray, B: FloatArray, *, threads: int) -> None:
+    """Put L B in the place of B, of a matrix L that is zero above its diagonal: the last rows first."""
+
+    def multiply(columns: slice) -> None:
+        for rows in _blocks(len(L)):
+            B[rows, columns] = L[rows, : rows.stop] @ B[: rows.stop, columns]
+
+    _in_threads(multiply, _blocks(B.shape[1], _COLUMNS), threads)
 
 
 def make_unit(rows: FloatArray, *, threads: int) -> None:
     """Divide rows by their lengths, in place."""
 
     def divide(some: slice) -> None:
-        rows[some] /= np.linalg.norm(rows[some], axis=1, keepdims=True)
+        rows[some] /= np.sqrt(np.einsum("ij,ij->i", rows[some], rows[some]))[:, None]
 
-    _by_rows(divide, len(rows), threads)
+    _in_threads(divide, _blocks(len(rows)), threads)
 
 
-def _by_rows(work: Callable[[slice], object], count: int, threads: int) -> None:
-    """Call a function with all rows, block by block; the last, which may be the longest, first."""
-    blocks = [slice(first, min(first + _ROWS, count)) for first in range(0, count, _ROWS)][::-1]
+def _blocks(count: int, step: int = _ROWS) -> list[slice]:
+    """Return the blocks of so many rows or columns; the last, which may take the longest, first."""
+    return [slice(first, min(first + step, count)) for first in range(0, count, step)][::-1]
+
+
+def _in_threads(work: Callable[[slice], object], blocks: list[slice], threads: int) -> None:
+    """Call a function with each block."""
     if min(threads, len(blocks)) < 2:
         for rows in blocks:
             work(rows)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.arrays import frozen
-from motionedit.core.pca.by_rows import lower_gram, lower_product, make_unit, product
+from motionedit.core.pca.by_rows import lower_gram, make_unit, multiply_lower, product
 from motionedit.core.pca.left_out import LeftOut, left_out_of_gram
 from motionedit.dataclass import dataclass
 
@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 # Eigenvalues below this share of the first are rounding, not motion.
 RANK_TOLERANCE = 1e-10
+# Rows of a matrix that is inverted as a whole.
+_SMALL = 64
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +102,8 @@ def fit_centred(X: FloatArray, mean: FloatArray, *, count: ComponentCount, threa
     total = float(np.vdot(X, X))
     refuse_no_variance(float(eigenvalues[0]), total=total, mean=mean, count=len(X))
     kept, rank = _kept(eigenvalues, total, count), _rank(eigenvalues)
-    components = _orthonormal(product(vectors[:, order[:kept]].T, X, threads=threads), threads=threads)
+    components = product(vectors[:, order[:kept]].T, X, threads=threads)
+    _make_orthonormal(components, threads=threads)
     components *= signs_of(components)[:, None]
     return PrincipalComponents(
         mean=frozen(mean),
@@ -133,15 +136,27 @@ def _kept(eigenvalues: FloatArray, total: float, count: ComponentCount) -> int:
     return count.least(available)
 
 
-def _orthonormal(rows: FloatArray, *, threads: int) -> FloatArray:
-    """Return nearly orthogonal rows made orthonormal, each with what those before it left.
+def _make_orthonormal(rows: FloatArray, *, threads: int) -> None:
+    """Make nearly orthogonal rows orthonormal, in place: each is what those before it left of it.
 
     The squared condition of the Gram matrix left the weakest rows off by a millionth. The rows at unit length are
     well conditioned, so that Cholesky does as well as a QR step, in a third of its time.
     """
     make_unit(rows, threads=threads)
     L = np.linalg.cholesky(lower_gram(rows, threads=threads))
-    return lower_product(np.linalg.inv(L), rows, threads=threads)
+    multiply_lower(_lower_inverse(np.asarray(L, np.float64)), rows, threads=threads)
+
+
+def _lower_inverse(L: FloatArray) -> FloatArray:
+    """Return the inverse of a matrix that is zero above its diagonal, by halves: a quarter of the work of any other."""
+    if len(L) <= _SMALL:
+        return np.asarray(np.linalg.inv(L), np.float64)
+    half = len(L) // 2
+    inverse = np.zeros_like(L)
+    first, last = _lower_inverse(L[:half, :half]), _lower_inverse(L[half:, half:])
+    inverse[:half, :half], inverse[half:, half:] = first, last
+    inverse[half:, :half] = -last @ (L[half:, :half] @ first)
+    return inverse
 
 
 def signs_of(components: FloatArray) -> FloatArray:
