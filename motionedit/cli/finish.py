@@ -48,7 +48,7 @@ def _list(paths: Sequence[str]) -> None:
 
 def _say(result: BatchResult, options: RunOptions) -> None:
     """Say on standard error what became of the clips: warnings, the table, what failed or was missed, the count."""
-    from motionedit.report.table import count_line, results_table
+    from motionedit.report.table import results_table
 
     made = any(time is not None for time in result.seconds)
     if options.verbosity >= 0:
@@ -65,8 +65,8 @@ def _say(result: BatchResult, options: RunOptions) -> None:
     statuses = _show_missed(result, options)
     show_failures(result.failures)
     is_news = made or result.exit_code or any(status != "ok" for status in statuses)
-    if len(statuses) > 1 and is_news and _worth_a_count(result, options):
-        click.echo(count_line(statuses), err=True)
+    if is_news and not options.dry_run:
+        show_count(statuses, exit_code=result.exit_code, verbosity=options.verbosity)
 
 
 def _show_missed(result: BatchResult, options: RunOptions) -> list[str]:
@@ -83,9 +83,12 @@ def _show_missed(result: BatchResult, options: RunOptions) -> list[str]:
     return statuses
 
 
-def _worth_a_count(result: BatchResult, options: RunOptions) -> bool:
-    """Tell whether the line that counts is wanted: with -q only where something went wrong."""
-    return not options.dry_run and (options.verbosity >= 0 or result.exit_code != EXIT_DONE)
+def show_count(statuses: Sequence[str], *, exit_code: int, verbosity: int) -> None:
+    """Count several clips by status, on the line that ends what is said; with -q only where something went wrong."""
+    from motionedit.report.table import count_line
+
+    if len(statuses) > 1 and (verbosity >= 0 or exit_code != EXIT_DONE):
+        click.echo(count_line(statuses), err=True)
 
 
 def show_failures(failures: Sequence[MotionEditError]) -> None:
