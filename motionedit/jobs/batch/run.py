@@ -19,6 +19,7 @@ from motionedit.errors import (
 )
 from motionedit.jobs.batch.arrivals import Arrivals
 from motionedit.jobs.batch.files import clean_leftovers
+from motionedit.jobs.batch.notices import notices_of
 from motionedit.jobs.batch.one_clip import Done, Outcome, RunOne, RunOwn
 from motionedit.jobs.batch.plan import no_progress
 from motionedit.jobs.batch.pool import results_in_order
@@ -28,6 +29,7 @@ from motionedit.jobs.batch.verdicts import Verdict
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Sequence
 
+    from motionedit.jobs.batch.notices import Notice
     from motionedit.jobs.batch.one_clip import Work
     from motionedit.jobs.batch.plan import ClipTask, RunOptions
     from motionedit.jobs.batch.processes import Crew
@@ -49,8 +51,8 @@ class BatchResult:
         Entries of the report's `clips`.
     paths : list of str
         The files written.
-    warnings : list of str
-        One line each, with the clip's name where there are several.
+    notices : list of Notice
+        What it warns of, with the clip's name where there are several; with -v of clips that are current, too.
     failures : list of MotionEditError
         Why clips failed; one clip may have several.
     exit_code : int
@@ -67,13 +69,18 @@ class BatchResult:
 
     records: Sequence[dict[str, Any]]
     paths: list[str]
-    warnings: list[str]
+    notices: list[Notice]
     failures: list[MotionEditError]
     exit_code: int
     seconds: list[float | None] = field(default_factory=list)
     details: list[tuple[str, tuple[str, ...]]] = field(default_factory=list)
     contents: list[bytes | None] = field(default_factory=list)
     current: int = 0
+
+    @property
+    def warnings(self) -> list[str]:
+        """The lines of all notices."""
+        return [notice.line for notice in self.notices]
 
     @property
     def content(self) -> bytes | None:
@@ -238,12 +245,12 @@ def _for_workers(options: RunOptions) -> RunOptions:
 def _collect(
     pairs: Sequence[tuple[ClipTask, Done]], records: Records, options: RunOptions, *, total: int, current: int
 ) -> BatchResult:
-    made = [(task, one) for task, one in pairs if not one.current]
+    made, entries = [(task, one) for task, one in pairs if not one.current], _in_order(pairs, records)
     failures = [_named(error, task) for task, one in pairs for error in one.errors]
     return BatchResult(
-        records=_in_order(pairs, records),
+        records=entries,
         paths=[str(path) for task, one in made if one.written for path in task.outputs],
-        warnings=[_about(task, warning, alone=total == 1) for task, one in made for warning in one.outcome.warnings],
+        notices=notices_of(pairs, entries, alone=total == 1, every=options.verbosity > 0),
         failures=failures,
         exit_code=_exit_code([one for _, one in pairs], total, strict=options.strict),
         seconds=[None if one.current else one.seconds for _, one in pairs],
@@ -278,10 +285,6 @@ def _named(error: MotionEditError, task: ClipTask) -> MotionEditError:
     if error.file is not None:
         return error
     return type(error)(error.message, file=task.label, key=error.key)
-
-
-def _about(task: ClipTask, warning: str, *, alone: bool) -> str:
-    return warning if alone or warning.startswith(task.label) else f"{task.label}: {warning}"
 
 
 def _heading(task: ClipTask) -> str:

@@ -12,6 +12,7 @@ from motionedit.core.timeline.alignment import align_each
 from motionedit.dataclass import dataclass, replace
 from motionedit.errors import EXIT_CLIP_FAILED, EXIT_USAGE, MotionEditError, UsageError
 from motionedit.jobs.batch.held import let_go
+from motionedit.jobs.batch.notices import Notice
 from motionedit.jobs.batch.one_clip import write_file
 from motionedit.jobs.batch.plan import find_clips, plan
 from motionedit.jobs.batch.pool import standing_crew, workers_for
@@ -205,7 +206,7 @@ def _rule(loaded: LoadedSpec[NormalizeSpec], name: str) -> dict[str, Any] | None
 
 
 def _nothing(exit_code: int) -> BatchResult:
-    return BatchResult(records=[], paths=[], warnings=[], failures=[], exit_code=exit_code)
+    return BatchResult(records=[], paths=[], notices=[], failures=[], exit_code=exit_code)
 
 
 def _failed(tasks: Sequence[ClipTask], failures: dict[str, MotionEditError]) -> BatchResult:
@@ -235,7 +236,7 @@ def _with_failures(
         result,
         records=[record for record, _ in ordered],
         seconds=[seconds for _, seconds in ordered],
-        warnings=[*warnings, *result.warnings],
+        notices=[*map(Notice, warnings), *result.notices],
         failures=[*failures.values(), *result.failures],
         exit_code=EXIT_CLIP_FAILED if failures else result.exit_code,
     )
