@@ -19,7 +19,7 @@ def few_of_each_kind(lines: Sequence[tuple[str | None, str]], *, rest: str) -> I
     lines : sequence of (str or None, str)
         Kind and text; all lines of kind None are said.
     rest : str
-        What follows that number: what they are, and where to find them.
+        What follows that number: what they are (``{kind}`` is their kind), and where to find them.
     """
     of_kind, said = Counter(kind for kind, _ in lines), Counter[str | None]()
     for kind, line in lines:
@@ -28,4 +28,4 @@ def few_of_each_kind(lines: Sequence[tuple[str | None, str]], *, rest: str) -> I
         if kind is None or said[kind] <= _SAID or of_kind[kind] == _SAID + 1:
             yield line
         if kind is not None and said[kind] == _SAID < of_kind[kind] - 1:
-            yield f"{of_kind[kind] - _SAID:,} more {rest}"
+            yield f"{of_kind[kind] - _SAID:,} more {rest.format(kind=kind)}"
