@@ -117,3 +117,10 @@ def test_four_of_a_kind_are_said_and_of_five_two_are_counted():
     assert [*few_of_each_kind(four, rest="")] == ["a0", "a1", "a2", "a3"]
     mixed = [("b", "b0"), *four, (None, "x"), ("a", "a4"), (None, "y")]
     assert [*few_of_each_kind(mixed, rest="so")] == ["b0", "a0", "a1", "a2", "2 more so", "x", "y"]
+
+
+@pytest.mark.parametrize("jobs", ["1", "2"])
+def test_a_run_of_many_clips_into_a_log_says_how_far_it_is(edit, jobs):
+    lines = [f"{10 * n} of 100 clips" for n in range(1, 11)]
+    assert edit(100, "-j", jobs)[1] == [*lines, "100 clips: 100 ok"]
+    assert edit(100, "-q", "-j", jobs)[1] == []

@@ -26,7 +26,7 @@ STDIN_LABEL = "<stdin>"
 
 @contextlib.contextmanager
 def no_progress(_length: int) -> Iterator[Callable[[], None]]:
-    """Show nothing: the progress of runs without a terminal."""
+    """Show nothing: the progress of runs that nobody watches."""
     yield lambda: None
 
 
