@@ -91,12 +91,20 @@ class BatchResult:
 def run_batch(
     tasks: Sequence[ClipTask], work: Work, options: RunOptions, *, verdicts: Verdicts | None = None
 ) -> BatchResult:
-    """Do the same work on every clip but those that are elsewhere; see `run_each`."""
+    """Do the same work on every clip but those that are elsewhere; see `run_each`.
+
+    A KeyboardInterrupt says how far it has come, and, where verdicts are kept, how to go on.
+    """
     options = replace(options, report_frames=options.tells_frames(len(tasks)))
     run_one = RunOne(_for_workers(options), work)
     tasks = [task for task in tasks if not task.elsewhere]
     waiting = [task for task in tasks if not task.current]
-    return _run(tasks, run_one, waiting, options, verdicts)
+    try:
+        return _run(tasks, run_one, waiting, options, verdicts)
+    except KeyboardInterrupt as stop:
+        if verdicts is None or not stop.args:
+            raise
+        raise KeyboardInterrupt(f"{stop.args[0]}: go on with --update") from None
 
 
 def run_each(
@@ -157,6 +165,11 @@ def _run(
                 records.append(record)
                 done.append(replace(one, outcome=replace(one.outcome, record={})))
                 advance()
+    except KeyboardInterrupt:
+        if len(tasks) < 2:
+            raise
+        come = len(tasks) - len(waiting) + len(done)
+        raise KeyboardInterrupt(f"after {come:,} of {len(tasks):,} clips") from None
     finally:
         # Workers that were ended in the middle of a file could not clean up themselves.
         if not options.dry_run:
