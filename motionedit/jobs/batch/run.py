@@ -212,8 +212,8 @@ def map_tasks(
 ) -> list[Value | MotionEditError]:
     """Return function(item) for each item in order, on the workers that `options` asks for.
 
-    A MotionEditError or OSError of an item comes back as its value; every item is tried. `function`, items and
-    values are pickled where there are several workers, those of `crew` if it is given.
+    A MotionEditError, of one fault or several, or OSError of an item comes back as its value; every item is tried.
+    `function`, items and values are pickled where there are several workers, those of `crew` if it is given.
     """
     return list(values_in_order(function, items, options, crew=crew))
 
@@ -241,7 +241,7 @@ class _Guarded:
         try:
             return self.function(item)
         except MotionEditError as error:
-            return error.errors[0] if len(error.errors) == 1 else ClipError("; ".join(map(str, error.errors)))
+            return error
         except OSError as error:
             return ClipError(error.strerror or str(error), file=error.filename and str(error.filename))
 
