@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Interrupted(Exception):  # noqa: N818  no error: the user asked for it
-    """Ctrl-C, in a form that click does not turn into its own."""
+    """Ctrl-C, in a form that click does not turn into its own; a run says in it how far it has come."""
 
 
 def run_guarded(call: Callable[[], int | None]) -> int:
@@ -27,8 +27,8 @@ def run_guarded(call: Callable[[], int | None]) -> int:
     """
     try:
         return call() or EXIT_DONE
-    except (Interrupted, KeyboardInterrupt, click.Abort):
-        complain("interrupted")
+    except (Interrupted, KeyboardInterrupt, click.Abort) as stop:
+        complain(" ".join(["interrupted", *map(str, stop.args)]))
         return EXIT_INTERRUPTED
     except Exception as error:  # noqa: BLE001  the last stop: whatever it is becomes one line
         if _is_reader_gone(error):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from motionedit.cli.options import clips_argument, jobs_option, lenient_option, report_option, spec_option, up_option
-from motionedit.cli.verbosity import verbosity_options
+from motionedit.cli.verbosity import verbosity_of, verbosity_options
 
 if TYPE_CHECKING:
     from motionedit.jobs.check import Checked
@@ -55,12 +55,13 @@ def command(
 
     Prints a line for each clip: rate, frames, unit, up, what of a body was found, skating and sliding feet, feet
     below the floor or above it, jumps, flips and rest-pose frames; with a spec also what it names and the clip lacks.
+    Several clips are counted at the end.
 
     Exits with 0; 3 where a clip passes a limit or the spec does not fit it; 1 where one cannot be read.
 
     CLIPS are BVH files, folders of them, or '-' for standard input.
     """
-    from motionedit.cli.finish import show_failures, write_report
+    from motionedit.cli.finish import show_count, show_failures, write_report
     from motionedit.cli.words import printable, to_stdout
     from motionedit.jobs import check
     from motionedit.jobs.batch.outputs import refuse_clashes
@@ -76,6 +77,9 @@ def command(
         if one.line and str(report) != "-":
             to_stdout(printable(one.line))
     show_failures([one.failure for one in found if one.failure is not None])
+    exit_code = check.exit_code(found)
+    statuses = [one.record["status"] for one in found]
+    show_count(statuses, exit_code=exit_code, verbosity=verbosity_of(click.get_current_context()))
     if report is not None:
         write_report(report_bytes("check", [one.record for one in found]), report)
-    return check.exit_code(found)
+    return exit_code

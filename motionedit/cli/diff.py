@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import click
 
 from motionedit.cli.options import lenient_option, not_negative, report_option
+from motionedit.cli.repeated import few_of_each_kind
 from motionedit.cli.verbosity import verbosity_of, verbosity_options
 from motionedit.cli.words import printable, to_stdout
 
@@ -60,7 +61,7 @@ def command(
 
     A and B are two clips, or two folders whose clips are paired by their path below them. Joints are matched by
     name and compared by their positions in the world and their angles, so another text of the same motion is no
-    difference.
+    difference. Of many clips that are missing on one side a few are named; -v names all.
 
     Exits with 0 for the same motion, 3 for another one or a clip that is missing on one side, and 2 where a pair
     cannot be compared: unreadable, another skeleton, frame count or frame rate. A report whose name ends in .xml
@@ -81,19 +82,34 @@ def command(
         if one.status == "not_comparable":
             complain(one.message)
     if str(report) != "-":
-        _print(comparisons, verbosity=verbosity_of(ctx))
+        if diff.share_no_name(comparisons) and verbosity_of(ctx) <= 0:
+            message = "clips are paired by their path below the two folders; give folders with the same names"
+            to_stdout(printable(f"no clip of {a} has the name of one of {b}: {message}"))
+        else:
+            _print(comparisons, verbosity=verbosity_of(ctx))
+        _count(comparisons)
     if report is not None:
         _write(comparisons, report)
     return diff.exit_code(comparisons)
 
 
 def _print(comparisons: list[Comparison], *, verbosity: int) -> None:
-    """Print what differs, and how many pairs do; pairs that are the same only where they are few or asked for."""
+    """Print what differs, and pairs that are the same only where they are few or asked for, as are many on one side."""
+    from motionedit.report.table import MOST_ROWS
+
+    lines: list[tuple[str | None, str]] = []
     for one in comparisons:
         if one.status in ("different", "missing"):
-            to_stdout(printable(f"{one.name}: {one.status}: {one.message}"))
+            lines.append((one.message if one.status == "missing" else None, f"{one.name}: {one.status}: {one.message}"))
         elif one.status == "same" and (len(comparisons) == 1 or verbosity > 0):
-            to_stdout(printable(f"{one.name}: same"))
+            lines.append((None, f"{one.name}: same"))
+    every = verbosity > 0 or len(comparisons) <= MOST_ROWS
+    for line in [line for _, line in lines] if every else few_of_each_kind(lines, rest="{kind}; -v names all"):
+        to_stdout(printable(line))
+
+
+def _count(comparisons: list[Comparison]) -> None:
+    """Count several pairs by what came of them."""
     if len(comparisons) > 1:
         counts = Counter(one.status.replace("_", " ") for one in comparisons)
         to_stdout(f"{len(comparisons)} clips: " + ", ".join(f"{n} {status}" for status, n in counts.items()))

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from motionedit.cli.boundary import complain, warn
+from motionedit.cli.repeated import few_of_each_kind
 from motionedit.cli.words import printable, to_stdout
 from motionedit.errors import EXIT_DONE, MISSED, MotionEditError, SpecError
 from motionedit.jobs.batch.no_result import ClusterLostError
@@ -48,12 +49,11 @@ def _list(paths: Sequence[str]) -> None:
 
 def _say(result: BatchResult, options: RunOptions) -> None:
     """Say on standard error what became of the clips: warnings, the table, what failed or was missed, the count."""
-    from motionedit.report.table import count_line, results_table
+    from motionedit.report.table import results_table
 
     made = any(time is not None for time in result.seconds)
     if options.verbosity >= 0:
-        for warning in result.warnings:
-            warn(warning)
+        _warn_of(result, options)
         if made and not options.dry_run:
             table = results_table(result.records, result.seconds, verbosity=options.verbosity)
             if table:  # of many clips that are ok it has no row
@@ -65,8 +65,21 @@ def _say(result: BatchResult, options: RunOptions) -> None:
     statuses = _show_missed(result, options)
     show_failures(result.failures)
     is_news = made or result.exit_code or any(status != "ok" for status in statuses)
-    if len(statuses) > 1 and is_news and _worth_a_count(result, options):
-        click.echo(count_line(statuses), err=True)
+    if is_news and not options.dry_run:
+        show_count(statuses, exit_code=result.exit_code, verbosity=options.verbosity)
+
+
+def _warn_of(result: BatchResult, options: RunOptions) -> None:
+    """Say what a run warns of; of more clips than have a row in the table, without -v, a few lines of each kind."""
+    from motionedit.report.table import MOST_ROWS
+
+    lines = result.warnings
+    if options.verbosity == 0 and len(result.records) > MOST_ROWS:
+        where = "-v" if options.dry_run else "--update -v"
+        kinds = [(notice.kind, notice.line) for notice in result.notices]
+        lines = [*few_of_each_kind(kinds, rest=f"of this kind: {where} tells of all")]
+    for line in lines:
+        warn(line)
 
 
 def _show_missed(result: BatchResult, options: RunOptions) -> list[str]:
@@ -77,15 +90,18 @@ def _show_missed(result: BatchResult, options: RunOptions) -> list[str]:
     say, statuses = complain if options.strict else warn, []
     for record, time in zip(result.records, result.seconds, strict=True):
         statuses.append(record["status"])
-        warned = time is not None and options.verbosity >= 0
+        warned = options.verbosity >= (0 if time is not None else 1)
         if record["status"] in MISSED and not warned and (options.strict or options.verbosity >= 0):
             say(f"{record['clip']}: {record['status'].replace('_', ' ')}: {record['message']}")
     return statuses
 
 
-def _worth_a_count(result: BatchResult, options: RunOptions) -> bool:
-    """Tell whether the line that counts is wanted: with -q only where something went wrong."""
-    return not options.dry_run and (options.verbosity >= 0 or result.exit_code != EXIT_DONE)
+def show_count(statuses: Sequence[str], *, exit_code: int, verbosity: int) -> None:
+    """Count several clips by status, on the line that ends what is said; with -q only where something went wrong."""
+    from motionedit.report.table import count_line
+
+    if len(statuses) > 1 and (verbosity >= 0 or exit_code != EXIT_DONE):
+        click.echo(count_line(statuses), err=True)
 
 
 def show_failures(failures: Sequence[MotionEditError]) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from motionedit.cli.options import clips_argument, lenient_option, report_option, up_option
-from motionedit.cli.verbosity import verbosity_options
+from motionedit.cli.verbosity import verbosity_of, verbosity_options
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -50,7 +50,7 @@ def command(
 
     CLIPS are BVH files, folders of them, or '-' for standard input.
     """
-    from motionedit.cli.finish import show_failures, write_report
+    from motionedit.cli.finish import show_count, show_failures, write_report
     from motionedit.cli.words import printable, to_stdout
     from motionedit.errors import EXIT_CLIP_FAILED, EXIT_DONE
     from motionedit.jobs.batch.outputs import refuse_clashes
@@ -65,6 +65,9 @@ def command(
     if str(report) != "-" and found.text:
         to_stdout(printable(found.text.rstrip("\n")))
     show_failures(found.failures)
+    exit_code = EXIT_CLIP_FAILED if found.failures else EXIT_DONE
+    statuses = [record["status"] for record in found.records]
+    show_count(statuses, exit_code=exit_code, verbosity=verbosity_of(click.get_current_context()))
     if report is not None:
         write_report(report_bytes("info", found.records), report)
-    return EXIT_CLIP_FAILED if found.failures else EXIT_DONE
+    return exit_code

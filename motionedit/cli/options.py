@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from motionedit.cli.progress import progress_on_terminal
+from motionedit.cli.progress import progress_shown
 from motionedit.cli.verbosity import verbosity_of, verbosity_options
 from motionedit.errors import UsageError
 
@@ -202,10 +202,11 @@ def _collecting(options: Sequence[Decorator]) -> Decorator:
             if str(values["report"]) == str(values.get("output")) == "-":
                 raise click.UsageError("-o - and --report - cannot both have standard output")
             names = RunOptions.__dataclass_fields__.keys() & values.keys()
+            verbosity = verbosity_of(click.get_current_context())
             given = RunOptions(
                 **{name: values.pop(name) for name in names},
-                verbosity=verbosity_of(click.get_current_context()),
-                progress=progress_on_terminal,
+                verbosity=verbosity,
+                progress=functools.partial(progress_shown, verbosity=verbosity),
             )
             return function(options=given, **values)
 

@@ -61,7 +61,7 @@ class _Program(click.Group):
         try:
             return super().invoke(ctx)
         except KeyboardInterrupt as error:
-            raise Interrupted from error
+            raise Interrupted(*error.args) from error
         except Exception as error:
             show_unexpected(error, verbosity=verbosity_of(ctx))
             raise

@@ -24,6 +24,7 @@ from motionedit.jobs.batch.outputs import refuse_clashes
 from motionedit.jobs.batch.plan import find_clips, folder_clips, refuse_missing
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from motionedit.core.arrays import FloatArray
@@ -133,6 +134,11 @@ def run(
         message = _difference(position, angle)
         comparisons.append(Comparison(name, "different" if message else "same", message, position, angle))
     return comparisons
+
+
+def share_no_name(comparisons: Sequence[Comparison]) -> bool:
+    """Tell whether two folders have clips, and no clip of one has its pair in the other."""
+    return {one.status for one in comparisons} == {"missing"} and len({one.message for one in comparisons}) > 1
 
 
 def exit_code(comparisons: list[Comparison]) -> int:

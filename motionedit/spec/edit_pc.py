@@ -158,7 +158,7 @@ class EditPcSpec(Document):
         kinds.schema_id("edit-pc"), default="motionedit/edit-pc/v1", name="schema", description="Which spec this is."
     )
     components: int | None = spec_key(
-        kinds.whole(at_least=1), default=None, description="How many of the model's components are used; default: all."
+        kinds.components(), default=None, description="How many of the model's components are used; default: all."
     )
     explained_variance: float | None = spec_key(
         kinds.number(above=0.0, at_most=1.0),

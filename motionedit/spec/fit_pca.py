@@ -16,7 +16,7 @@ class FitPcaSpec(Document):
         kinds.schema_id("fit-pca"), default="motionedit/fit-pca/v1", name="schema", description="Which spec this is."
     )
     components: int | None = spec_key(
-        kinds.whole(at_least=1),
+        kinds.components(),
         default=None,
         description="How many principal components are kept; default: all of rank, of more than 2,000 clips the first "
         "100.",

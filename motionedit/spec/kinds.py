@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from typing import Any, Literal, get_args
 
+from motionedit.dataclass import replace
 from motionedit.spec import grammar, scalars, times, values
 from motionedit.spec.faults import Fault, FaultyValueError, faulty, show
 from motionedit.spec.model import Context, Kind
@@ -121,6 +122,18 @@ def whole(*, at_least: int | None = None, null: bool = False, largest: int = int
         return scalars.whole(value, at_least=at_least, largest=largest)
 
     return Kind(parse, words, json, null=null)
+
+
+def components() -> Kind:
+    """Return the kind of numbers of principal components; a share of the variance is sent to its own key."""
+    number = whole(at_least=1)
+
+    def parse(value: object, context: Context) -> object:
+        if isinstance(value, float) and 0.0 < value < 1.0:
+            raise faulty(f"must be a whole number, not {show(value)}; a share of the variance is explained_variance")
+        return number.parse(value, context)
+
+    return replace(number, parse=parse)
 
 
 def word(*choices: str) -> Kind:

@@ -237,4 +237,5 @@ def half(number):
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_map_tasks_gives_errors_as_values_in_order(jobs):
     values = map_tasks(half, [2, 3, 4, 6, 8], RunOptions(jobs=jobs))
-    assert [str(value) for value in values] == ["1", "3: odd", "2", "six: No space left on device", "x; y"]
+    assert [str(value) for value in values] == ["1", "3: odd", "2", "six: No space left on device", "x\ny"]
+    assert [type(fault) for fault in values[-1].errors] == [SpecError, SpecError]

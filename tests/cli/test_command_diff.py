@@ -181,6 +181,41 @@ def test_a_clip_missing_on_one_side_is_a_difference(run, write, tmp_path, a, b, 
     assert f"y.bvh: missing: only in {only}\n" in result.stdout
 
 
+def test_folders_that_share_no_name_are_one_line_with_its_remedy(run, write, tmp_path):
+    for name in ("a/x.bvh", "a/y.bvh", "b/deep/x.bvh"):
+        write(name, make_motion())
+    result = run("diff", "a", "b", "--report", "r.json")
+    line, count = result.stdout.splitlines()
+    assert line.startswith(
+        "no clip of a has the name of one of b: clips are paired by their path below the two folders; "
+    )
+    assert (count, result.stderr, result.exit_code) == ("3 clips: 3 missing", "", 3)
+    assert [one["status"] for one in json.loads((tmp_path / "r.json").read_text())["clips"]] == ["missing"] * 3
+    every = ["deep/x.bvh: missing: only in b", "x.bvh: missing: only in a", "y.bvh: missing: only in a", count]
+    assert run("diff", "a", "b", "-v").stdout.splitlines() == every
+
+
+def test_of_many_clips_on_one_side_a_few_are_named_and_every_difference_is(run, write, tmp_path):
+    for n in range(5):
+        write(f"a/d{n}.bvh", make_motion())
+        write(f"b/d{n}.bvh", make_motion(seed=1))
+        write(f"b/n{n}.bvh", make_motion())
+    for n in range(31):
+        write(f"a/m{n:02d}.bvh", make_motion())
+    lines = run("diff", "a", "b").stdout.splitlines()
+    assert [line.split(": ")[:2] for line in lines[:5]] == [[f"d{n}.bvh", "different"] for n in range(5)]
+    assert lines[5:] == [
+        *(f"m{n:02d}.bvh: missing: only in a" for n in range(3)),
+        "28 more only in a; -v names all",
+        *(f"n{n}.bvh: missing: only in b" for n in range(3)),
+        "2 more only in b; -v names all",
+        "41 clips: 5 different, 36 missing",
+    ]
+    assert len(run("diff", "a", "b", "-v").stdout.splitlines()) == 42
+    (tmp_path / "a/m00.bvh").unlink()
+    assert len(run("diff", "a", "b").stdout.splitlines()) == 41
+
+
 def test_an_unreadable_clip_does_not_hide_the_other_differences(run, write, tmp_path):
     for folder, seed in (("a", 0), ("b", 1)):
         write(f"{folder}/x.bvh", make_motion(seed=seed))

@@ -52,3 +52,20 @@ def test_v_lists_every_component(fitted):
     lines, _ = fitted(50, "-v")
     assert len([line for line in lines if line.split()[0].isdecimal()]) == 49
     assert not [line for line in lines if "more components" in line]
+
+
+@pytest.mark.parametrize("name", ["m.bvh", "m.NPY", "m.json", "out/m.Bvh"])
+def test_a_model_gets_no_name_of_another_kind_of_file(fitted, run, tmp_path, name):
+    fitted(2)
+    result = run("fit-pca", "n", "-o", name)
+    ending = name[name.index(".") :]
+    message = f"motionedit: error: {name}: a model is written as .npz, not as {ending}; give such a name\n"
+    assert (result.exit_code, result.stdout, result.stderr) == (2, "", message)
+    assert not (tmp_path / name).exists()
+
+
+@pytest.mark.parametrize("name", ["m", "m.NPZ", "golf.v1", "golf-1.0"])
+def test_a_model_may_have_any_other_name(fitted, run, tmp_path, name):
+    fitted(2)
+    assert run("fit-pca", "n", "-o", name, "-q").exit_code == 0
+    assert (tmp_path / name).exists()

@@ -134,6 +134,48 @@ def test_what_the_clip_or_the_model_lacks_is_said_in_one_line(run, golf, data, t
     assert not (tmp_path / "e.bvh").exists()
 
 
+def test_all_joints_that_goals_name_and_a_clip_lacks_are_told_with_one_list(run, golf, data, tmp_path):
+    (tmp_path / "e.yaml").write_text(
+        "schema: motionedit/edit-pc/v1\ngoals:\n"
+        "  - {at: 3, effector: Xyz, relative_to: Qqq, shift: [0, 0, 1]}\n"
+        "  - {at: 4, effector: Head, shift: [0, 0, 1]}\n"
+        "  - {at: 5, effector: Vvv, shift: [0, 0, 1]}\n"
+    )
+    result = run("edit-pc", data / "swing01.bvh", "-m", golf.model, "-s", "e.yaml", "-o", "e.bvh")
+    errors = [line for line in result.stderr.splitlines() if line.startswith("motionedit: error:")]
+    assert result.exit_code == 2
+    assert [error.split(": ")[2:4] for error in errors] == [
+        ["e.yaml:3", "goals.0.effector"],
+        ["e.yaml:3", "goals.0.relative_to"],
+        ["e.yaml:5", "goals.2.effector"],
+    ]
+    assert [error.count("; its joints are ") for error in errors] == [1, 0, 0]
+
+
+EVENTS_NOWHERE = {"hit": "Xyz", "top": "LeftWrist", "end": "Qqq"}
+
+
+def test_all_joints_that_events_are_looked_for_by_are_told_with_one_list(run, data, tmp_path):
+    rules = [
+        f"  {name}: {{detect: {{effector: {joint}, minimum_of: height}}}}" for name, joint in EVENTS_NOWHERE.items()
+    ]
+    (tmp_path / "n.yaml").write_text("\n".join(["schema: motionedit/normalize/v1", "events:", *rules]))
+    result = run("normalize", data, "-s", "n.yaml", "-o", "n", "--report", "r.json")
+    mark = "motionedit: error: n.yaml:"
+    errors = [line.removeprefix(mark) for line in result.stderr.splitlines() if line.startswith(mark)]
+    where = f"in {data / 'swing01.bvh'}"
+    assert result.exit_code == 2
+    assert errors[0].startswith(f"3: events.hit.detect.effector: no joint 'Xyz' {where}; its joints are Hips, ")
+    assert errors[0].endswith("(and in 9 more clips)")
+    assert errors[1:] == [
+        f"4: events.top.detect.effector: no joint 'LeftWrist' {where}; did you mean 'LeftHand'? (and in 9 more clips)",
+        f"5: events.end.detect.effector: no joint 'Qqq' {where} (and in 9 more clips)",
+    ]
+    messages = [clip["message"] for clip in json.loads((tmp_path / "r.json").read_text())["clips"]]
+    assert [message.count("no joint") for message in messages] == [3] * 10
+    assert "\n" not in messages[0]
+
+
 def test_a_clip_of_another_skeleton_fails_alone(run, golf, data, clip, tmp_path):
     other = clip("other.bvh")
     spec = edit_spec(tmp_path / "e.yaml")

@@ -1,6 +1,7 @@
 """Ctrl-C: exit code 130, one line, no half file, no process left."""
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -32,9 +33,9 @@ def stuck(clip, copy_spec, tmp_path):
     for name in "abc":
         clip(f"in/{name}.bvh")
 
-    def start(jobs):
+    def start(jobs, *more):
         process = subprocess.Popen(
-            [sys.executable, "-c", STUCK, "edit-prioritized", "in", "-s", copy_spec, "-o", "out", "-j", jobs],
+            [sys.executable, "-c", STUCK, "edit-prioritized", "in", "-s", copy_spec, "-o", "out", "-j", jobs, *more],
             cwd=tmp_path,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
@@ -57,11 +58,32 @@ def test_ctrl_c_ends_the_run_at_once_and_leaves_nothing_half_written(stuck, tmp_
     os.killpg(process.pid, signal.SIGINT)
     out, err = process.communicate(timeout=20)
     assert process.returncode == 130
-    assert (out, err) == ("", "motionedit: error: interrupted\n")
+    # By two workers b.bvh may be begun before a.bvh is done; c.bvh does not count before b.bvh does.
+    come = "1" if jobs == "1" else "[01]"
+    assert re.fullmatch(f"motionedit: error: interrupted after {come} of 3 clips: go on with --update\n", err)
+    assert out == ""
     assert {path.name for path in (tmp_path / "out").glob("[!.]*")} <= {"a.bvh", "c.bvh"}
     assert not list((tmp_path / "out").glob(".*-partial"))
     with pytest.raises(ProcessLookupError):
         os.killpg(process.pid, 0)
+
+
+def test_what_an_earlier_run_made_counts_as_come(stuck, run, copy_spec, tmp_path):
+    (tmp_path / "in/b.bvh").rename(tmp_path / "b.bvh")
+    assert run("edit-prioritized", "in", "-s", copy_spec, "-o", "out").exit_code == 0
+    (tmp_path / "b.bvh").rename(tmp_path / "in/b.bvh")
+    process = stuck("1", "--update")
+    os.killpg(process.pid, signal.SIGINT)
+    _, err = process.communicate(timeout=20)
+    message = "motionedit: error: interrupted after 2 of 3 clips: go on with --update\n"
+    assert (process.returncode, err) == (130, message)
+
+
+def test_a_dry_run_is_nothing_to_go_on_with(stuck):
+    process = stuck("1", "--dry-run")
+    os.killpg(process.pid, signal.SIGINT)
+    _, err = process.communicate(timeout=20)
+    assert (process.returncode, err) == (130, "motionedit: error: interrupted after 1 of 3 clips\n")
 
 
 def test_a_killed_worker_is_one_line(stuck):

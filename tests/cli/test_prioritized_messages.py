@@ -43,6 +43,29 @@ def test_all_that_a_clip_lacks_is_said_together(edit):
     assert len(done.errors) == 6
 
 
+def test_of_joints_that_are_not_there_all_are_named_and_what_there_is_is_listed_once(edit):
+    bad = hand({"at": 3}, effector="Xyz", recruit={"joints": ["Qqq", "LeftArm", "LeftWrist"]})
+    done = edit([bad, {"type": "posture", "joints": ["Vvv", "Head", "Qqq"]}], masses={"Zzz": 1})
+    assert [error.split(": ", 3)[3].partition(" in ")[0] for error in done.errors] == [
+        "masses.Zzz: no joint 'Zzz'",
+        "constraints.0.effector: no joint 'Xyz'",
+        "constraints.0.recruit.joints.0: no joint 'Qqq'",
+        "constraints.0.recruit.joints.2: no joint 'LeftWrist'",
+        "constraints.1.joints.0: no joint 'Vvv'",
+        "constraints.1.joints.2: no joint 'Qqq'",
+    ]
+    assert [("; its joints are " in error) for error in done.errors] == [True, *[False] * 5]
+    assert done.errors[3].endswith("; did you mean 'LeftHand'?")
+
+
+def test_all_joints_of_a_given_body_that_are_not_there_are_told_together(edit):
+    body = {"head": "Xyz", "left_leg": ["LeftUpLeg", "LeftKnee", "Qqq"], "right_leg": ["A", "RightLeg", "B"]}
+    errors = edit([RAISED], body=body).errors
+    assert [error.split(": ")[3] for error in errors] == [
+        *("body.left_leg.1", "body.left_leg.2", "body.right_leg.0", "body.right_leg.2", "body.head")
+    ]
+
+
 def test_four_effectors_of_one_list_say_a_common_fault_once(edit):
     done = edit([{**FEET_AS_CAPTURED, "points": [{"at": 900}]}])
     assert len(done.errors) == 1

@@ -13,7 +13,7 @@ from motionedit import __version__
 from motionedit.cli import main
 from motionedit.cli.boundary import run_guarded
 from motionedit.cli.program import COMMANDS
-from motionedit.cli.progress import progress_on_terminal
+from motionedit.cli.progress import progress_shown
 from motionedit.core.compiled import solver_name
 from motionedit.errors import ClipError, MotionEditErrors, SpecError
 
@@ -159,17 +159,37 @@ def test_the_schema_of_each_spec_is_json(run, name):
     assert json.loads(run("schema", name).stdout)["properties"]["schema"]
 
 
-def test_a_bar_moves_only_on_a_terminal_and_for_more_than_one_clip(monkeypatch):
-    def shown(length, *, terminal):
+@pytest.fixture
+def progress(monkeypatch):
+    """Return a function that tells what is shown of a run whose clips are all done."""
+
+    def shown(length, *, terminal, verbosity=0):
         stream = io.StringIO()
         stream.isatty = lambda: terminal
         monkeypatch.setattr("sys.stderr", stream)
-        with progress_on_terminal(length) as advance:
-            advance()
+        with progress_shown(length, verbosity=verbosity) as advance:
+            for _ in range(length):
+                advance()
         return stream.getvalue()
 
-    assert "1/2" in shown(2, terminal=True)
-    assert shown(1, terminal=True) == shown(2, terminal=False) == ""
+    return shown
+
+
+def test_a_bar_moves_only_on_a_terminal_and_for_more_than_one_clip(progress):
+    assert "2/2" in progress(2, terminal=True)
+    assert progress(1, terminal=True) == progress(2, terminal=False) == ""
+    assert progress(200, terminal=True, verbosity=-1) == ""
+
+
+def test_a_log_has_a_line_for_each_tenth_of_many_clips(progress):
+    assert progress(99, terminal=False) == progress(1000, terminal=False, verbosity=-1) == ""
+    assert progress(1000, terminal=False).splitlines() == [
+        *(f"{100 * n} of 1,000 clips" for n in range(1, 10)),
+        "1,000 of 1,000 clips",
+    ]
+    for length in (100, 101, 437):
+        lines = progress(length, terminal=False).splitlines()
+        assert [int(line.split()[0]) for line in lines] == [-(-length * n // 10) for n in range(1, 11)]
 
 
 def test_the_module_is_the_same_program():

@@ -8,7 +8,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from motionedit.core.skeleton import EndSite, Skeleton
-from motionedit.errors import SpecError
+from motionedit.errors import MotionEditErrors, SpecError
 from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.events import event_frames, explicit_events
 from motionedit.jobs.clip.resolve import Place
@@ -76,6 +76,29 @@ def test_the_prefix_of_a_rig_is_no_hindrance_to_the_hint(place):
 def test_a_joint_like_no_other_is_answered_with_all_of_them(place):
     found = refusal(resolve.joint, "Zzz", SKELETON, place("goals", 1, "relative_to"))
     assert found.endswith("no joint 'Zzz' in walk.bvh; its joints are Hips, Spine1, mix:Head, Toe")
+
+
+def test_a_part_that_the_rig_calls_otherwise_is_proposed_before_a_name_of_like_letters(place):
+    def hint(name, *names):
+        skeleton = Skeleton(names, np.arange(-1, len(names) - 1), np.zeros((len(names), 3)), ((),) * len(names), ())
+        return refusal(resolve.joint, name, skeleton, place("goals", 1, "relative_to")).partition("; ")[2]
+
+    assert nearest("LeftHand", ["LeftHip", "LeftWrist"]) == "LeftHip"
+    assert hint("LeftHand", "Hips", "LeftHip", "LeftWrist") == "did you mean 'LeftWrist'?"
+    assert hint("LeftHand", "x:LeftHip", "x:LeftWrist", "x:LeftHand") == "did you mean 'x:LeftHand'?"
+    assert hint("LeftHnad", "Hips", "LeftHip", "LeftHand") == "did you mean 'LeftHand'?"
+    assert hint("Club", "Hips", "LeftHip") == "its joints are Hips, LeftHip"
+
+
+def test_all_joints_that_are_not_there_are_told_with_one_list(load):
+    loaded = load("exclude_joints: [Hips, Zzz, Spine2, Yyy]", "fit-pca")
+    with pytest.raises(MotionEditErrors) as caught:
+        resolve.joints(loaded.model.exclude_joints, SKELETON, Place(loaded, ("exclude_joints",), "walk.bvh"))
+    assert str(caught.value).splitlines() == [
+        "spec.yaml:2: exclude_joints.1: no joint 'Zzz' in walk.bvh; its joints are Hips, Spine1, mix:Head, Toe",
+        "spec.yaml:2: exclude_joints.2: no joint 'Spine2' in walk.bvh; did you mean 'Spine1'?",
+        "spec.yaml:2: exclude_joints.3: no joint 'Yyy' in walk.bvh",
+    ]
 
 
 def test_a_name_that_has_but_letters_in_common_is_not_what_was_meant():

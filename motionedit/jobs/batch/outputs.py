@@ -1,8 +1,9 @@
-"""What a command may write to: no file that it reads, no file twice, and with --no-overwrite none that is there."""
+"""What a command may write to: no file that it reads, or twice, none of another kind, and not what is to stay."""
 
 from __future__ import annotations
 
 import os
+import re
 import stat
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,17 @@ from motionedit.jobs.batch.files import Places, number_of, status_of
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
     from pathlib import Path
+
+# Endings that nobody who types one means for a file of another kind, or for a folder.
+_KINDS = re.compile(
+    r"\.(abc|amc|asf|blend|bvh|c3d|csv|dae|fbx|gif|glb|gltf|html|jpg|json|mp4|np[yz]|obj|png|svg|trc|txt|usd[acz]?|xml|ya?ml|zip)",
+    re.IGNORECASE,
+)
+
+
+def is_of_another_kind(output: Path, own: str) -> bool:
+    """Tell whether an output's name ends as files of a known kind do, and not as those that are written (`own`)."""
+    return output.suffix.lower() != own and _KINDS.fullmatch(output.suffix) is not None
 
 
 def refuse_existing(outputs: Sequence[Path]) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import os
-import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,7 +11,7 @@ from motionedit.dataclass import dataclass, replace
 from motionedit.errors import UsageError
 from motionedit.jobs.batch.current import nothing_is_newer, stamp_of
 from motionedit.jobs.batch.files import identity
-from motionedit.jobs.batch.outputs import refuse_clashes, refuse_existing, refuse_paths
+from motionedit.jobs.batch.outputs import is_of_another_kind, refuse_clashes, refuse_existing, refuse_paths
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -23,16 +22,11 @@ if TYPE_CHECKING:
     from motionedit.jobs.batch.verdicts import Verdict, Verdicts
 
 STDIN_LABEL = "<stdin>"
-# What nobody who types it means as a folder's name.
-_NO_FOLDER = re.compile(
-    r"\.(abc|amc|asf|blend|c3d|csv|dae|fbx|gif|glb|gltf|html|jpg|json|mp4|np[yz]|obj|png|svg|trc|txt|usd[acz]?|xml|ya?ml|zip)",
-    re.IGNORECASE,
-)
 
 
 @contextlib.contextmanager
 def no_progress(_length: int) -> Iterator[Callable[[], None]]:
-    """Show nothing: the progress of runs without a terminal."""
+    """Show nothing: the progress of runs that nobody watches."""
     yield lambda: None
 
 
@@ -293,7 +287,7 @@ def _with_outputs(tasks: list[ClipTask], output: str) -> list[ClipTask]:
         return [replace(tasks[0], output=target)]
     if target.exists() and not target.is_dir():
         raise UsageError("is a file; give a folder, or a name ending in .bvh for one clip", file=output)
-    if _NO_FOLDER.fullmatch(target.suffix) and not target.is_dir():
+    if is_of_another_kind(target, ".bvh") and not target.is_dir():
         message = f"clips are written as .bvh, not as {target.suffix}; give such a name, or a folder"
         raise UsageError(message, file=output)
     if any(task.source is None for task in tasks):

@@ -19,6 +19,7 @@ from motionedit.errors import (
 )
 from motionedit.jobs.batch.arrivals import Arrivals
 from motionedit.jobs.batch.files import clean_leftovers
+from motionedit.jobs.batch.notices import notices_of
 from motionedit.jobs.batch.one_clip import Done, Outcome, RunOne, RunOwn
 from motionedit.jobs.batch.plan import no_progress
 from motionedit.jobs.batch.pool import results_in_order
@@ -28,6 +29,7 @@ from motionedit.jobs.batch.verdicts import Verdict
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Sequence
 
+    from motionedit.jobs.batch.notices import Notice
     from motionedit.jobs.batch.one_clip import Work
     from motionedit.jobs.batch.plan import ClipTask, RunOptions
     from motionedit.jobs.batch.processes import Crew
@@ -49,8 +51,8 @@ class BatchResult:
         Entries of the report's `clips`.
     paths : list of str
         The files written.
-    warnings : list of str
-        One line each, with the clip's name where there are several.
+    notices : list of Notice
+        What it warns of, with the clip's name where there are several; with -v of clips that are current, too.
     failures : list of MotionEditError
         Why clips failed; one clip may have several.
     exit_code : int
@@ -67,13 +69,18 @@ class BatchResult:
 
     records: Sequence[dict[str, Any]]
     paths: list[str]
-    warnings: list[str]
+    notices: list[Notice]
     failures: list[MotionEditError]
     exit_code: int
     seconds: list[float | None] = field(default_factory=list)
     details: list[tuple[str, tuple[str, ...]]] = field(default_factory=list)
     contents: list[bytes | None] = field(default_factory=list)
     current: int = 0
+
+    @property
+    def warnings(self) -> list[str]:
+        """The lines of all notices."""
+        return [notice.line for notice in self.notices]
 
     @property
     def content(self) -> bytes | None:
@@ -84,12 +91,20 @@ class BatchResult:
 def run_batch(
     tasks: Sequence[ClipTask], work: Work, options: RunOptions, *, verdicts: Verdicts | None = None
 ) -> BatchResult:
-    """Do the same work on every clip but those that are elsewhere; see `run_each`."""
+    """Do the same work on every clip but those that are elsewhere; see `run_each`.
+
+    A KeyboardInterrupt says how far it has come, and, where verdicts are kept, how to go on.
+    """
     options = replace(options, report_frames=options.tells_frames(len(tasks)))
     run_one = RunOne(_for_workers(options), work)
     tasks = [task for task in tasks if not task.elsewhere]
     waiting = [task for task in tasks if not task.current]
-    return _run(tasks, run_one, waiting, options, verdicts)
+    try:
+        return _run(tasks, run_one, waiting, options, verdicts)
+    except KeyboardInterrupt as stop:
+        if verdicts is None or not stop.args:
+            raise
+        raise KeyboardInterrupt(f"{stop.args[0]}: go on with --update") from None
 
 
 def run_each(
@@ -150,6 +165,11 @@ def _run(
                 records.append(record)
                 done.append(replace(one, outcome=replace(one.outcome, record={})))
                 advance()
+    except KeyboardInterrupt:
+        if len(tasks) < 2:
+            raise
+        come = len(tasks) - len(waiting) + len(done)
+        raise KeyboardInterrupt(f"after {come:,} of {len(tasks):,} clips") from None
     finally:
         # Workers that were ended in the middle of a file could not clean up themselves.
         if not options.dry_run:
@@ -192,8 +212,8 @@ def map_tasks(
 ) -> list[Value | MotionEditError]:
     """Return function(item) for each item in order, on the workers that `options` asks for.
 
-    A MotionEditError or OSError of an item comes back as its value; every item is tried. `function`, items and
-    values are pickled where there are several workers, those of `crew` if it is given.
+    A MotionEditError, of one fault or several, or OSError of an item comes back as its value; every item is tried.
+    `function`, items and values are pickled where there are several workers, those of `crew` if it is given.
     """
     return list(values_in_order(function, items, options, crew=crew))
 
@@ -221,7 +241,7 @@ class _Guarded:
         try:
             return self.function(item)
         except MotionEditError as error:
-            return error.errors[0] if len(error.errors) == 1 else ClipError("; ".join(map(str, error.errors)))
+            return error
         except OSError as error:
             return ClipError(error.strerror or str(error), file=error.filename and str(error.filename))
 
@@ -238,12 +258,12 @@ def _for_workers(options: RunOptions) -> RunOptions:
 def _collect(
     pairs: Sequence[tuple[ClipTask, Done]], records: Records, options: RunOptions, *, total: int, current: int
 ) -> BatchResult:
-    made = [(task, one) for task, one in pairs if not one.current]
+    made, entries = [(task, one) for task, one in pairs if not one.current], _in_order(pairs, records)
     failures = [_named(error, task) for task, one in pairs for error in one.errors]
     return BatchResult(
-        records=_in_order(pairs, records),
+        records=entries,
         paths=[str(path) for task, one in made if one.written for path in task.outputs],
-        warnings=[_about(task, warning, alone=total == 1) for task, one in made for warning in one.outcome.warnings],
+        notices=notices_of(pairs, entries, alone=total == 1, every=options.verbosity > 0),
         failures=failures,
         exit_code=_exit_code([one for _, one in pairs], total, strict=options.strict),
         seconds=[None if one.current else one.seconds for _, one in pairs],
@@ -278,10 +298,6 @@ def _named(error: MotionEditError, task: ClipTask) -> MotionEditError:
     if error.file is not None:
         return error
     return type(error)(error.message, file=task.label, key=error.key)
-
-
-def _about(task: ClipTask, warning: str, *, alone: bool) -> str:
-    return warning if alone or warning.startswith(task.label) else f"{task.label}: {warning}"
 
 
 def _heading(task: ClipTask) -> str:

@@ -11,7 +11,9 @@ import numpy as np
 from motionedit.core.again import LastFew, Same
 from motionedit.core.kinematics import effector_positions
 from motionedit.core.timeline.events import Quantity, Search, find_event
+from motionedit.errors import MotionEditError
 from motionedit.jobs.clip import resolve
+from motionedit.jobs.clip.faults import Faults
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
@@ -108,19 +110,32 @@ def found_events(
             raise place.at(name).error(message)
     # A rule may wait for another's event; the spec has refused rings, so each round finds at least one.
     waiting = {name: spec.detect for name, spec in specs.items() if spec.detect is not None and name not in frames}
+    effectors = _effectors(waiting, facts, place)
     while waiting:
         ready = [name for name, rule in waiting.items() if not _waits_for(rule) & waiting.keys()]
         for name in ready:
             rule, where = waiting.pop(name), place.at(name).at("detect")
-            effector = _effector(rule, facts.clip.motion.skeleton, where)
             windows[name] = _window(rule, facts, where, events=frames)
-            frames[name] = _found(rule, effector, facts, windows[name])
+            frames[name] = _found(rule, effectors[name], facts, windows[name])
     return FoundEvents(frames, {name: windows[name] for name in specs if name in windows})
 
 
 def _waits_for(rule: DetectRule) -> set[str]:
     times = [] if rule.between is None else [rule.between.start, rule.between.stop]
     return {name for name in (rule.after, *(time.event for time in times)) if name is not None}
+
+
+def _effectors(rules: Mapping[str, DetectRule], facts: ClipFacts, place: Place) -> dict[str, Effector]:
+    """Return the points that rules are about, by their events."""
+    faults = Faults()
+    found: dict[str, Effector] = {}
+    for name, rule in rules.items():
+        try:
+            found[name] = _effector(rule, facts.clip.motion.skeleton, place.at(name).at("detect"))
+        except MotionEditError as error:
+            faults.add(error)
+    faults.raise_all(f"joints that {place.clip} lacks")
+    return found
 
 
 def _effector(rule: DetectRule, skeleton: Skeleton, place: Place) -> Effector:

@@ -9,9 +9,12 @@ from motionedit.dataclass import dataclass
 from motionedit.errors import MotionEditError, together
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
 Found = TypeVar("Found")
+
+# What stands between a joint that a clip lacks and the names of those that it has.
+ITS_JOINTS = "; its joints are "
 
 
 @dataclass(frozen=True)
@@ -43,4 +46,15 @@ class Faults:
             The one there is, or all of them.
         """
         if self.errors:
-            raise together(what, self.errors)
+            raise together(what, _joints_listed_once(self.errors))
+
+
+def _joints_listed_once(errors: Sequence[MotionEditError]) -> list[MotionEditError]:
+    """Return errors of which the first alone lists a clip's joints: one list serves all names that are not there."""
+    listed, found = set(), []
+    for error in errors:
+        message, sign, names = error.message.partition(ITS_JOINTS)
+        again = sign and names in listed
+        listed.add(names)
+        found.append(type(error)(message, file=error.file, line=error.line, key=error.key) if again else error)
+    return found

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from itertools import pairwise
 from typing import TYPE_CHECKING, Protocol
 
@@ -10,10 +11,12 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
 from motionedit.core.body.anatomy import GivenBody
+from motionedit.core.body.same_part import same_part
 from motionedit.core.kinematics import Effector
 from motionedit.dataclass import dataclass
+from motionedit.jobs.clip.faults import ITS_JOINTS, Faults
 from motionedit.spec.body import NONE
-from motionedit.spec.faults import did_you_mean, listed
+from motionedit.spec.faults import listed, nearest
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -21,7 +24,6 @@ if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
     from motionedit.core.skeleton import Skeleton
     from motionedit.errors import MotionEditError
-    from motionedit.jobs.clip.faults import Faults
     from motionedit.spec.body import BodySpec
     from motionedit.spec.times import Interval, Time
     from motionedit.spec.values import EffectorSpec, OrientationSpec
@@ -89,13 +91,24 @@ def joint(name: str, skeleton: Skeleton, place: Where) -> int:
     names = tuple(dict.fromkeys(skeleton.names))
     # A rig's prefix ("mixamorig:") hides likeness from the general search.
     ending = [other for other in names if other.rpartition(":")[2] == name]
-    hint = f"did you mean '{ending[0]}'?" if ending else did_you_mean(name, names, otherwise="")
-    raise place.error(f"no joint '{name}' in {place.clip}; {hint or f'its joints are {listed(names)}'}")
+    # What others call the same part may be far from it in letters, and near to another part.
+    meant = ending[0] if ending else same_part(name, names) or nearest(name, names)
+    hint = f"{ITS_JOINTS}{listed(names)}" if meant is None else f"; did you mean '{meant}'?"
+    raise place.error(f"no joint '{name}' in {place.clip}{hint}")
 
 
 def joints(names: Sequence[str], skeleton: Skeleton, place: Where) -> tuple[int, ...]:
-    """Return the indices of the joints of those names; `place` is the list's."""
-    return tuple(joint(name, skeleton, place.at(i)) for i, name in enumerate(names))
+    """Return the indices of the joints of those names; `place` is the list's.
+
+    Raises
+    ------
+    SpecError, MotionEditErrors
+        As `joint`, of all names.
+    """
+    faults = Faults()
+    found = [joint_if_there(name, skeleton, place.at(i), faults) for i, name in enumerate(names)]
+    faults.raise_all(f"joints that {place.clip} lacks")
+    return tuple(index for index in found if index is not None)
 
 
 def joint_if_there(name: str, skeleton: Skeleton, place: Where, faults: Faults) -> int | None:
@@ -114,9 +127,15 @@ def body(spec: BodySpec, skeleton: Skeleton, place: Where) -> GivenBody:
 
     Raises
     ------
-    SpecError
-        Where the clip lacks a joint, or a limb's joints do not hang on one another in their order.
+    SpecError, MotionEditErrors
+        Where the clip lacks joints, or a limb's joints do not hang on one another in their order.
     """
+    faults = Faults()
+    for key in ("left_leg", "right_leg", "left_arm", "right_arm"):
+        joints_if_there(getattr(spec, key) or (), skeleton, place.at(key), faults)
+    if spec.head not in (None, NONE):
+        joint_if_there(spec.head, skeleton, place.at("head"), faults)
+    faults.raise_all(f"joints that {place.clip} lacks")
     legs = _limbs({"left_leg": spec.left_leg, "right_leg": spec.right_leg}, skeleton, place)
     arms = _limbs({"left_arm": spec.left_arm, "right_arm": spec.right_arm}, skeleton, place)
     head = None if spec.head is None else -1 if spec.head == NONE else joint(spec.head, skeleton, place.at("head"))
@@ -224,18 +243,23 @@ def recruited_joints(
 
     Raises
     ------
-    SpecError
-        Where the clip lacks a joint, or another joint's translation is named.
+    SpecError, MotionEditErrors
+        Where the clip lacks joints, or another joint's translation is named.
     """
-    found: list[int] = []
-    translation = False
-    for i, name in enumerate(names):
-        base, dot, ending = name.rpartition(".")
-        if not (dot and ending == "position") or name in skeleton.names:
-            found.append(joint(name, skeleton, place.at(i)))
-        elif base == "ROOT" or joint(base, skeleton, place.at(i)) in (0, travel):
-            translation = True
-        else:
-            root = skeleton.names[0]
-            raise place.at(i).error(f"only the root has a position to recruit: {root}.position, not {name}")
-    return tuple(found), translation
+    faults = Faults()
+    found = [
+        faults.get(partial(_recruited, name, skeleton, place.at(i), travel=travel), otherwise=None)
+        for i, name in enumerate(names)
+    ]
+    faults.raise_all(f"joints that {place.clip} lacks")
+    return tuple(index for index in found if index is not None), None in found
+
+
+def _recruited(name: str, skeleton: Skeleton, place: Where, *, travel: int) -> int | None:
+    """Return the index of a recruited joint, None where the root's translation is named."""
+    base, dot, ending = name.rpartition(".")
+    if not (dot and ending == "position") or name in skeleton.names:
+        return joint(name, skeleton, place)
+    if base == "ROOT" or joint(base, skeleton, place) in (0, travel):
+        return None
+    raise place.error(f"only the root has a position to recruit: {skeleton.names[0]}.position, not {name}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from motionedit.dataclass import dataclass
 from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.axes import GivenAxes
 from motionedit.jobs.clip.edit_record import DEFAULT_ANGLE_TOLERANCE, DEFAULT_TOLERANCE
+from motionedit.jobs.clip.faults import Faults
 from motionedit.jobs.edit_pc.solver import solver_tolerance
 
 if TYPE_CHECKING:
@@ -61,10 +63,11 @@ def clip_goals(
 
     Raises
     ------
-    SpecError
-        A goal names what the clip lacks.
+    SpecError, MotionEditErrors
+        Goals name what the clip lacks.
     """
     motion = facts.clip.motion
+    _refuse_unknown_joints(loaded, facts)
     least = max(DEFAULT_TOLERANCE / model.space.scale, solver_tolerance(loaded.model))
     goals = []
     for i, goal in enumerate(loaded.model.goals):
@@ -74,6 +77,17 @@ def clip_goals(
             frame = _frame_on_timeline(goal.at, frame, model, facts, events=events)
         goals.append(_clip_goal(goal, _request(goal, facts, place, frame=frame, poses=poses), least_tolerance=least))
     return goals
+
+
+def _refuse_unknown_joints(loaded: LoadedSpec[EditPcSpec], facts: ClipFacts) -> None:
+    """Raise the errors of all joints that goals name and the clip lacks."""
+    faults, skeleton = Faults(), facts.clip.motion.skeleton
+    for i, goal in enumerate(loaded.model.goals):
+        place = resolve.Place(loaded, ("goals", i), facts.clip.label)
+        faults.get(partial(resolve.effector, goal.effector, skeleton, place.at("effector")), otherwise=None)
+        if goal.relative_to is not None:
+            resolve.joint_if_there(goal.relative_to, skeleton, place.at("relative_to"), faults)
+    faults.raise_all(f"joints that {facts.clip.label} lacks")
 
 
 def _frame_on_timeline(at: Time, frame: int, model: MotionModel, facts: ClipFacts, *, events: dict[str, float]) -> int:

@@ -12,10 +12,10 @@ from motionedit.core.pca.fit import AllTheSameError, ComponentCount, TooFewCompo
 from motionedit.core.pca.model_file import model_bytes
 from motionedit.core.pca.streaming import MOST_COMPONENTS
 from motionedit.dataclass import dataclass
-from motionedit.errors import ModelError
+from motionedit.errors import ModelError, UsageError
 from motionedit.jobs.batch.files import clean_leftovers
 from motionedit.jobs.batch.one_clip import write_file
-from motionedit.jobs.batch.outputs import refuse_clashes
+from motionedit.jobs.batch.outputs import is_of_another_kind, refuse_clashes
 from motionedit.jobs.batch.pool import threads_within
 from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.kept_rules import body_said, kept_body, with_body
@@ -46,11 +46,20 @@ class Fit:
 
 
 def run(folder: Path, output: Path, loaded: LoadedSpec[FitPcaSpec] | None, options: RunOptions) -> FitReport:
-    """Fit a model to the clips that a folder's normalization.json lists, and write it; see `fit`."""
+    """Fit a model to the clips that a folder's normalization.json lists, and write it; see `fit`.
+
+    Raises
+    ------
+    UsageError
+        The output is an input, or has the name of another kind of file.
+    """
     database = database_in(folder)
     sources = [task.source for task in database.tasks]
     written = [("the model", output), ("the report", options.report)]
     refuse_clashes(written, [*sources, folder / NAME, *(() if loaded is None else loaded.files)])
+    if is_of_another_kind(output, ".npz"):
+        message = f"a model is written as .npz, not as {output.suffix}; give such a name"
+        raise UsageError(message, file=str(output))
     made = fit(database, loaded, options=options)
     clean_leftovers([output.parent])
     write_file(output, model_bytes(made.model))

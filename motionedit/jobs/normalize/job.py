@@ -12,6 +12,7 @@ from motionedit.core.timeline.alignment import align_each
 from motionedit.dataclass import dataclass, replace
 from motionedit.errors import EXIT_CLIP_FAILED, EXIT_USAGE, MotionEditError, UsageError
 from motionedit.jobs.batch.held import let_go
+from motionedit.jobs.batch.notices import Notice
 from motionedit.jobs.batch.one_clip import write_file
 from motionedit.jobs.batch.plan import find_clips, plan
 from motionedit.jobs.batch.pool import standing_crew, workers_for
@@ -205,19 +206,28 @@ def _rule(loaded: LoadedSpec[NormalizeSpec], name: str) -> dict[str, Any] | None
 
 
 def _nothing(exit_code: int) -> BatchResult:
-    return BatchResult(records=[], paths=[], warnings=[], failures=[], exit_code=exit_code)
+    return BatchResult(records=[], paths=[], notices=[], failures=[], exit_code=exit_code)
 
 
 def _failed(tasks: Sequence[ClipTask], failures: dict[str, MotionEditError]) -> BatchResult:
     """Return the result of a run that wrote nothing."""
     spec_alone = len(failures) == len(tasks) and all(e.exit_code == EXIT_USAGE for e in failures.values())
-    records = [failed_record(task, str(failures[task.label])) for task in tasks if task.label in failures]
+    records = [_failed_record(task, failures[task.label]) for task in tasks if task.label in failures]
     return replace(
         _nothing(EXIT_USAGE if spec_alone else EXIT_CLIP_FAILED),
         records=records,
-        failures=list(failures.values()),
+        failures=_one_by_one(failures),
         seconds=[0.0] * len(records),
     )
+
+
+def _failed_record(task: ClipTask, error: MotionEditError) -> dict[str, Any]:
+    return failed_record(task, "; ".join(map(str, error.errors)))
+
+
+def _one_by_one(failures: dict[str, MotionEditError]) -> list[MotionEditError]:
+    """Return the faults of clips, of which one may have several."""
+    return [fault for error in failures.values() for fault in error.errors]
 
 
 def _with_failures(
@@ -229,13 +239,13 @@ def _with_failures(
     }
     for task in tasks:
         if task.label in failures:
-            entries[task.label] = (failed_record(task, str(failures[task.label])), 0.0)
+            entries[task.label] = (_failed_record(task, failures[task.label]), 0.0)
     ordered = [entries[task.label] for task in tasks if task.label in entries]
     return replace(
         result,
         records=[record for record, _ in ordered],
         seconds=[seconds for _, seconds in ordered],
-        warnings=[*warnings, *result.warnings],
-        failures=[*failures.values(), *result.failures],
+        notices=[*map(Notice, warnings), *result.notices],
+        failures=[*_one_by_one(failures), *result.failures],
         exit_code=EXIT_CLIP_FAILED if failures else result.exit_code,
     )
