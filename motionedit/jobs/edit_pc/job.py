@@ -33,6 +33,7 @@ from motionedit.jobs.clip.kept_rules import body_said
 from motionedit.jobs.clip.metrics import edit_metrics, feet_of
 from motionedit.jobs.clip.roughness import rough_lines
 from motionedit.jobs.edit_pc.goals import clip_goals, numbers_of
+from motionedit.jobs.edit_pc.holding import edit_holding
 from motionedit.jobs.edit_pc.model_events import events_for_model, refuse_unknown_events
 from motionedit.jobs.edit_pc.record import Judged, edit_record, goal_line
 from motionedit.jobs.edit_pc.solver import chosen_solver, plausibility_bound, residual_share
@@ -174,7 +175,8 @@ class _Edit:
 
         requests, feet = [goal.request for goal in goals], spec.feet_in_force
         edit = solve(requests) if feet == "off" else edit_standing(solve, again, requests, facts, places=feet)
-        return self._outcome(facts, projection, edit, goals, before=poses, bound=bound)
+        edit, apart = (edit, []) if spec.hands_in_force == "off" else edit_holding(edit, requests, facts)
+        return self._outcome(facts, projection, edit, goals, before=poses, bound=bound, apart=apart)
 
     def _feet(
         self,
@@ -228,6 +230,7 @@ class _Edit:
         *,
         before: WorldPoses,
         bound: float | None,
+        apart: Sequence[str],
     ) -> Outcome:
         spec, motion = self.loaded.model, facts.clip.motion
         retimed = spec.timing == "normalized"
@@ -235,7 +238,8 @@ class _Edit:
         after = kinematics.forward(edit.motion) if changed else before
         traces = (feet_of(facts, [facts.poses]), None if retimed else feet_of(facts, [after]))
         steps = None if retimed else change_steps(motion, edit.motion, first=facts.first)
-        odd, rough = unexplained(projection, self.model, seconds=projection.seconds)
+        odd, strange = unexplained(projection, self.model, seconds=projection.seconds)
+        rough: list[str] = [*strange, *apart]
         if traces[1] is not None and steps is not None and changed:
             rough += rough_lines(
                 facts,
