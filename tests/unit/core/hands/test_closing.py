@@ -1,0 +1,125 @@
+"""Hands together again after one arm was moved: a golf swing whose right shoulder is turned."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from motionedit.core import kinematics
+from motionedit.core import rotations as rot
+from motionedit.core.body.bends import find_bends
+from motionedit.core.body.find_anatomy import anatomy_of
+from motionedit.core.bvh import read_clip
+from motionedit.core.hands.closing import close_grips
+from motionedit.core.motion import Motion
+from motionedit.dataclass import replace
+
+SWING = Path(__file__).resolve().parents[4] / "data" / "golf" / "swing04.bvh"
+HIT = 85
+
+
+class Swing:
+    def __init__(self):
+        self.motion = read_clip(SWING).motion
+        self.anatomy = anatomy_of(self.motion)
+        self.poses = kinematics.forward(self.motion)
+        self.bends = find_bends(self.motion.skeleton, self.poses, self.anatomy, first=0)
+        self.left, self.right = self.anatomy.arms
+
+    def turned(self, degrees, arm=None, frames=slice(None)):
+        """Return the swing with a shoulder turned about its own axis y, as much in all frames."""
+        rotations = self.motion.rotations.copy()
+        turn = rot.exp(np.radians([0.0, degrees, 0.0]))
+        joint = (arm or self.right).shoulder
+        rotations[frames, joint] = rot.multiply(rotations[frames, joint], turn)
+        return Motion(self.motion.skeleton, rotations, self.motion.translations, self.motion.frame_time)
+
+    def close(self, edited, *, grips=((0, 120),), goals=((), ())):
+        return close_grips(edited, self.motion, grips, self.anatomy, self.bends, goals=goals)
+
+    def seen(self, motion):
+        """Return where the right hand is in the left hand's frame, and how it is turned."""
+        poses = kinematics.forward(motion)
+        left, right = self.left.wrist, self.right.wrist
+        place = rot.unrotate(poses.rotations[:, left], poses.positions[:, right] - poses.positions[:, left])
+        return place, rot.between(poses.rotations[:, left], poses.rotations[:, right])
+
+
+@pytest.fixture(scope="module")
+def swing():
+    return Swing()
+
+
+def joints_of(arm):
+    return {arm.shoulder, arm.elbow, arm.wrist}
+
+
+@pytest.mark.parametrize("arm", ["left", "right"])
+def test_hands_are_as_they_were_and_nothing_but_the_arms_is_turned(swing, arm):
+    edited = swing.turned(6.0, getattr(swing, arm))
+    place, turn = swing.seen(swing.motion)
+    assert np.linalg.norm(swing.seen(edited)[0] - place, axis=1).mean() > 2.0
+    closed = swing.close(edited)
+    now, turned = swing.seen(closed.motion)
+    assert np.linalg.norm(now - place, axis=1).max() < 0.3  # cm, where an arm is straight
+    assert np.median(np.linalg.norm(now - place, axis=1)) < 1e-6
+    assert np.degrees(rot.angle_between(turned, turn)).max() < 1e-5
+    assert closed.off == pytest.approx(np.linalg.norm(now - place, axis=1), abs=1e-9)
+    others = [j for j in range(len(edited.skeleton)) if j not in joints_of(swing.left) | joints_of(swing.right)]
+    assert np.array_equal(closed.motion.rotations[:, others], edited.rotations[:, others])
+    assert not closed.touched[:, others].any()
+
+
+def test_a_hand_with_a_goal_stays_where_the_edit_put_it_and_both_give_way_elsewhere(swing):
+    edited = swing.turned(6.0)
+    before = kinematics.forward(edited)
+    for goals, kept in ((([], [HIT]), swing.right), (([HIT], []), swing.left)):
+        after = kinematics.forward(swing.close(edited, goals=goals).motion)
+        moved = np.linalg.norm(after.positions - before.positions, axis=2)
+        assert moved[HIT, kept.wrist] < 1e-9
+        assert moved[20, swing.left.wrist] > 0.5
+        assert moved[20, swing.right.wrist] > 0.5
+    both = swing.close(edited, goals=([HIT], [HIT]))
+    assert np.array_equal(both.motion.rotations[HIT], edited.rotations[HIT])
+    assert both.off[HIT] > 2.0
+
+
+def test_beside_a_grip_the_correction_eases_and_ends(swing):
+    edited = swing.turned(6.0)
+    closed = swing.close(edited, grips=((40, 80),))
+    assert closed.touched[40:81].any(axis=1).all()
+    assert not closed.touched[:35].any()
+    assert not closed.touched[86:].any()
+    steps = np.degrees(rot.angle_between(closed.motion.rotations, edited.rotations))[:, swing.right.shoulder]
+    assert 0.0 < steps[38] < steps[40]
+    assert not closed.off[:40].any()
+
+
+def test_an_edit_that_leaves_the_grip_alone_is_left_alone(swing):
+    closed = swing.close(swing.motion)
+    assert not closed.touched.any()
+    assert np.array_equal(closed.motion.rotations, swing.motion.rotations)
+
+
+def test_hands_that_are_taken_far_apart_stay_so(swing):
+    edited = swing.turned(120.0)
+    closed = swing.close(edited)
+    assert closed.off.max() > 55.0
+    assert np.array_equal(closed.motion.rotations, edited.rotations)
+
+
+def test_a_smooth_edit_stays_smooth(swing):
+    def jerk(motion):
+        return np.sqrt(np.mean(np.diff(kinematics.forward(motion).positions, 3, axis=0) ** 2))
+
+    closed = swing.close(swing.turned(6.0), goals=([], [HIT]))
+    assert jerk(closed.motion) < 1.1 * jerk(swing.motion)
+
+
+def test_arms_whose_joints_do_not_turn_freely_are_left_alone(swing):
+    motion = swing.motion
+    channels = list(motion.skeleton.channels)
+    channels[swing.right.elbow] = channels[swing.right.elbow][:1]
+    skeleton = replace(motion.skeleton, channels=tuple(channels))
+    bound = Motion(skeleton, motion.rotations, motion.translations, motion.frame_time)
+    assert close_grips(bound, bound, ((0, 120),), swing.anatomy, swing.bends, goals=((), ())) is None
