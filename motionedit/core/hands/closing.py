@@ -19,13 +19,14 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
     from motionedit.core.arrays import BoolArray, FloatArray
-    from motionedit.core.body.anatomy import Anatomy
+    from motionedit.core.body.anatomy import Anatomy, Leg
     from motionedit.core.body.bends import Bend
     from motionedit.core.feet.knees import Knee
     from motionedit.core.kinematics import WorldPoses
 
-# Seconds: about a frame with a goal for one hand the other goes all the way, and half of it that far from it.
-_FADE = 0.15
+_FADE = 0.3  # seconds: about a frame with a goal for one hand the other goes all the way
+# Of an arm's length: a straight arm gives way by so much of what one does that is bent as far as an arm can be.
+_LEAST_SLACK = 1e-3
 _EASE = 0.2  # seconds before and after a grip in which hands come together and part
 # Metres at leg length 0.85 m by which an edit takes hands apart: up to the first they are brought together again,
 # beyond the second arms would be thrown about for it.
@@ -77,9 +78,9 @@ def close_grips(
 ) -> Closed | None:
     """Return an edited motion whose hands are as far apart, and turned so, as the reference's, wherever they grip.
 
-    Both arms give way alike; near a frame with a goal for one hand the other one does. Of an arm that is too short the
-    hand stays behind, and the arm nearly straight; hands that an edit takes far apart stay so. None where arms cannot
-    be turned freely.
+    The arm that the reference has bent further gives way the more, for a straight one leads a swing and has no choice;
+    near a frame with a goal for one hand the other one does. Of an arm that is too short the hand stays behind, and the
+    arm nearly straight; hands that an edit takes far apart stay so. None where arms cannot be turned freely.
 
     Parameters
     ----------
@@ -101,7 +102,8 @@ def close_grips(
     mine = [_pose_of(now, arm.ankle) for arm in arms]
     seen = theirs[1].of(theirs[0])
     free = [1.0 - _nearness(frames, len(edited), edited.frame_time) for frames in goals]
-    together = mine[0].towards(mine[1].to(seen), free[0] / np.maximum(free[0] + free[1], np.finfo(float).tiny))
+    left, right = (each * _slack(before, arm) for each, arm in zip(free, arms, strict=True))
+    together = mine[0].towards(mine[1].to(seen), left / np.maximum(left + right, np.finfo(float).tiny))
     wanted = [together, together.to(theirs[0].of(theirs[1]))]
     gap = rot.length(mine[1].of(mine[0]).place - seen.place) * (STANDARD_LEG / anatomy.leg_length)
     gripped = _gripped(grips, len(edited), edited.frame_time)
@@ -119,9 +121,17 @@ def close_grips(
     rotations = np.where(touched[..., None], closed.rotations, edited.rotations)
     motion = Motion(edited.skeleton, frozen(rotations), edited.translations, edited.frame_time)
     after = forward(motion)
-    left, right = (_pose_of(after, arm.ankle) for arm in arms)
-    off = rot.length(right.of(left).place - seen.place)
+    hands = [_pose_of(after, arm.ankle) for arm in arms]
+    off = rot.length(hands[1].of(hands[0]).place - seen.place)
     return Closed(motion, touched, np.where(gripped == 1.0, off, 0.0))
+
+
+def _slack(poses: WorldPoses, arm: Leg) -> FloatArray:
+    """Return how far an arm is from straight, a share of its length, shape (F,); never 0."""
+    shoulder, elbow, wrist = (poses.positions[:, j] for j in (arm.thigh, arm.knee, arm.ankle))
+    length = rot.length(elbow - shoulder) + rot.length(wrist - elbow)
+    slack: FloatArray = np.maximum(1.0 - rot.length(wrist - shoulder) / length, _LEAST_SLACK)
+    return slack
 
 
 def _pose_of(poses: WorldPoses, joint: int) -> Pose:
@@ -129,7 +139,7 @@ def _pose_of(poses: WorldPoses, joint: int) -> Pose:
 
 
 def _nearness(frames: Collection[int], count: int, frame_time: float) -> FloatArray:
-    """Return how near each frame is to one of some, shape (count,): 1 there, and nothing half a second away."""
+    """Return how near each frame is to one of some, shape (count,): 1 there, and nothing a second away."""
     if not frames:
         return np.zeros(count)
     apart = np.abs(np.arange(count)[:, None] - np.array(sorted(frames))).min(axis=1)

@@ -70,15 +70,16 @@ def test_hands_are_as_they_were_and_nothing_but_the_arms_is_turned(swing, arm):
     assert not closed.touched[:, others].any()
 
 
-def test_a_hand_with_a_goal_stays_where_the_edit_put_it_and_both_give_way_elsewhere(swing):
+def test_a_hand_with_a_goal_stays_where_the_edit_put_it_and_elsewhere_the_bent_arm_gives_way(swing):
     edited = swing.turned(6.0)
     before = kinematics.forward(edited)
-    for goals, kept in ((([], [HIT]), swing.right), (([HIT], []), swing.left)):
+    for goals, kept, gives in ((([], [HIT]), swing.right, swing.left), (([HIT], []), swing.left, swing.right)):
         after = kinematics.forward(swing.close(edited, goals=goals).motion)
         moved = np.linalg.norm(after.positions - before.positions, axis=2)
         assert moved[HIT, kept.wrist] < 1e-9
-        assert moved[20, swing.left.wrist] > 0.5
-        assert moved[20, swing.right.wrist] > 0.5
+        assert moved[HIT, gives.wrist] > 1.0
+        # Far from it the left arm, which is straight, leads.
+        assert moved[20, swing.right.wrist] > 2.0 * moved[20, swing.left.wrist] > 0.0
     both = swing.close(edited, goals=([HIT], [HIT]))
     assert np.array_equal(both.motion.rotations[HIT], edited.rotations[HIT])
     assert both.off[HIT] > 2.0
@@ -113,7 +114,7 @@ def test_a_smooth_edit_stays_smooth(swing):
         return np.sqrt(np.mean(np.diff(kinematics.forward(motion).positions, 3, axis=0) ** 2))
 
     closed = swing.close(swing.turned(6.0), goals=([], [HIT]))
-    assert jerk(closed.motion) < 1.1 * jerk(swing.motion)
+    assert jerk(closed.motion) < 1.2 * jerk(swing.motion)
 
 
 def test_arms_whose_joints_do_not_turn_freely_are_left_alone(swing):
