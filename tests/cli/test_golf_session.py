@@ -208,7 +208,7 @@ def test_a_clip_from_standard_input_goes_to_standard_output(run, golf, data, tmp
 
 
 def slips(golf, clip, **spec):
-    """Return by how much the left hand moves on the right hand's grip, cm, shape (F,), and the edit's status."""
+    """Return by how much the left hand moves on the right hand's grip, cm, shape (F,), and the edit's record."""
     edit = golf.edit(clip, [0, 0, 10], **spec)
     places = []
     for path in (clip, edit.path):
@@ -217,17 +217,21 @@ def slips(golf, clip, **spec):
         left, right = names.index("LeftHand"), names.index("RightHand")
         apart = poses.positions[:, left] - poses.positions[:, right]
         places.append(rotations.unrotate(poses.rotations[:, right], apart))
-    return np.linalg.norm(places[1] - places[0], axis=1), edit.record["status"]
+    return np.linalg.norm(places[1] - places[0], axis=1), edit.record
 
 
 def test_both_hands_stay_on_the_club_unless_they_are_let_go(golf):
     for swing in golf.swings:
-        slipped, status = slips(golf, swing)
+        slipped, record = slips(golf, swing)
         assert slipped.max() < 3.0
         assert np.median(slipped) < 1e-3
-        assert status in ("ok", "rough")
-    slipped, _ = slips(golf, golf.swings[9], hands="off")
+        assert record["status"] in ("ok", "rough")
+        last = len(read_clip(swing).motion) - 1
+        assert record["hands"]["grips"] == [{"first_frame": 0, "last_frame": last}]
+        assert record["hands"]["apart_max"] == pytest.approx(slipped.max(), abs=1e-3)
+    slipped, record = slips(golf, golf.swings[9], hands="off")
     assert slipped.max() > 20.0
+    assert record["hands"] is None
 
 
 def test_shifts_in_the_heading_frame_are_the_characters_own(run, golf, data, tmp_path):

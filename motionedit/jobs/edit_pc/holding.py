@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from motionedit.core.body.bends import find_bends
 from motionedit.core.hands.closing import close_grips
 from motionedit.core.hands.grips import find_grips
 from motionedit.core.units import STANDARD_LEG
-from motionedit.dataclass import replace
+from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,30 +23,46 @@ if TYPE_CHECKING:
 _SEEN = 0.03
 
 
-def edit_holding(
-    edit: CoefficientEdit, requests: Sequence[GoalRequest], facts: ClipFacts
-) -> tuple[CoefficientEdit, list[str]]:
-    """Return an edit whose hands are together where the clip's hold one thing, and what of that a viewer would see."""
+@dataclass(frozen=True, eq=False)
+class Holding:
+    """An edit whose hands hold what they held.
+
+    Attributes
+    ----------
+    edit : CoefficientEdit
+    record : dict or None
+        What the report says of the hands; None where nothing was looked for.
+    rough : tuple of str
+        What of it a viewer would see.
+    """
+
+    edit: CoefficientEdit
+    record: dict[str, Any] | None = None
+    rough: tuple[str, ...] = ()
+
+
+def edit_holding(edit: CoefficientEdit, requests: Sequence[GoalRequest], facts: ClipFacts) -> Holding:
+    """Return an edit whose hands are together where the clip's hold one thing."""
     motion, anatomy = facts.clip.motion, facts.anatomy
     if anatomy.arms is None or not (edit.touched.any() or edit.moved.any()):
-        return edit, []
+        return Holding(edit)
     grips = find_grips(facts.poses, anatomy, frame_time=motion.frame_time, first=facts.first)
-    if not grips:
-        return edit, []
-    bends = find_bends(motion.skeleton, facts.poses, anatomy, first=facts.first)
+    bends = find_bends(motion.skeleton, facts.poses, anatomy, first=facts.first) if grips else ()
     left, right = ({each.frame for each in requests if _is_about(each, arm.shoulder, facts)} for arm in anatomy.arms)
-    closed = close_grips(edit.motion, motion, grips, anatomy, bends, goals=(left, right))
+    closed = close_grips(edit.motion, motion, grips, anatomy, bends, goals=(left, right)) if grips else None
     if closed is None:
-        return edit, []
+        return Holding(edit, {"grips": [], "apart_max": None})
     worst = int(np.argmax(closed.off))
-    seen = _SEEN * anatomy.leg_length / STANDARD_LEG
-    rough = []
-    if closed.off[worst] > seen:
-        rough.append(
-            f"hands that hold one thing come apart by {closed.off[worst]:.3g} at frame {worst}: farther than the arms "
-            f"bring them back ({seen:.3g} would be seen)"
-        )
-    return replace(edit, motion=closed.motion, touched=edit.touched | closed.touched), rough
+    apart, seen = float(closed.off[worst]), _SEEN * anatomy.leg_length / STANDARD_LEG
+    line = (
+        f"hands that hold one thing come apart by {apart:.3g} at frame {worst}: farther than the arms bring them back "
+        f"({seen:.3g} would be seen)"
+    )
+    return Holding(
+        replace(edit, motion=closed.motion, touched=edit.touched | closed.touched),
+        {"grips": [{"first_frame": a, "last_frame": b} for a, b in grips], "apart_max": apart},
+        (line,) if apart > seen else (),
+    )
 
 
 def _is_about(request: GoalRequest, shoulder: int, facts: ClipFacts) -> bool:
