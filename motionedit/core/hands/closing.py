@@ -33,6 +33,7 @@ _EASE = 0.2  # seconds before and after a grip in which hands come together and 
 _BROUGHT, _LEFT = 0.35, 0.55
 # Of an arm: so near to its full length it does not go all the way, for there a millimetre is a centimetre at the elbow.
 _STRAIGHT = 0.01
+_TINY = float(np.finfo(float).tiny)  # what is divided by in place of 0
 _ROUNDING = 1e-12  # of quaternions: an arm that is turned by no more stays as it is, to the bit
 
 
@@ -103,7 +104,7 @@ def close_grips(
     seen = theirs[1].of(theirs[0])
     free = [1.0 - _nearness(frames, len(edited), edited.frame_time) for frames in goals]
     left, right = (each * _slack(before, arm) for each, arm in zip(free, arms, strict=True))
-    together = mine[0].towards(mine[1].to(seen), left / np.maximum(left + right, np.finfo(float).tiny))
+    together = mine[0].towards(mine[1].to(seen), left / np.maximum(left + right, _TINY))
     wanted = [together, together.to(theirs[0].of(theirs[1]))]
     gap = rot.length(mine[1].of(mine[0]).place - seen.place) * (STANDARD_LEG / anatomy.leg_length)
     gripped = _gripped(grips, len(edited), edited.frame_time)
@@ -130,7 +131,7 @@ def _slack(poses: WorldPoses, arm: Leg) -> FloatArray:
     """Return how far an arm is from straight, a share of its length, shape (F,); never 0."""
     shoulder, elbow, wrist = (poses.positions[:, j] for j in (arm.thigh, arm.knee, arm.ankle))
     length = rot.length(elbow - shoulder) + rot.length(wrist - elbow)
-    slack: FloatArray = np.maximum(1.0 - rot.length(wrist - shoulder) / length, _LEAST_SLACK)
+    slack: FloatArray = np.maximum(1.0 - rot.length(wrist - shoulder) / np.maximum(length, _TINY), _LEAST_SLACK)
     return slack
 
 
@@ -168,10 +169,10 @@ def _smooth_step(share: FloatArray | float) -> FloatArray:
 
 def _within_reach(knee: Knee, shoulder: FloatArray, own: FloatArray, place: FloatArray) -> FloatArray:
     """Return places (F, 3) as far from the shoulder as the arm goes: the last of the way to straight eases."""
-    longest = knee.way(np.zeros(len(own)))
+    longest = np.maximum(knee.way(np.zeros(len(own))), _TINY)
     way, before = rot.length(place - shoulder), rot.length(own - shoulder)
     reached = before + longest * (_eased(way / longest) - _eased(before / longest))
-    share = np.minimum(reached, longest) / np.maximum(way, np.finfo(float).tiny)
+    share = np.minimum(reached, longest) / np.maximum(way, _TINY)
     return shoulder + share[:, None] * (place - shoulder)
 
 

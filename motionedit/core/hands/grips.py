@@ -33,7 +33,7 @@ def find_grips(poses: WorldPoses, anatomy: Anatomy, *, frame_time: float, first:
     first : int
         Frames before it are a rest pose.
     """
-    if anatomy.arms is None or len(poses.positions) - first < 2:
+    if anatomy.arms is None or anatomy.leg_length <= 0.0 or len(poses.positions) - first < 2:
         return ()
     left, right = (arm.wrist for arm in anatomy.arms)
     unit = anatomy.leg_length / STANDARD_LEG

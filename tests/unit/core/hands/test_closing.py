@@ -124,3 +124,16 @@ def test_arms_whose_joints_do_not_turn_freely_are_left_alone(swing):
     skeleton = replace(motion.skeleton, channels=tuple(channels))
     bound = Motion(skeleton, motion.rotations, motion.translations, motion.frame_time)
     assert close_grips(bound, bound, ((0, 120),), swing.anatomy, swing.bends, goals=((), ())) is None
+
+
+def test_arms_without_length_stay_where_they_are(swing):
+    offsets = swing.motion.skeleton.offsets.copy()
+    for arm in (swing.left, swing.right):
+        offsets[[arm.elbow, arm.wrist]] = 0.0
+    skeleton = replace(swing.motion.skeleton, offsets=offsets)
+    short, edited = (
+        Motion(skeleton, m.rotations, m.translations, m.frame_time) for m in (swing.motion, swing.turned(6.0))
+    )
+    with np.errstate(all="raise", under="ignore"):
+        closed = close_grips(edited, short, ((0, 120),), swing.anatomy, swing.bends, goals=((), ()))
+    assert np.isfinite(closed.motion.rotations).all()

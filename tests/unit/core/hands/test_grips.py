@@ -11,6 +11,7 @@ from motionedit.core.body.find_anatomy import anatomy_of
 from motionedit.core.bvh import read_clip
 from motionedit.core.hands.grips import find_grips
 from motionedit.core.kinematics import WorldPoses
+from motionedit.dataclass import replace
 
 DATA = Path(__file__).resolve().parents[4] / "data"
 
@@ -55,10 +56,10 @@ def test_hands_that_pass_by_hold_nothing(speed, held):
     assert bool(grips("golf/swing04.bvh", moved=sway[:, None] * [0.0, 1.0, 0.0])) == held
 
 
-def test_a_body_without_arms_holds_nothing():
-    motion, anatomy, poses = body("walk.bvh")
-    bare = type(anatomy)(**{**vars(anatomy), "arms": None})
-    assert find_grips(poses, bare, frame_time=motion.frame_time, first=0) == ()
+@pytest.mark.parametrize("lacking", [{"arms": None}, {"leg_length": 0.0}])
+def test_a_body_without_arms_or_without_size_holds_nothing(lacking):
+    motion, anatomy, poses = body("golf/swing04.bvh")
+    assert find_grips(poses, replace(anatomy, **lacking), frame_time=motion.frame_time, first=0) == ()
 
 
 def test_a_body_of_any_size_and_turn_holds_the_same():
