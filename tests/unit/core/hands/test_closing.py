@@ -85,6 +85,51 @@ def test_a_hand_with_a_goal_stays_where_the_edit_put_it_and_elsewhere_the_bent_a
     assert both.off[HIT] > 2.0
 
 
+def test_the_hand_without_a_goal_goes_all_the_way_at_it_and_its_share_fades_within_a_second(swing):
+    edited = swing.turned(6.0)
+    before = kinematics.forward(edited)
+    far, near = (
+        kinematics.forward(swing.close(edited, goals=([], frames)).motion).positions[:, swing.right.wrist]
+        for frames in ([], [HIT])
+    )
+    alone = np.linalg.norm(far - before.positions[:, swing.right.wrist], axis=1)
+    share = np.linalg.norm(near - before.positions[:, swing.right.wrist], axis=1) / alone
+    assert share[HIT] < 1e-9
+    assert (np.diff(share[HIT : HIT + 15]) > -1e-3).all()
+    assert 0.1 < share[HIT + 5] < 0.8  # 0.2 s
+    assert share[HIT + 25] == pytest.approx(1.0, abs=0.02)
+    assert share[HIT - 25] == pytest.approx(1.0, abs=0.02)
+
+
+def test_an_arm_comes_to_straight_gently(swing):
+    # Of a right arm that is led further and further away the elbow's angle goes down without a corner.
+    rotations = np.repeat(swing.motion.rotations[:1], 61, axis=0)
+    translations = np.repeat(swing.motion.translations[:1], 61, axis=0)
+    still = Motion(swing.motion.skeleton, rotations, translations, 0.04)
+    turned = rotations.copy()
+    turns = rot.exp(np.radians(np.linspace(0.0, -20.0, 61))[:, None] * [1.0, 0.0, 0.0])
+    turned[:, swing.left.shoulder] = rot.multiply(turned[:, swing.left.shoulder], turns)
+    edited = Motion(still.skeleton, turned, translations, 0.04)
+    poses = kinematics.forward(still)
+    bends = find_bends(still.skeleton, poses, swing.anatomy, first=0)
+    goals = (list(range(61)), [])
+    closed = close_grips(edited, still, ((0, 60),), swing.anatomy, bends, goals=goals)
+    after = kinematics.forward(closed.motion)
+    shoulder, elbow, wrist = (
+        after.positions[:, j] for j in (swing.right.shoulder, swing.right.elbow, swing.right.wrist)
+    )
+    length = np.linalg.norm(elbow - shoulder, axis=1) + np.linalg.norm(wrist - elbow, axis=1)
+    way = np.linalg.norm(wrist - shoulder, axis=1) / length
+    assert way.max() <= 1.0 + 1e-9
+    assert closed.off[-1] > 1.0  # it does not reach
+    upper, lower = elbow - shoulder, wrist - elbow
+    cosine = np.sum(upper * lower, axis=1) / (np.linalg.norm(upper, axis=1) * np.linalg.norm(lower, axis=1))
+    bent = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
+    assert bent[0] > 15.0
+    assert bent[-1] < 5.0
+    assert np.abs(np.diff(bent, 2)).max() < 1.5
+
+
 def test_beside_a_grip_the_correction_eases_and_ends(swing):
     edited = swing.turned(6.0)
     closed = swing.close(edited, grips=((40, 80),))

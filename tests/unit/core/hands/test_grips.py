@@ -37,9 +37,18 @@ def test_a_golfer_holds_the_club_all_along_and_a_walker_nothing():
     assert grips("walk.bvh") == ()
 
 
-def test_a_rest_pose_and_a_moment_are_no_grip():
+def test_a_rest_pose_is_no_grip():
     assert grips("golf/swing04.bvh", first=10) == ((10, 120),)
-    assert grips("golf/swing04.bvh", frames=slice(0, 8)) == ()  # 0.28 s
+    assert grips("golf/swing04.bvh", first=120) == ()
+
+
+@pytest.mark.parametrize(("frames", "found"), [(8, ()), (9, ((0, 8),)), (1, ())])
+def test_hands_are_together_for_three_tenths_of_a_second_at_least(frames, found):
+    assert grips("golf/swing04.bvh", frames=slice(0, frames)) == found
+    apart = np.full((121, 1), 60.0)
+    apart[100 : 100 + frames] = 0.0
+    later = tuple((first + 100, last + 100) for first, last in found)
+    assert grips("golf/swing04.bvh", moved=apart * [1.0, 0.0, 0.0]) == later
 
 
 def test_hands_that_part_have_two_grips():
@@ -48,11 +57,25 @@ def test_hands_that_part_have_two_grips():
     assert grips("golf/swing04.bvh", moved=apart * [1.0, 0.0, 0.0]) == ((0, 49), (61, 120))
 
 
-@pytest.mark.parametrize(("speed", "held"), [(0.2, True), (1.0, False)])
+@pytest.mark.parametrize(("metres", "held"), [(0.24, True), (0.26, False)])
+@pytest.mark.parametrize("size", [0.01, 1.0, 39.4])
+def test_wrists_are_within_a_quarter_of_a_metre_at_a_leg_of_85_cm(metres, held, size):
+    motion, anatomy, poses = body("golf/swing04.bvh")
+    left, right = (arm.wrist for arm in anatomy.arms)
+    positions = poses.positions.copy()
+    positions[:, left] = positions[:, right] + np.array([0.0, metres / 0.85 * anatomy.leg_length, 0.0])
+    still = np.zeros_like(poses.rotations)
+    still[..., 0] = 1.0
+    scaled = replace(anatomy, leg_length=anatomy.leg_length * size)
+    found = find_grips(WorldPoses(positions * size, still), scaled, frame_time=motion.frame_time, first=0)
+    assert bool(found) == held
+
+
+@pytest.mark.parametrize(("speed", "held"), [(0.3, True), (0.6, False)])
 def test_hands_that_pass_by_hold_nothing(speed, held):
-    # To and fro by 4 cm, metres a second on average.
-    seconds = np.arange(121) * 0.04
-    sway = 4.0 * np.sin(seconds * (speed * 100.0 / 4.0))
+    # To and fro by a few centimetres, at so many metres a second at a leg of 0.85 m.
+    _, anatomy, _ = body("golf/swing04.bvh")
+    sway = np.abs((np.arange(121) * 0.04 * speed / 0.85 * anatomy.leg_length) % 12.0 - 6.0)
     assert bool(grips("golf/swing04.bvh", moved=sway[:, None] * [0.0, 1.0, 0.0])) == held
 
 
