@@ -11,7 +11,7 @@ from motionedit.cli.options import clips_argument, jobs_option, lenient_option, 
 from motionedit.cli.verbosity import verbosity_of, verbosity_options
 
 if TYPE_CHECKING:
-    from motionedit.jobs.check import Checked
+    from motionedit.jobs.check.job import Checked
 
 
 @click.command(
@@ -54,8 +54,8 @@ def command(
     """Tell whether clips, and a spec for them, are fit for use.
 
     Prints a line for each clip: rate, frames, unit, up, what of a body was found, skating and sliding feet, feet
-    below the floor or above it, jumps, flips and rest-pose frames; with a spec also what it names and the clip lacks.
-    Several clips are counted at the end.
+    below the floor or above it, jumps, flips and rest-pose frames; with a spec also what it names and the clip lacks,
+    but for events that may be those of edit-pc's model. Several clips are counted at the end.
 
     Exits with 0; 3 where a clip passes a limit or the spec does not fit it; 1 where one cannot be read.
 
@@ -63,16 +63,18 @@ def command(
     """
     from motionedit.cli.finish import show_count, show_failures, write_report
     from motionedit.cli.words import printable, to_stdout
-    from motionedit.jobs import check
     from motionedit.jobs.batch.outputs import refuse_clashes
     from motionedit.jobs.batch.plan import find_clips
+    from motionedit.jobs.check import job as check
+    from motionedit.jobs.check.specs import spec_check
     from motionedit.report.record import report_bytes
 
     given = [task.source for task in find_clips(clips)]
     refuse_clashes([("the report", report)], [*given, spec_path, limits_file])
     held = check.limits_of(limits, limits_file)
     found: list[Checked] = []
-    for one in check.run(clips, limits=held, spec=spec_path, up=up, lenient=lenient, jobs=jobs):
+    spec = None if spec_path is None else spec_check(spec_path)
+    for one in check.run(clips, limits=held, check=spec, up=up, lenient=lenient, jobs=jobs):
         found.append(one)
         if one.line and str(report) != "-":
             to_stdout(printable(one.line))

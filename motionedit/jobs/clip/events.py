@@ -110,9 +110,9 @@ def found_events(
             raise place.at(name).error(message)
     # A rule may wait for another's event; the spec has refused rings, so each round finds at least one.
     waiting = {name: spec.detect for name, spec in specs.items() if spec.detect is not None and name not in frames}
-    effectors = _effectors(waiting, facts, place)
+    effectors = rule_effectors(waiting, facts, place)
     while waiting:
-        ready = [name for name, rule in waiting.items() if not _waits_for(rule) & waiting.keys()]
+        ready = [name for name, rule in waiting.items() if not waits_for(rule) & waiting.keys()]
         for name in ready:
             rule, where = waiting.pop(name), place.at(name).at("detect")
             windows[name] = _window(rule, facts, where, events=frames)
@@ -120,13 +120,20 @@ def found_events(
     return FoundEvents(frames, {name: windows[name] for name in specs if name in windows})
 
 
-def _waits_for(rule: DetectRule) -> set[str]:
+def waits_for(rule: DetectRule) -> set[str]:
+    """Return the events whose frames a rule needs."""
     times = [] if rule.between is None else [rule.between.start, rule.between.stop]
     return {name for name in (rule.after, *(time.event for time in times)) if name is not None}
 
 
-def _effectors(rules: Mapping[str, DetectRule], facts: ClipFacts, place: Place) -> dict[str, Effector]:
-    """Return the points that rules are about, by their events."""
+def rule_effectors(rules: Mapping[str, DetectRule], facts: ClipFacts, place: Place) -> dict[str, Effector]:
+    """Return the points that rules are about, by their events.
+
+    Raises
+    ------
+    SpecError, MotionEditErrors
+        Of all that the clip lacks.
+    """
     faults = Faults()
     found: dict[str, Effector] = {}
     for name, rule in rules.items():

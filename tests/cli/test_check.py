@@ -1,0 +1,78 @@
+"""Clips held against a spec by check: what the spec's own command would miss in them is said, and nothing else."""
+
+from pathlib import Path
+
+import pytest
+
+DATA = Path(__file__).parents[2] / "data"
+WALK, SWING = DATA / "walk.bvh", DATA / "golf" / "swing04.bvh"
+
+
+@pytest.fixture
+def held_against(run, tmp_path):
+    """Return a runner of check with a spec: a command's name, the spec's other lines, and clips (one swing)."""
+
+    def invoke(command, text, *arguments, clips=(SWING,)):
+        (tmp_path / "s.yaml").write_text(f"schema: motionedit/{command}/v1\n{text}\n")
+        return run("check", *clips, "-s", "s.yaml", *arguments)
+
+    return invoke
+
+
+@pytest.mark.parametrize(
+    ("goal", "message"),
+    [
+        ("{at: 4, effector: Fooo, shift: [0, 0, 1]}", "goals.0.effector: no joint 'Fooo' in"),
+        ("{at: 4, effector: {end_site: Hips}, shift: [0, 0, 1]}", "has no end site"),
+        ("{at: hit, effector: Head, relative_to: Bust, shift: [0, 0, 1]}", "goals.0.relative_to: no joint 'Bust' in"),
+        ("{at: 400, effector: Head, shift: [0, 0, 1]}", "goals.0.at: in"),
+        ("{at: top + 30s, effector: Head, shift: [0, 0, 1]}", "goals.0.at: in"),
+    ],
+)
+def test_a_goal_names_what_the_clip_lacks(held_against, goal, message):
+    top = "events: {top: {detect: {effector: Club, maximum_of: height}}}"
+    done = held_against("edit-pc", f"{top}\ngoals: [{goal}]")
+    assert done.exit_code == 3
+    assert message in done.stdout
+
+
+@pytest.mark.parametrize("command", ["edit-pc", "normalize"])
+def test_a_rule_watches_a_joint_that_the_clip_lacks(held_against, command):
+    rule = "events: {top: {detect: {effector: Fooo, maximum_of: height}}}"
+    done = held_against(command, rule + ("\ngoals: []" if command == "edit-pc" else ""))
+    assert done.exit_code == 3
+    assert "events.top.detect.effector: no joint 'Fooo' in" in done.stdout
+
+
+def test_every_fault_of_a_spec_is_told(held_against):
+    goals = "goals: [{at: 4, effector: Fooo, shift: [0, 0, 1]}, {at: 400, effector: Baar, shift: [0, 0, 1]}]"
+    done = held_against("edit-pc", goals)
+    for key in ("goals.0.effector", "goals.1.effector", "goals.1.at"):
+        assert f" {key}: " in done.stdout
+
+
+def test_an_event_that_the_model_may_know_is_let_pass(held_against):
+    after = "events: {late: {detect: {effector: Club, maximum_of: height, after: hit}}, other: {frames: {swing05: 9}}}"
+    goals = ", ".join(f"{{at: {name}, effector: Head, shift: [0, 0, 1]}}" for name in ("hit", "late", "other"))
+    assert held_against("edit-pc", f"{after}\ngoals: [{goals}]").exit_code == 0
+
+
+def test_an_event_of_normalize_needs_a_frame_in_every_clip(held_against):
+    done = held_against("normalize", "events: {hit: {frames: {swing04: 85}}}", clips=(SWING, DATA / "golf/swing05.bvh"))
+    assert done.exit_code == 3
+    lines = done.stdout.splitlines()
+    assert ": ok (" in lines[0]
+    assert "events.hit: no frame for" in lines[1]
+
+
+def test_joints_to_exclude_are_looked_for(held_against):
+    assert "exclude_joints.0: no joint 'Fooo'" in held_against("fit-pca", "exclude_joints: [Fooo, Club]").stdout
+    assert held_against("fit-pca", "exclude_joints: [Club]").exit_code == 0
+
+
+@pytest.mark.parametrize("jobs", ["1", "2"])
+def test_a_spec_that_fits_passes_by_workers_too(held_against, jobs):
+    rule = "events: {top: {detect: {effector: Club, maximum_of: height}}}"
+    goals = "goals: [{at: top, effector: {end_site: Club}, shift: [0, 0, 1]}]"
+    clips = (SWING, DATA / "golf" / "swing05.bvh")
+    assert held_against("edit-pc", f"{rule}\n{goals}", "-j", jobs, clips=clips).exit_code == 0
