@@ -55,7 +55,8 @@ def command(
 
     Prints a line for each clip: rate, frames, unit, up, what of a body was found, skating and sliding feet, feet
     below the floor or above it, jumps, flips and rest-pose frames; with a spec also what it names and the clip lacks,
-    but for events that may be those of edit-pc's model. Several clips are counted at the end.
+    but for events that may be those of edit-pc's model. A spec's body: and up: count for the measures. Several clips
+    are counted at the end.
 
     Exits with 0; 3 where a clip passes a limit or the spec does not fit it; 1 where one cannot be read.
 

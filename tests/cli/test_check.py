@@ -76,3 +76,22 @@ def test_a_spec_that_fits_passes_by_workers_too(held_against, jobs):
     goals = "goals: [{at: top, effector: {end_site: Club}, shift: [0, 0, 1]}]"
     clips = (SWING, DATA / "golf" / "swing05.bvh")
     assert held_against("edit-pc", f"{rule}\n{goals}", "-j", jobs, clips=clips).exit_code == 0
+
+
+SPECS = {"normalize": "", "fit-pca": "", "edit-pc": "goals: []", "edit-prioritized": "constraints: []"}
+
+
+@pytest.mark.parametrize("command", SPECS)
+def test_clips_are_measured_by_the_body_and_the_up_that_the_spec_gives(held_against, command):
+    done = held_against(command, f"{SPECS[command]}\nbody: {{left_arm: none, right_arm: none}}\nup: z")
+    assert done.exit_code == 0
+    assert "; z up; legs, head; " in done.stdout
+    assert "; y up; " in held_against(command, f"{SPECS[command]}\nup: z", "--up", "y").stdout
+
+
+@pytest.mark.parametrize("command", SPECS)
+def test_a_body_that_the_clip_lacks_is_told_once_and_the_clip_measured(held_against, command):
+    done = held_against(command, f"{SPECS[command]}\nbody: {{head: Skul}}")
+    assert done.exit_code == 3
+    assert done.stdout.count("body.head: no joint 'Skul'") == 1
+    assert "; legs, arms, head; " in done.stdout

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from motionedit.core.blocks import blocks_of
 from motionedit.core.body import ground
+from motionedit.core.body.anatomy import NOTHING_GIVEN
 from motionedit.core.body.quality import find_defects
 from motionedit.core.body.steps import own_steps
 from motionedit.dataclass import dataclass, replace
@@ -15,6 +16,7 @@ from motionedit.errors import EXIT_CLIP_FAILED, EXIT_DONE, EXIT_OUT_OF_TOLERANCE
 from motionedit.jobs.batch.one_clip import read_task
 from motionedit.jobs.batch.plan import find_clips
 from motionedit.jobs.clip.facts import facts_of
+from motionedit.jobs.clip.faults import Faults
 from motionedit.jobs.clip.metrics import clip_metrics, feet_of
 from motionedit.jobs.info.job import likely_unit
 from motionedit.regular_files import read_file
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
+    from motionedit.core.bvh import Clip
     from motionedit.jobs.batch.plan import ClipTask
     from motionedit.jobs.check.specs import SpecCheck
     from motionedit.jobs.clip.facts import ClipFacts
@@ -132,14 +135,17 @@ def exit_code(found: Sequence[Checked]) -> int:
 def _checked(
     task: ClipTask, *, limits: Mapping[str, float], check: SpecCheck | None, up: str, lenient: bool
 ) -> Checked:
+    lacking = Faults()
     try:
         clip = read_task(task, lenient=lenient)
-        facts = facts_of(clip, up=up)
+        facts = _facts(clip, task, check, lacking, up=up)
     except MotionEditError as error:
         return Checked({"clip": task.label, "status": "failed", "message": str(error)}, "", error)
+    if check is not None:
+        lacking.get(partial(check.refuse_lacking, facts, task), otherwise=None)
     measures = _measures(facts)
     passed = [name for name, limit in limits.items() if measures[name] > limit]
-    errors = [] if check is None else check.errors(facts, task)
+    errors = [str(error) for error in lacking.errors]
     reasons = [f"{name} {measures[name]:.4g} above {limits[name]:.4g}" for name in passed] + errors
     record = {
         "clip": task.label,
@@ -155,6 +161,14 @@ def _checked(
         "warnings": [*clip.warnings, *facts.warnings, *facts.anatomy.missing],
     }
     return Checked(record, _line(record))
+
+
+def _facts(clip: Clip, task: ClipTask, check: SpecCheck | None, lacking: Faults, *, up: str) -> ClipFacts:
+    """Return a clip's facts by the body and the up axis that a spec gives; joints that it lacks go to `lacking`."""
+    if check is None:
+        return facts_of(clip, up=up)
+    given = lacking.get(partial(check.body_in, clip, task), otherwise=NOTHING_GIVEN)
+    return facts_of(clip, up=check.loaded.model.up if up == "auto" else up, given=given)
 
 
 def _measures(facts: ClipFacts) -> dict[str, float]:

@@ -6,13 +6,13 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from motionedit.dataclass import dataclass, replace
-from motionedit.errors import MotionEditError
 from motionedit.jobs.clip import resolve
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
+    from motionedit.core.body.anatomy import GivenBody
     from motionedit.core.bvh import Clip
     from motionedit.jobs.batch.plan import ClipTask
     from motionedit.jobs.clip.facts import ClipFacts
@@ -27,19 +27,32 @@ class SpecCheck:
     loaded: LoadedSpec[Any]
     others: tuple[str, ...] = ()
 
-    def errors(self, facts: ClipFacts, task: ClipTask) -> list[str]:
-        """Return what the spec names and the clip lacks, a line each."""
+    def body_in(self, clip: Clip, task: ClipTask) -> GivenBody:
+        """Return what the spec says that joints of a clip are.
+
+        Raises
+        ------
+        SpecError, MotionEditErrors
+            The clip lacks them.
+        """
+        place = resolve.Place(self.loaded, ("body",), task.label)
+        return resolve.body(self.loaded.model.body, clip.motion.skeleton, place)
+
+    def refuse_lacking(self, facts: ClipFacts, task: ClipTask) -> None:
+        """Raise the errors of all that the spec names and the clip lacks.
+
+        Raises
+        ------
+        MotionEditError
+            As the spec's own command.
+        """
         holds: dict[str, Callable[[], None]] = {
             "normalize": partial(self._measure, facts.clip, task),
             "fit-pca": partial(self._exclude, facts.clip, task),
             "edit-pc": partial(self._place_goals, facts, task),
             "edit-prioritized": partial(self._place_constraints, facts.clip, task),
         }
-        try:
-            holds[self.command]()
-        except MotionEditError as error:
-            return [str(each) for each in error.errors]
-        return []
+        holds[self.command]()
 
     def _measure(self, clip: Clip, task: ClipTask) -> None:
         from motionedit.jobs.normalize.measures import MeasureClip
