@@ -84,5 +84,8 @@ def command(
     statuses = [one.record["status"] for one in found]
     show_count(statuses, exit_code=exit_code, verbosity=verbosity_of(click.get_current_context()))
     if report is not None:
-        write_report(report_bytes("check", [one.record for one in found]), report)
+        write_report(
+            report_bytes("check", [one.record for one in found], spec=None if spec is None else spec.loaded.data),
+            report,
+        )
     return exit_code

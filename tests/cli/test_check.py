@@ -1,5 +1,6 @@
 """Clips held against a spec by check: what the spec's own command would miss in them is said, and nothing else."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -95,3 +96,12 @@ def test_a_body_that_the_clip_lacks_is_told_once_and_the_clip_measured(held_agai
     assert done.exit_code == 3
     assert done.stdout.count("body.head: no joint 'Skul'") == 1
     assert "; legs, arms, head; " in done.stdout
+
+
+def test_the_report_has_the_spec_that_clips_are_held_against(held_against, run, tmp_path):
+    held_against("edit-pc", "goals: [{at: 4, effector: Fooo, shift: [0, 0, 1]}]", "--report", "r.json")
+    spec = json.loads((tmp_path / "r.json").read_text())["spec"]
+    goal = {"at": 4, "effector": "Fooo", "shift": [0, 0, 1]}
+    assert spec == {"schema": "motionedit/edit-pc/v1", "goals": [goal]}
+    run("check", SWING, "--report", "r.json")
+    assert json.loads((tmp_path / "r.json").read_text())["spec"] is None
