@@ -7,11 +7,19 @@ from typing import TYPE_CHECKING
 
 import click
 
-from motionedit.cli.options import clips_argument, jobs_option, lenient_option, report_option, spec_option, up_option
+from motionedit.cli.options import (
+    clips_argument,
+    jobs_option,
+    lenient_option,
+    spec_option,
+    test_report_option,
+    up_option,
+)
 from motionedit.cli.verbosity import verbosity_of, verbosity_options
 
 if TYPE_CHECKING:
     from motionedit.jobs.check.job import Checked
+    from motionedit.report.junit import Problem
 
 
 @click.command(
@@ -39,7 +47,7 @@ if TYPE_CHECKING:
 @jobs_option
 @up_option
 @lenient_option
-@report_option
+@test_report_option
 @verbosity_options
 def command(
     clips: tuple[Path, ...],
@@ -62,13 +70,12 @@ def command(
 
     CLIPS are BVH files, folders of them, or '-' for standard input.
     """
-    from motionedit.cli.finish import show_count, show_failures, write_report
+    from motionedit.cli.finish import show_count, show_failures, write_tests
     from motionedit.cli.words import printable, to_stdout
     from motionedit.jobs.batch.outputs import refuse_clashes
     from motionedit.jobs.batch.plan import find_clips
     from motionedit.jobs.check import job as check
     from motionedit.jobs.check.specs import spec_check
-    from motionedit.report.record import report_bytes
 
     given = [task.source for task in find_clips(clips)]
     refuse_clashes([("the report", report)], [*given, spec_path, limits_file])
@@ -84,8 +91,7 @@ def command(
     statuses = [one.record["status"] for one in found]
     show_count(statuses, exit_code=exit_code, verbosity=verbosity_of(click.get_current_context()))
     if report is not None:
-        write_report(
-            report_bytes("check", [one.record for one in found], spec=None if spec is None else spec.loaded.data),
-            report,
-        )
+        problems: dict[str, Problem] = {"unfit": "failure", "failed": "error"}
+        data = None if spec is None else spec.loaded.data
+        write_tests("check", [one.record for one in found], report, problems=problems, spec=data)
     return exit_code

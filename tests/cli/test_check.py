@@ -1,6 +1,7 @@
 """Clips held against a spec by check: what the spec's own command would miss in them is said, and nothing else."""
 
 import json
+import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import pytest
@@ -105,3 +106,33 @@ def test_the_report_has_the_spec_that_clips_are_held_against(held_against, run, 
     assert spec == {"schema": "motionedit/edit-pc/v1", "goals": [goal]}
     run("check", SWING, "--report", "r.json")
     assert json.loads((tmp_path / "r.json").read_text())["spec"] is None
+
+
+def test_a_report_named_xml_is_junit(held_against, tmp_path):
+    (tmp_path / "cut.bvh").write_text("HIERARCHY\n")
+    clips = (SWING, DATA / "golf" / "swing05.bvh", "cut.bvh")
+    spec = "events: {hit: {frames: {swing04: 85}}}"
+    assert held_against("normalize", spec, "--report", "r.xml", clips=clips).exit_code == 1
+    suite = ET.parse(tmp_path / "r.xml").getroot()[0]  # noqa: S314  written a line above
+    assert [[child.tag for child in case] for case in suite] == [[], ["failure"], ["error"]]
+    assert suite.get("name") == "motionedit check"
+    assert "events.hit: no frame for" in suite[1][0].get("message")
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("normalize", SWING, "-s", "s.yaml", "-o", "n"),
+        ("fit-pca", "n", "-o", "m.npz"),
+        ("edit-pc", SWING, "-m", "s.yaml", "-s", "s.yaml", "-o", "o.bvh"),
+        ("edit-prioritized", SWING, "-s", "s.yaml", "-o", "o.bvh"),
+        ("info", SWING),
+    ],
+    ids=lambda arguments: arguments[0],
+)
+def test_a_command_without_junit_refuses_its_name(run, tmp_path, arguments):
+    (tmp_path / "s.yaml").write_text("schema: motionedit/edit-prioritized/v1\nconstraints: []\n")
+    done = run(*arguments, "--report", "b.XML")
+    assert done.exit_code == 2
+    assert "b.XML would be JSON; check and diff alone write JUnit: name it b.json" in done.stderr
+    assert not (tmp_path / "o.bvh").exists()
