@@ -18,13 +18,16 @@ from motionedit.jobs.clip.faults import Faults
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
+    from motionedit.core.bvh import Clip
     from motionedit.core.kinematics import Effector
+    from motionedit.core.motion import Motion
     from motionedit.core.skeleton import Skeleton
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.jobs.clip.resolve import Place
     from motionedit.spec.document import Document
     from motionedit.spec.events import DetectRule, EventSpec
     from motionedit.spec.load import LoadedSpec
+    from motionedit.spec.times import Time
 
 
 _QUANTITIES: dict[str, Quantity] = {"height": "height", "speed": "speed", "distance": "distance"}
@@ -34,8 +37,10 @@ _NO_NAMES = frozenset(("", "."))
 _EFFECTORS: LastFew[Effector] = LastFew(16)
 
 
-def explicit_events(loaded: LoadedSpec[Document], relative: str, *, others: Collection[str] = ()) -> dict[str, float]:
-    """Return the frames that the spec itself gives for a clip's events.
+def explicit_events(
+    loaded: LoadedSpec[Document], clip: Clip, *, relative: str, others: Collection[str] = ()
+) -> dict[str, float]:
+    """Return the frames that the spec itself gives for a clip's events, or the times.
 
     Parameters
     ----------
@@ -47,21 +52,25 @@ def explicit_events(loaded: LoadedSpec[Document], relative: str, *, others: Coll
     Raises
     ------
     SpecError
-        Where a stem is not unique.
+        Where a stem is not unique, or a time is outside the clip.
     """
     found: dict[str, float] = {}
     for name, event in loaded.model.events.items():
         if event.frames is None:
             continue
-        value = event.frames.every
+        value, place = event.frames.every, resolve.Place(loaded, ("events", name), clip.label)
         if value is None:
-            place = resolve.Place(loaded, ("events", name, "frames"), relative)
-            key = _clip_key(event.frames.by_clip, relative, others, place)
+            by_clip = event.frames.by_clip
+            key = _clip_key(by_clip, relative, others, resolve.Place(loaded, (*place.keys, "frames"), relative))
             if key is None:
                 continue
-            value = event.frames.by_clip[key]
-        found[name] = float(value)
+            value, place = by_clip[key], place.at("frames", key)
+        found[name] = float(value if isinstance(value, int) else _frame(value, clip.motion, place))
     return found
+
+
+def _frame(time: Time, motion: Motion, place: Place) -> int:
+    return resolve.frame(time, place, frames=len(motion), frame_time=motion.frame_time, events={})
 
 
 def event_frames(
@@ -189,7 +198,7 @@ def _window(rule: DetectRule, facts: ClipFacts, place: Place, *, events: Mapping
     return min(max(start, facts.first), stop), stop
 
 
-def _clip_key(by_clip: Mapping[str, int], relative: str, others: Collection[str], place: Place) -> str | None:
+def _clip_key(by_clip: Mapping[str, object], relative: str, others: Collection[str], place: Place) -> str | None:
     """Return the key that means a clip: its path or its name, each with or without .bvh."""
     path = _posix(relative)
     keys = _keys_by_path(tuple(by_clip))

@@ -60,7 +60,7 @@ def events_for_model(
     SpecError
         As `event_frames`.
     """
-    known = explicit_events(loaded, task.relative, others=others)
+    known = explicit_events(loaded, facts.clip, relative=task.relative, others=others)
     place = resolve.Place(loaded, ("events",), task.label)
     rules = dict(loaded.model.events)
     database = _database_events(model, facts, task)

@@ -35,7 +35,9 @@ def refuse_lacking(loaded: LoadedSpec[EditPcSpec], facts: ClipFacts, task: ClipT
     # Whether a rest pose counts is the model's rule.
     facts = replace(facts, first=0)
     place = resolve.Place(loaded, ("events",), task.label)
-    known = faults.get(partial(explicit_events, loaded, task.relative, others=others), otherwise=none)
+    known = faults.get(
+        partial(explicit_events, loaded, facts.clip, relative=task.relative, others=others), otherwise=none
+    )
     rules = {name: event.detect for name, event in loaded.model.events.items() if event.detect and name not in known}
     faults.get(partial(rule_effectors, rules, facts, place), otherwise=None)
     own = _found_alone(loaded.model.events, known)

@@ -172,7 +172,7 @@ class EditByPriorities:
         none: dict[str, float] = {}
 
         def frames() -> dict[str, float]:
-            known = explicit_events(self.loaded, task.relative, others=self.others)
+            known = explicit_events(self.loaded, sized.facts.clip, relative=task.relative, others=self.others)
             return event_frames(spec.events, sized.facts, place, known=known)
 
         events = faults.get(frames, otherwise=none)
