@@ -27,3 +27,20 @@ def test_a_goal_that_is_missed_as_it_begins_within_a_rest_pose_says_so(edit, res
     assert from_the_rest.record["message"].endswith(SMOOTHED + BEGINS)
     from_the_take = edit([hand({"during": [1, 30], **raised}, tolerance=0.1, recruit={"levels": 3})], clip=rested)
     assert from_the_take.record["status"] == "ok"
+
+
+def test_a_rest_pose_that_is_moved_is_warned_of_once_and_one_that_is_left_is_not(edit, rested):
+    box = {"name": "box", "type": "distance", "effector": "LeftHand", "to": "RightHand", "priority": 5}
+    moved = edit([{**box, "points": [{"hold": [0, "100%"], "distance": 32}]}], clip=rested)
+    (warning,) = [line for line in moved.warnings if "rest pose" in line]
+    assert "the rest pose, frame 0, is moved by " in warning
+    assert warning.endswith(": points of box begin within it; begin at frame 1 to leave it")
+    for points in ([{"hold": [1, "100%"], "distance": 32}], [{"during": ["0%", "100%"], "at_least": 20}]):
+        left = edit([{**box, "points": points}], clip=rested)
+        assert not [line for line in left.warnings if "rest pose, frame 0, is moved" in line], points
+
+
+def test_a_rest_pose_that_a_constraint_without_points_moves_is_warned_of(edit, rested):
+    floor = {"type": "floor", "effector": "all", "height": 30}
+    assert "is moved by" in "".join(edit([floor], clip=rested).warnings)
+    assert "constraints without points take it in; begin at frame 1" in "".join(edit([floor], clip=rested).warnings)
