@@ -40,7 +40,7 @@ def test_a_rest_pose_that_is_moved_is_warned_of_once_and_one_that_is_left_is_not
         assert not [line for line in left.warnings if "rest pose, frame 0, is moved" in line], points
 
 
-def test_a_rest_pose_that_a_constraint_without_points_moves_is_warned_of(edit, rested):
-    floor = {"type": "floor", "effector": "all", "height": 30}
-    assert "is moved by" in "".join(edit([floor], clip=rested).warnings)
-    assert "constraints without points take it in; begin at frame 1" in "".join(edit([floor], clip=rested).warnings)
+def test_a_rest_pose_that_a_floor_lifts_with_all_else_is_not_warned_of(edit, rested):
+    assert "is moved by" not in "".join(
+        edit([{"type": "floor", "effector": "all", "height": 30}], clip=rested).warnings
+    )

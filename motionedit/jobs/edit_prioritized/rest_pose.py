@@ -32,7 +32,9 @@ def rest_pose_words(first: int) -> str:
 def moved_rest_pose(
     before: Motion, after: Motion, constraints: Sequence[Constraint], *, first: int, scale: float
 ) -> list[str]:
-    """Return a warning where an edit moves the rest pose, with the constraints whose points begin within it.
+    """Return a warning where constraints whose points begin within the rest pose move it.
+
+    What has no points, such as a floor, takes it in as it does the whole clip.
 
     Parameters
     ----------
@@ -41,13 +43,13 @@ def moved_rest_pose(
     first : int
         The first frame of the take.
     """
-    if not first:
+    names = [each.name for each in constraints if begins_within(each, first)]
+    if not names:
         return []
     rest = slice(first)
     places = [kinematics.forward(motion.at(rest)).positions for motion in (before, after)]
     way = float(np.max(rot.length(places[1] - places[0])))
     if way <= _MOVED:
         return []
-    names = [each.name for each in constraints if begins_within(each, first)]
-    who = f"points of {', '.join(names)} begin within it" if names else "constraints without points take it in"
+    who = f"points of {', '.join(names)} begin within it"
     return [f"{rest_pose_words(first)}, is moved by {way / scale:.3g}: {who}; begin at frame {first} to leave it"]
