@@ -64,6 +64,8 @@ def test_a_foot_in_the_air_goes_where_another_constraint_puts_it(edit):
     after, record = edit([FEET, {**kick, "points": [{"at": middle, "shift": [0, 8, 0]}]}], clip=WALK)
     assert drift(after, before.phases) < 0.01
     assert record["constraints"][-1]["error_max"] < 0.01
+    # As docs/feet.md has it: the foot is left to the kick between two stretches.
+    assert [each["name"] for each in record["constraints"]] == ["feet", "feet-stretch-2", "feet-2", "LeftFoot"]
 
 
 def test_plants_stand_where_the_reference_has_them(edit):

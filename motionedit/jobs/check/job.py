@@ -8,13 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 from motionedit.core.blocks import blocks_of
 from motionedit.core.body import ground
+from motionedit.core.body.anatomy import NOTHING_GIVEN
 from motionedit.core.body.quality import find_defects
 from motionedit.core.body.steps import own_steps
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 from motionedit.errors import EXIT_CLIP_FAILED, EXIT_DONE, EXIT_OUT_OF_TOLERANCE, MotionEditError, UsageError
 from motionedit.jobs.batch.one_clip import read_task
 from motionedit.jobs.batch.plan import find_clips
 from motionedit.jobs.clip.facts import facts_of
+from motionedit.jobs.clip.faults import Faults
 from motionedit.jobs.clip.metrics import clip_metrics, feet_of
 from motionedit.jobs.info.job import likely_unit
 from motionedit.regular_files import read_file
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
 
     from motionedit.core.bvh import Clip
     from motionedit.jobs.batch.plan import ClipTask
+    from motionedit.jobs.check.specs import SpecCheck
     from motionedit.jobs.clip.facts import ClipFacts
 
 # What a limit may be set on, each with its words; a clip passes it where its measure is larger.
@@ -96,7 +99,7 @@ def run(
     clips: Sequence[Path],
     *,
     limits: Mapping[str, float],
-    spec: Path | None = None,
+    check: SpecCheck | None = None,
     up: str = "auto",
     lenient: bool = False,
     jobs: int = 1,
@@ -107,11 +110,10 @@ def run(
     ------
     UsageError
         No clip at all.
-    MotionEditError
-        A spec that is faulty whatever the clip.
     """
     tasks = find_clips(clips)
-    check = None if spec is None else _spec_check(spec, tuple(task.relative for task in tasks))
+    if check is not None:
+        check = replace(check, others=tuple(task.relative for task in tasks))
     one = partial(_checked, limits=dict(limits), check=check, up=up, lenient=lenient)
     if jobs == 1 or len(tasks) < 2:
         yield from map(one, tasks)
@@ -131,16 +133,19 @@ def exit_code(found: Sequence[Checked]) -> int:
 
 
 def _checked(
-    task: ClipTask, *, limits: Mapping[str, float], check: _SpecCheck | None, up: str, lenient: bool
+    task: ClipTask, *, limits: Mapping[str, float], check: SpecCheck | None, up: str, lenient: bool
 ) -> Checked:
+    lacking = Faults()
     try:
         clip = read_task(task, lenient=lenient)
-        facts = facts_of(clip, up=up)
+        facts = _facts(clip, task, check, lacking, up=up)
     except MotionEditError as error:
         return Checked({"clip": task.label, "status": "failed", "message": str(error)}, "", error)
+    if check is not None:
+        lacking.get(partial(check.refuse_lacking, facts, task), otherwise=None)
     measures = _measures(facts)
     passed = [name for name, limit in limits.items() if measures[name] > limit]
-    errors = [] if check is None else check.errors(clip, task)
+    errors = [str(error) for error in lacking.errors]
     reasons = [f"{name} {measures[name]:.4g} above {limits[name]:.4g}" for name in passed] + errors
     record = {
         "clip": task.label,
@@ -156,6 +161,14 @@ def _checked(
         "warnings": [*clip.warnings, *facts.warnings, *facts.anatomy.missing],
     }
     return Checked(record, _line(record))
+
+
+def _facts(clip: Clip, task: ClipTask, check: SpecCheck | None, lacking: Faults, *, up: str) -> ClipFacts:
+    """Return a clip's facts by the body and the up axis that a spec gives; joints that it lacks go to `lacking`."""
+    if check is None:
+        return facts_of(clip, up=up)
+    given = lacking.get(partial(check.body_in, clip, task), otherwise=NOTHING_GIVEN)
+    return facts_of(clip, up=check.loaded.model.up if up == "auto" else up, given=given)
 
 
 def _measures(facts: ClipFacts) -> dict[str, float]:
@@ -196,41 +209,3 @@ def _line(record: Mapping[str, Any]) -> str:
     ]
     reasons = f": {record['message']}" if record["message"] else ""
     return f"{record['clip']}: {record['status']}{reasons} ({'; '.join(words)})"
-
-
-@dataclass(frozen=True)
-class _SpecCheck:
-    """A spec of edit-prioritized that clips are held against; of other commands it is read, and that is all."""
-
-    spec: Path
-    command: str
-    others: tuple[str, ...]
-
-    def errors(self, clip: Clip, task: ClipTask) -> list[str]:
-        """Return what the spec names and the clip lacks, a line each."""
-        if self.command != "edit-prioritized":
-            return []
-        from motionedit.jobs.edit_prioritized.job import EditByPriorities
-        from motionedit.spec.load import load_spec
-
-        try:
-            EditByPriorities(load_spec(self.spec, "edit-prioritized"), self.others).resolved(clip, task)
-        except MotionEditError as error:
-            return [str(each) for each in error.errors]
-        return []
-
-
-def _spec_check(spec: Path, others: tuple[str, ...]) -> _SpecCheck:
-    """Return what holds clips against a spec, which is read whole.
-
-    Raises
-    ------
-    MotionEditError
-        Its faults.
-    """
-    from motionedit.spec import SPEC_COMMANDS
-    from motionedit.spec.load import load_spec, spec_command
-
-    command = spec_command(spec, SPEC_COMMANDS)
-    load_spec(spec, command)  # type: ignore[call-overload]  # one of them
-    return _SpecCheck(spec, command, others)
