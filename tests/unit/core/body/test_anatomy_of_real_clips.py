@@ -164,6 +164,15 @@ def test_knees_and_elbows_are_hinges_also_where_a_clip_turns_them_as_balls(name)
         assert hinge.limits[0] <= np.radians(3.0) < np.radians(150.0) <= hinge.limits[1]
 
 
+# One of them turns its elbows all the way round.
+@pytest.mark.parametrize("name", [name for name in CLIPS if "Files" not in name])
+def test_no_limb_of_a_clip_bends_far_to_its_other_side(name):
+    found = facts(name)
+    names = found.clip.motion.skeleton.names
+    far = {names[hinge.joint]: np.degrees(hinge.limits[0]) for hinge in hinges_of(found)}
+    assert {joint: back for joint, back in far.items() if back < -20.0} == {}
+
+
 @pytest.mark.parametrize("name", [name for name in CLIPS if re.search(r"cmu_(63|13|12|131|02|03|07)_", name)])
 def test_knees_of_a_skeleton_that_was_solved_with_hinges_turn_about_the_axis_that_was_found(name):
     found = facts(name)
