@@ -76,7 +76,7 @@ def find_bends(skeleton: Skeleton, poses: WorldPoses, anatomy: Anatomy, *, first
     front = cache(lambda: _front(poses, anatomy))
 
     def backward(leg: Leg) -> FloatArray | None:
-        toes = _toes(poses, leg)
+        toes = way_to_toes(poses, leg)
         forward = front() if toes is None else toes
         return None if forward is None else -forward
 
@@ -183,6 +183,14 @@ def directions_of(poses: WorldPoses, triples: IntArray, *, first: int) -> FloatA
     return directions
 
 
+def way_to_toes(poses: WorldPoses, leg: Leg) -> FloatArray | None:
+    """Return the way from the ankle to the toe, shape (F, 3); None where nothing shows it."""
+    if leg.toe is not None:
+        forward: FloatArray = poses.positions[:, leg.toe] - poses.positions[:, leg.ankle]
+        return forward
+    return None if leg.tip is None else rot.rotate(poses.rotations[:, leg.ankle], np.array(leg.tip))
+
+
 def _sides(
     poses: WorldPoses, limbs: NDArray[np.int64], towards: Sequence[_Towards], first: int
 ) -> tuple[FloatArray, FloatArray]:
@@ -214,14 +222,6 @@ def _sides(
     return sines, np.where(other[:, None], of_clear, sums)
 
 
-def _toes(poses: WorldPoses, leg: Leg) -> FloatArray | None:
-    """Return the way from the ankle to the toe, shape (F, 3)."""
-    if leg.toe is not None:
-        forward: FloatArray = poses.positions[:, leg.toe] - poses.positions[:, leg.ankle]
-        return forward
-    return None if leg.tip is None else rot.rotate(poses.rotations[:, leg.ankle], np.array(leg.tip))
-
-
 def _front(poses: WorldPoses, anatomy: Anatomy) -> FloatArray | None:
     """Return where the body's front is, left x up of its trunk, shape (F, 3)."""
     legs, arms = anatomy.legs, anatomy.arms
@@ -229,7 +229,7 @@ def _front(poses: WorldPoses, anatomy: Anatomy) -> FloatArray | None:
         return None
     shoulders = [poses.positions[:, arm.shoulder] for arm in arms]
     hips = [poses.positions[:, leg.thigh] for leg in legs]
-    across = shoulders[0] - shoulders[1]
+    across = shoulders[1] - shoulders[0] if anatomy.mirrored else shoulders[0] - shoulders[1]
     trunk = shoulders[0] + shoulders[1] - hips[0] - hips[1]
     front: FloatArray = rot.cross(across, trunk)
     return front

@@ -14,12 +14,15 @@ import pytest
 import yaml
 
 from motionedit.core import rotations as rot
+from motionedit.core.body.anatomy import NOTHING_GIVEN
 from motionedit.core.body.bends import find_bends
 from motionedit.core.body.contacts import foot_plants
 from motionedit.core.body.ground import axis_name
 from motionedit.core.body.hinges import find_hinges
+from motionedit.core.body.mirrored import as_it_points
 from motionedit.core.body.quality import find_defects
 from motionedit.core.bvh import read_clip
+from motionedit.dataclass import replace
 from motionedit.jobs.clip.facts import facts_of
 
 FOLDER = Path(os.environ.get("MOTIONEDIT_CLIPS", ""))
@@ -146,6 +149,16 @@ def test_toes_point_forward(name):
         toes = sum(places[leg.toe] - places[leg.ankle] for leg in found.anatomy.legs)
         ahead.append(toes @ found.heading_frame(frame).axes[2] / np.linalg.norm(toes))
     assert np.median(ahead) > 0.5
+
+
+# In one pose of one file a leg is straight and has no toe: nothing shows where it points.
+@pytest.mark.parametrize("name", [name for name in CLIPS if name not in WITHOUT_LEGS and "tpose" not in name])
+def test_a_body_whose_left_is_on_the_right_is_found_and_no_other(name):
+    found = facts(name)
+    left, right = found.anatomy.legs
+    exchanged = replace(found.anatomy, legs=(right, left))
+    for anatomy, mirrored in ((found.anatomy, False), (exchanged, True)):
+        assert as_it_points(anatomy, found.poses, first=found.first, given=NOTHING_GIVEN).mirrored == mirrored
 
 
 def hinges_of(found):
