@@ -75,10 +75,10 @@ class Anatomy:
         Thigh to ankle, the sum of bones, mean of both sides, clip units; half the height where there are no legs.
     height : float
         The longest path between two ends, along the bones, clip units.
-    mirrored : bool
-        Whether what is called left is on the right in the clip: the heading is the other way round.
     warnings : tuple of str
         What no edit can do well without, and was not found, each a line for the user.
+    mirrored : bool
+        Whether what is called left is on the right in the clip: the heading is the other way round.
     """
 
     legs: tuple[Leg, Leg] | None

@@ -33,7 +33,7 @@ WRITTEN = yaml.safe_load(Path(__file__).with_name("bodies_of_real_clips.yaml").r
 BODIES, CLIPS = WRITTEN["bodies"], WRITTEN["clips"]
 WITH_PLANTS = [name for name, clip in CLIPS.items() if "plants" in clip]
 WITHOUT_LEGS = [name for name, clip in CLIPS.items() if BODIES[clip["body"]]["left_leg"] is None]
-NO_LEGS = ("no legs found: half the height stands for the leg length",)
+NO_LEGS = ("no legs found: half the height stands for the leg length; body: in a spec says which joints are the legs",)
 
 # Where a border is written down to a few frames, so many seconds on both sides of it say nothing.
 BORDER = 0.035
