@@ -229,7 +229,7 @@ class FootplantsConstraint(_Timeless):
         kinds.word("input", "path"),
         default="input",
         description="input: plants stay where they are; path: each moves and turns, as a whole, where positions asked "
-        "of the root take it, and the body turns with the path.",
+        "of the root take it, along the axes that count, and the body turns with the path.",
     )
 
 

@@ -198,7 +198,10 @@ class EditPrioritizedSpec(Document):
         description="What shall hold, and how important it is; [] changes nothing.",
     )
     masses: dict[str, float] = spec_key(
-        MASSES, default={}, description="Kilograms by joint; default: an anthropometric table laid on the skeleton."
+        MASSES,
+        default={},
+        description="Kilograms by joint: they replace the whole table, so a joint that is not listed weighs nothing; "
+        "default: an anthropometric table laid on the skeleton.",
     )
     hinges: str | tuple[str, ...] = spec_key(
         kinds.or_off(kinds.either(("auto", "off"), kinds.JOINTS)),

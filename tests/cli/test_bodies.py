@@ -86,6 +86,51 @@ def test_a_spec_says_which_joint_is_what(run, write, tmp_path):
     np.testing.assert_allclose(moved[1], [0.0, 10.0, -10.0], atol=0.01)
 
 
+def mirrored(motion):
+    """Return a motion with x negated, and the names as they were: left is on the right."""
+    flip = np.array([-1.0, 1.0, 1.0])
+    offsets = motion.skeleton.offsets * flip
+    sites = tuple(replace(site, offset=site.offset * flip) for site in motion.skeleton.end_sites)
+    skeleton = replace(motion.skeleton, offsets=offsets, end_sites=sites)
+    rotations = motion.rotations * np.array([1.0, 1.0, -1.0, -1.0])
+    return Motion(skeleton, rotations, motion.translations * flip, motion.frame_time)
+
+
+def test_a_body_whose_left_is_on_the_right_goes_where_its_toes_point_and_is_warned_about(run, write, tmp_path):
+    clip = write("mirrored.bvh", mirrored(person()))
+    warning = "what is taken for left is on the right, as toes and knees point"
+    for command in ("info", "check"):
+        _, entry = record(run, command, clip)
+        assert [line.startswith(warning) for line in entry["warnings"]] == [True]
+    assert "heading     0 degrees" in run("info", clip).stdout.replace("-0 ", "0 ")
+    reach = {
+        "type": "position",
+        "effector": "LeftHand",
+        "frame": "heading",
+        "points": [{"at": 20, "shift": [3, 10, 10]}],
+    }
+    done = run("edit-prioritized", clip, "-s", spec(tmp_path, reach), "-o", "out.bvh")
+    assert warning in done.stderr
+    assert "swap left and right in the names" in done.stderr
+    tracks = [forward(read_clip(Path(path)).motion).positions for path in (clip, "out.bvh")]
+    moved = (tracks[1] - tracks[0])[20, read_clip(clip).motion.skeleton.names.index("LeftHand")]
+    np.testing.assert_allclose(moved, [3.0, 10.0, 10.0], atol=0.01)
+
+
+@pytest.mark.parametrize("exchanged", [True, False])
+def test_body_says_which_limbs_are_left_and_a_warning_that_toes_point_back(run, write, tmp_path, exchanged):
+    clip = write("mirrored.bvh", mirrored(person()))
+    left, right = ("Right", "Left") if exchanged else ("Left", "Right")
+    body = {
+        f"{side}_leg": [f"{name}{part}" for part in ("UpLeg", "Leg", "Foot")]
+        for side, name in (("left", left), ("right", right))
+    }
+    done = run("edit-prioritized", clip, "-s", spec(tmp_path, body=body), "-o", "out.bvh")
+    assert done.exit_code == 0
+    assert ("body: calls left what is on the right" in done.stderr) != exchanged
+    assert "what is taken for left" not in done.stderr
+
+
 @pytest.mark.parametrize(
     ("body", "message"),
     [

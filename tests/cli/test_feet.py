@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import motionedit
+from motionedit.core import rotations as rot
 from motionedit.core.body.contacts import sole_tracks
 from motionedit.core.kinematics import forward
 from motionedit.jobs.clip.facts import facts_of
@@ -102,6 +103,78 @@ def test_plants_go_with_the_path_as_a_whole(edit):
     assert np.median(moved[..., 0]) == pytest.approx(20.0)
     assert np.abs(moved - [20.0, 0.0, 0.0]).max() < 2.0
     assert record["metrics"]["after"]["jerk_rms"] < 1.15 * record["metrics"]["before"]["jerk_rms"]
+
+
+def moved_aside(edit, *ways):
+    """Return how far the joints go, shape (F, J, 3), where the root is asked to go and the feet follow the path."""
+    way = {"type": "position", "effector": "Hips", "priority": 5}
+    after, record = edit([{**FEET, "at": "path"}, *({**way, **each} for each in ways)], clip=WALK)
+    before = facts_of(motionedit.read(WALK))
+    assert drift(after, before.phases) < 0.01
+    assert record["status"] == "ok"
+    return after.poses.positions - before.poses.positions
+
+
+ASIDE = {"points": [{"during": ["0%", "100%"], "shift": [20, -6, 10]}]}
+
+
+@pytest.mark.parametrize(
+    ("more", "shift"),
+    [
+        ({"axes": ["x", "z"]}, [20.0, 0.0, 10.0]),
+        ({"axes": ["x"]}, [20.0, 0.0, 0.0]),
+        # The walk goes along +z: left is +x.
+        ({"axes": ["z"], "frame": "heading"}, [0.0, 0.0, 10.0]),
+        ({"axes": ["x", "z"], "effector": {"joint": "Hips", "offset": [0, 10, 5]}}, [20.0, 0.0, 10.0]),
+    ],
+)
+def test_plants_follow_the_axes_that_count_and_points_of_the_root(edit, more, shift):
+    moved = moved_aside(edit, {**ASIDE, **more})
+    assert np.median(moved, axis=(0, 1)) == pytest.approx(shift, abs=0.5)
+    assert np.abs(moved - shift).max() < 2.0
+
+
+def test_axes_of_several_positions_add_up_and_the_same_axis_is_taken_once(edit):
+    one, other = {**ASIDE, "axes": ["x"]}, {**ASIDE, "axes": ["z"]}
+    assert np.abs(moved_aside(edit, one, other) - [20.0, 0.0, 10.0]).max() < 2.0
+    assert np.abs(moved_aside(edit, one, one, other) - [20.0, 0.0, 10.0]).max() < 2.0
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        {"type": "position", "effector": "Spine", "points": [{"at": 72, "shift": [5, 0, 0]}]},
+        {"type": "position", "effector": "Hips", "relative_to": "LeftFoot"},
+        {"type": "com", "points": [{"at": 72, "shift": [5, 0, 0]}]},
+        {"type": "orientation", "effector": "Hips"},
+    ],
+)
+def test_where_nothing_takes_the_root_along_a_warning_says_that_the_path_follows_nothing(run, tmp_path, other):
+    for at in ("path", "input"):
+        spec = {"schema": "motionedit/edit-prioritized/v1", "constraints": [{**FEET, "at": at}, other]}
+        (tmp_path / "s.yaml").write_text(json.dumps(spec))
+        done = run("edit-prioritized", WALK, "-s", "s.yaml", "-o", f"{at}.bvh")
+        told = [line for line in done.stderr.splitlines() if "at: path follows nothing" in line]
+        assert len(told) == (at == "path")
+        assert all("ask for a position of Hips" in line for line in told)
+
+
+def test_a_body_turns_about_the_point_of_the_root_that_is_asked_to_go_somewhere(edit):
+    # A point half a metre ahead of the hips goes around a bend: as a rigid body, hips and feet go with it.
+    before = facts_of(motionedit.read(WALK))
+    hips, offset = before.travel, np.array([0.0, 0.0, 50.0])
+    point = before.poses.positions[:, hips] + rot.rotate(before.poses.rotations[:, hips], offset)
+    angle = np.radians(40.0)
+    turn = np.array([[np.cos(angle), 0.0, np.sin(angle)], [0.0, 1.0, 0.0], [-np.sin(angle), 0.0, np.cos(angle)]])
+    shifts = (point - point[0]) @ (turn - np.eye(3)).T
+    points = [{"at": frame, "shift": shifts[frame].tolist()} for frame in range(0, 145, 12)]
+    way = {"type": "position", "effector": {"joint": "Hips", "offset": offset.tolist()}, "priority": 5}
+    after, _ = edit([{**FEET, "at": "path"}, {**way, "points": points}], clip=WALK)
+    rigid = (before.poses.positions - point[0]) @ turn.T + point[0]
+    # The ends of a path leave and meet the input's own direction.
+    off = np.linalg.norm(after.poses.positions - rigid, axis=2)[24:-24]
+    assert np.median(off) < 3.0
+    assert off.max() < 20.0
 
 
 def test_feet_and_body_turn_with_a_path_that_turns(edit):

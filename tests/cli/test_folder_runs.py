@@ -11,7 +11,7 @@ from motionedit.jobs.batch.one_clip import Done, Outcome
 from motionedit.jobs.batch.plan import ClipTask
 
 FAR = {"type": "position", "effector": "LeftForeArm", "points": [{"at": 4, "shift": [0, 900, 0]}], "tolerance": 0.1}
-NO_LEGS = "no legs found: half the height stands for the leg length"
+NO_LEGS = "no legs found: half the height stands for the leg length; body: in a spec says which joints are the legs"
 
 
 @pytest.fixture

@@ -9,6 +9,7 @@ from prioritized_edits import ARM_ONLY, DATA, FEET_AS_CAPTURED, RAISED, WALK, ha
 from motionedit.core import rotations as rot
 from motionedit.core.bvh import new_bytes, read_clip
 from motionedit.core.motion import scaled
+from motionedit.spec import schema_of
 from studies.lab import effector_path
 
 
@@ -53,6 +54,10 @@ def test_masses_given_in_kilograms_move_the_balance(edit):
     before, after = (effector_path(path, "Head") for path in (WALK, done.path))
     assert (after - before)[66:73, 0].min() > 2.5
     assert done.constraint("com")["status"] == "ok"
+    found = done.path.read_bytes()
+    assert edit([FEET_AS_CAPTURED, com], masses={"Head": 5, "Hips": 0, "LeftArm": 0}).path.read_bytes() == found
+    described = schema_of("edit-prioritized")["properties"]["masses"]["description"]
+    assert "a joint that is not listed weighs nothing" in described
 
 
 def test_the_settings_of_the_spec_reach_the_solver(edit):

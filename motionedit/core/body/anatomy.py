@@ -82,6 +82,8 @@ class Anatomy:
         The longest path between two ends, along the bones, clip units.
     warnings : tuple of str
         What no edit can do well without, and was not found, each a line for the user.
+    mirrored : bool
+        Whether what is called left is on the right in the clip: the heading is the other way round.
     """
 
     legs: tuple[Leg, Leg] | None
@@ -93,6 +95,7 @@ class Anatomy:
     leg_length: float
     height: float
     warnings: tuple[str, ...]
+    mirrored: bool = False
 
     @property
     def missing(self) -> tuple[str, ...]:

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     _Towards = Callable[[], FloatArray | None]
 
 _BENT = float(np.sin(np.radians(2.0)))  # a limb bent by more than this shows to which side it bends
+_CLEAR = float(np.sin(np.radians(15.0)))  # further no elbow and no knee gives way to its other side
+_GLITCH = 2  # so few frames show nothing by themselves
 _STRAIGHT = float(np.sin(np.radians(0.2)))  # a limb bent by less than this hardly shortens when it bends
 
 _BLOCK_POSES = 1 << 13
@@ -63,8 +65,9 @@ class Bend:
 def find_bends(skeleton: Skeleton, poses: WorldPoses, anatomy: Anatomy, *, first: int) -> tuple[Bend, ...]:
     """Return the bends of knees and elbows, left before right, knees first.
 
-    A limb bends as it does in the clip's own frames from `first` on. One that is always straight bends as bodies do:
-    knees to the toes' side, elbows so that the hands come to the front.
+    A limb bends as it does in the clip's own frames from `first` on: in all where it is bent at all, but where those
+    in which it is clearly bent say otherwise, these count alone. One that is always straight bends as bodies do: knees
+    to the toes' side, elbows so that the hands come to the front.
     """
     limbs = _limbs_of(skeleton, anatomy)
     found = _bends_at_once(poses, limbs, first)
@@ -73,7 +76,7 @@ def find_bends(skeleton: Skeleton, poses: WorldPoses, anatomy: Anatomy, *, first
     front = cache(lambda: _front(poses, anatomy))
 
     def backward(leg: Leg) -> FloatArray | None:
-        toes = _toes(poses, leg)
+        toes = way_to_toes(poses, leg)
         forward = front() if toes is None else toes
         return None if forward is None else -forward
 
@@ -101,7 +104,8 @@ def _bends_at_once(poses: WorldPoses, limbs: NDArray[np.int64], first: int) -> t
     straight, turns = np.empty((count, frames), dtype=np.bool_), np.empty((2, count, frames))
     axes, bones, lower = np.empty((count, 3)), np.empty((count, 2, 3)), np.empty((frames, count, 3))
     given = np.ascontiguousarray(poses.positions), np.ascontiguousarray(poses.rotations), frames, joints, first
-    if not kernel.bends(*given, limbs, count, _BENT, _STRAIGHT, straight, axes, bones, lower, turns):
+    bounds = _BENT, _CLEAR, _STRAIGHT, _GLITCH
+    if not kernel.bends(*given, limbs, count, *bounds, straight, axes, bones, lower, turns):
         return None
     angles = np.arctan2(turns[0], turns[1] - _along(axes, bones[:, 0], lower))
     return _rows_of(limbs[:, 1], axes, straight, bones, angles[:, first:])
@@ -179,12 +183,22 @@ def directions_of(poses: WorldPoses, triples: IntArray, *, first: int) -> FloatA
     return directions
 
 
+def way_to_toes(poses: WorldPoses, leg: Leg) -> FloatArray | None:
+    """Return the way from the ankle to the toe, shape (F, 3); None where nothing shows it."""
+    if leg.toe is not None:
+        forward: FloatArray = poses.positions[:, leg.toe] - poses.positions[:, leg.ankle]
+        return forward
+    return None if leg.tip is None else rot.rotate(poses.rotations[:, leg.ankle], np.array(leg.tip))
+
+
 def _sides(
     poses: WorldPoses, limbs: NDArray[np.int64], towards: Sequence[_Towards], first: int
 ) -> tuple[FloatArray, FloatArray]:
     """Return the sines by which n limbs are bent, shape (F, n), and the sums of the axes about which they are, (n, 3).
 
     An axis is upper x lower of a limb's unit bones, in the frame of its joint's parent, which has the sine's length.
+    An elbow that hangs all but straight for long gives way to its other side by a little: however many such frames,
+    those in which it is clearly bent go before them.
     """
     tops, joints, ends, parents = limbs.T
     upper, lower = (poses.positions[:, b] - poses.positions[:, a] for a, b in ((tops, joints), (joints, ends)))
@@ -199,15 +213,13 @@ def _sides(
             sides[:, i], bent[:, i] = rot.cross(lower[:, i], side), True
     own = rot.unrotate(poses.rotations[:, parents], sides)
     own[~bent] = 0.0
-    return sines, own.sum(axis=0)
-
-
-def _toes(poses: WorldPoses, leg: Leg) -> FloatArray | None:
-    """Return the way from the ankle to the toe, shape (F, 3)."""
-    if leg.toe is not None:
-        forward: FloatArray = poses.positions[:, leg.toe] - poses.positions[:, leg.ankle]
-        return forward
-    return None if leg.tip is None else rot.rotate(poses.rotations[:, leg.ankle], np.array(leg.tip))
+    sums: FloatArray = own.sum(axis=0)
+    clear = sines > _CLEAR
+    clear[:first] = False
+    own[~clear] = 0.0
+    of_clear = own.sum(axis=0)
+    other = (clear.sum(axis=0) > _GLITCH) & (rot.dot(of_clear, sums) < 0.0)
+    return sines, np.where(other[:, None], of_clear, sums)
 
 
 def _front(poses: WorldPoses, anatomy: Anatomy) -> FloatArray | None:
@@ -217,7 +229,7 @@ def _front(poses: WorldPoses, anatomy: Anatomy) -> FloatArray | None:
         return None
     shoulders = [poses.positions[:, arm.shoulder] for arm in arms]
     hips = [poses.positions[:, leg.thigh] for leg in legs]
-    across = shoulders[0] - shoulders[1]
+    across = shoulders[1] - shoulders[0] if anatomy.mirrored else shoulders[0] - shoulders[1]
     trunk = shoulders[0] + shoulders[1] - hips[0] - hips[1]
     front: FloatArray = rot.cross(across, trunk)
     return front

@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 # The share of the way from ankle to tip at which the toe bends, at the least (a metatarsal ends before it).
 _BALL_OF_FOOT = 0.42
 
+_NO_LEGS = "no legs found: half the height stands for the leg length; body: in a spec says which joints are the legs"
+_NO_SIDES = "neither names nor toes tell left from right: the file's order is taken; body: in a spec says which is left"
+
 
 def find_anatomy(skeleton: Skeleton, *, poses: WorldPoses | None = None, given: GivenBody = NOTHING_GIVEN) -> Anatomy:
     """Return the anatomy of a skeleton; what it lacks is None and a warning, never an error.
@@ -82,9 +85,9 @@ def _anatomy(parts: _Parts, poses: WorldPoses | None) -> Anatomy:
     places = tree.places[None] if poses is None else poses.positions
     legs_pair, arms_pair, sure = _left_first(parts, places)
     if not sure:
-        warnings.append("neither names nor toes tell left from right; the order in the file is taken")
+        warnings.append(_NO_SIDES)
     if legs_pair is None:
-        warnings.append("no legs found: half the height stands for the leg length")
+        warnings.append(_NO_LEGS)
     legs = None if legs_pair is None else _legs(tree, legs_pair, given.legs)
     arms = None if arms_pair is None else _arms(tree, arms_pair, given.arms)
     return Anatomy(

@@ -38,12 +38,20 @@ def side_of_chains(names: tuple[str, ...], chains: tuple[tuple[int, ...], tuple[
 def side_of_toes(*, across: FloatArray, up: FloatArray, toes: FloatArray) -> int:
     """Return +1 where `across` points to the left of someone whose toes point forward, -1 to the right, else 0.
 
-    Left is up x forward. `across`, `up` (feet to head) and `toes` (heel to toe) have shape (F, 3), any units.
+    `across`, `up` (feet to head) and `toes` (heel to toe) have shape (F, 3), any units.
     """
-    lean = np.sum(rot.cross(up, toes) * across, axis=-1)
-    size = np.linalg.norm(up, axis=-1) * np.linalg.norm(toes, axis=-1) * np.linalg.norm(across, axis=-1)
-    share = float(median(lean / np.maximum(size, np.finfo(float).tiny)))
+    share = share_to_left(across, up=up, ahead=toes)
     return 0 if abs(share) < _SURE else int(np.sign(share))
+
+
+def share_to_left(across: FloatArray, *, up: FloatArray, ahead: FloatArray) -> float:
+    """Return how far to the left something points in the median frame: 1 straight there, -1 to the right.
+
+    Left is up x ahead, which need not be square to each other: a part of 1 then. All have shape (F, 3), any units.
+    """
+    lean = np.sum(rot.cross(up, ahead) * across, axis=-1)
+    size = np.linalg.norm(up, axis=-1) * np.linalg.norm(ahead, axis=-1) * np.linalg.norm(across, axis=-1)
+    return float(median(lean / np.maximum(size, np.finfo(float).tiny)))
 
 
 # A tenth of what two feet side by side that point straight ahead would give.

@@ -15,6 +15,7 @@ from motionedit.core.body.anatomy import NOTHING_GIVEN, Anatomy, GivenBody
 from motionedit.core.body.bones import find_bones, travel_joint
 from motionedit.core.body.contacts import planted, plants_of, sole_tracks, stands_of
 from motionedit.core.body.find_anatomy import find_anatomy
+from motionedit.core.body.mirrored import as_it_points
 from motionedit.core.body.rest_pose import rest_pose_frames
 from motionedit.core.body.steps import own_steps
 from motionedit.core.body.up import find_up
@@ -222,6 +223,7 @@ def facts_of(
     poses = world.get()
     anatomy = find_anatomy(bones, poses=poses, given=given)
     first = min(rest_pose_frames(motion, anatomy), len(motion) - 1)
+    anatomy = as_it_points(anatomy, poses, first=first, given=given)
     found = find_up(motion, bones, poses, anatomy, first=first, travel=travel)
     axis, warnings = found.axis, list(anatomy.warnings)
     if heaped:

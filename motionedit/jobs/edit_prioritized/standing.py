@@ -10,17 +10,16 @@ from motionedit.core.arrays import runs
 from motionedit.core.body.contacts import Plant
 from motionedit.core.feet.goals import ground_under
 from motionedit.core.feet.keep import onto_stances, within_legs
-from motionedit.core.feet.path import NewPath, carried, new_path, turned
+from motionedit.core.feet.path import carried, turned
 from motionedit.core.feet.reach import CALMS_ANOTHER, CALMS_OWN, LOWERED, LOWERED_ON_PATH, reach_of
 from motionedit.core.feet.stance import Stance, feet_of, foot_path, stance_of
 from motionedit.core.feet.stands import body_shift, on_height, within_reach
 from motionedit.core.kinematics import WorldPoses, forward, shifted
 from motionedit.core.motion import Motion, scaled
-from motionedit.core.priorities.kinds.constraint import Scene
-from motionedit.core.priorities.sight import sight_of
 from motionedit.core.priorities.task_targets import Targets
 from motionedit.dataclass import replace
 from motionedit.jobs.clip.facts import Poses
+from motionedit.jobs.edit_prioritized.asked_path import asked_path
 from motionedit.jobs.edit_prioritized.body import body_again
 
 if TYPE_CHECKING:
@@ -28,6 +27,7 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import BoolArray
     from motionedit.core.feet.goals import FootGoal
+    from motionedit.core.feet.path import NewPath
     from motionedit.core.feet.stance import Foot
     from motionedit.core.priorities.asks_to_stand import AsksToStand
     from motionedit.core.priorities.kinds.constraint import Constraint
@@ -60,7 +60,10 @@ def on_feet(
     if not any(stance.down.any() for _, _, stance in stances):
         warned = replace(sized, warnings=(*sized.warnings, "footplants: no foot stands in it; nothing is held"))
         return warned, [each for each in constraints if each not in standing]
-    path = _new_path(sized, constraints, curve) if any(ask.follows_path for ask, _, _ in stances) else None
+    follows = any(ask.follows_path for ask, _, _ in stances)
+    path = asked_path(sized, constraints, curve) if follows else None
+    if follows and path is None:
+        sized = replace(sized, warnings=(*sized.warnings, _no_path(facts)))
     lowered = LOWERED if path is None else LOWERED_ON_PATH
     motion, poses, placed = _placed(facts, stances, path, lowered)
     floors = [each.constraint.least.height / scale for each in constraints if each.constraint.least is not None]
@@ -116,6 +119,14 @@ def _placed(
     return motion, poses, within
 
 
+def _no_path(facts: ClipFacts) -> str:
+    name = facts.clip.motion.skeleton.names[facts.travel]
+    return (
+        f"footplants: at: path follows nothing, so plants stay where they are: ask for a position of {name}, "
+        "in the world or by heading"
+    )
+
+
 def _heels_let_go(asked: Sequence[tuple[Foot, Stance]], held: Sequence[tuple[Foot, Stance]]) -> tuple[str, ...]:
     """Return a line for each foot whose heel does not stand where it was to."""
     lines = []
@@ -144,29 +155,6 @@ def _stances(
             plants = [Plant(foot.side, part, foot.leg.ankle, 0, a, b, 0.0) for part, a, b in ask.plants]  # type: ignore[arg-type]
         found.setdefault(ask.effector.joint, (ask, foot, stance_of(foot_path(reference.poses, foot), plants)))
     return list(found.values())
-
-
-def _new_path(sized: SizedClip, constraints: Sequence[ClipConstraint], curve: Curve) -> NewPath:
-    """Return where positions asked of the joint that carries the travel take the body, clip units."""
-    shift, travel = np.zeros((len(sized.motion), 3)), sized.facts.travel
-    before = sight_of(sized.motion, lambda: [travel], None)
-    for each in constraints:
-        ask = each.constraint
-        if ask.stands or ask.at is None or ask.at.joint != travel or np.any(ask.at.offset) or ask.waits_for_others:
-            continue
-        targets = ask.targets(Scene(before, curve, dict, lambda: before))
-        goal = ask.goal(targets)
-        if goal is not None:
-            shift[targets.span] = (goal[1] - before.poses.positions[targets.span, travel]) / sized.scale
-    facts = sized.facts
-    return new_path(
-        facts.poses.positions[:, travel],
-        shift,
-        up=facts.up,
-        leg=facts.anatomy.leg_length,
-        frame_time=facts.clip.motion.frame_time,
-        first=facts.first,
-    )
 
 
 def _with_goals(

@@ -259,7 +259,8 @@ def _head(facts: ClipFacts) -> list[_BallPath]:
     # The ball stands on a head joint at the neck's top, and about one that is already inside the skull.
     center = facts.poses.positions[:, head] + rot.rotate(q, max(0.5 * reach, 0.6 * radius) * up)
     # left x up = ahead: so a face looks in the pose where every channel is zero.
-    looks = rot.rotate(q, _unit(np.cross(left - right, up)))
+    across = right - left if anatomy.mirrored else left - right
+    looks = rot.rotate(q, _unit(np.cross(across, up)))
     balls = [_BallPath(center, radius, "head")]
     if looks[facts.first] @ facts.heading_frame().axes[2] > 0.0:
         balls.append(_BallPath(center + 0.95 * radius * looks, 0.28 * radius, "nose"))

@@ -34,10 +34,16 @@ static void shorten(double *v, double length)
         v[a] /= length;
 }
 
+/* The sum of axes, and in how many frames they were seen. */
+typedef struct {
+    double sum[3];
+    int64_t frames;
+} Axis;
+
 /* Take a frame of a limb into its sums: its bones seen from its parent's and its joint's frames, and upper x lower of
-   the unit bones seen from the parent's, where its length, the sine, says that the limb is bent. Returns whether it is
-   straight. */
-static int take_frame(const LimbPose *at, int counts, const Limbs *limbs, double *bones, double *axis, int *shown)
+   the unit bones seen from the parent's, where its length, the sine, says that the limb is bent, and where clearly.
+   Returns whether it is straight. */
+static int take_frame(const LimbPose *at, int counts, const Limbs *limbs, double *bones, Axis *all, Axis *clear)
 {
     const double upper[3] = {at->joint[0] - at->top[0], at->joint[1] - at->top[1], at->joint[2] - at->top[2]};
     const double lower[3] = {at->end[0] - at->joint[0], at->end[1] - at->joint[1], at->end[2] - at->joint[2]};
@@ -49,7 +55,9 @@ static int take_frame(const LimbPose *at, int counts, const Limbs *limbs, double
     if (counts) {
         add_unturned(at->parent_turn, upper, bones), add_unturned(at->turn, lower, bones + 3);
         if (sine > limbs->bent)
-            add_unturned(at->parent_turn, side, axis), *shown = 1;
+            add_unturned(at->parent_turn, side, all->sum), all->frames++;
+        if (sine > limbs->clear)
+            add_unturned(at->parent_turn, side, clear->sum), clear->frames++;
     }
     return sine < limbs->straight;
 }
@@ -78,16 +86,17 @@ static void write_turns(const Poses *poses, int64_t limb, const Limbs *limbs, co
 int find_bends(const Poses *poses, int64_t first, const Limbs *limbs, const BendsFound *found)
 {
     memset(found->bones, 0, 6 * sizeof *found->bones * (size_t)limbs->count);
-    memset(found->axes, 0, 3 * sizeof *found->axes * (size_t)limbs->count);
     for (int64_t i = 0; i < limbs->count; i++) {
         double *axis = found->axes + 3 * i, *bones = found->bones + 6 * i;
-        int shown = 0;
+        Axis all = {.frames = 0}, clear = {.frames = 0};
         for (int64_t f = 0; f < poses->frames; f++) {
             const LimbPose at = pose_of(poses, f, limbs->joints + 4 * i);
-            found->straight[i * poses->frames + f] = take_frame(&at, f >= first, limbs, bones, axis, &shown) != 0;
+            found->straight[i * poses->frames + f] = take_frame(&at, f >= first, limbs, bones, &all, &clear) != 0;
         }
+        const int other = clear.frames > limbs->glitch && dot(clear.sum, all.sum) < 0.0;
+        memcpy(axis, other ? clear.sum : all.sum, sizeof all.sum);
         const double length = length_of(axis);
-        if (!shown || !(length > 0.0))
+        if (!all.frames || !(length > 0.0))
             return 0;
         shorten(axis, length);
         for (double *bone = bones; bone < bones + 6; bone += 3) {

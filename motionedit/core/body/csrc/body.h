@@ -100,11 +100,13 @@ void find_center(
 void largest_steps(const double *before, const double *after, int64_t frames, int64_t joints, int64_t first,
     double *angles, int64_t *into);
 
-/* n limbs, each a top, a joint, an end and the joint's parent, (n, 4): bent above one sine, straight below the other. */
+/* n limbs, each a top, a joint, an end and the joint's parent, (n, 4): bent above one sine,
+   clearly above another, straight below the third. So few frames as a `glitch` show nothing. */
 typedef struct {
     int64_t count;
     const int64_t *joints;
-    double bent, straight;
+    double bent, clear, straight;
+    long long glitch;
 } Limbs;
 
 /* How they bend, as bends.Bend: in which frames they are `straight` (n, F), about which unit `axes` (n, 3), and their

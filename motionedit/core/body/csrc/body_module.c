@@ -207,8 +207,9 @@ static PyObject *bends(PyObject *self, PyObject *arguments)
     Limbs limbs;
     Poses poses;
     (void)self;
-    if (!PyArg_ParseTuple(arguments, "OOLLLOLddOOOOO", &positions, &rotations, &frames, &joints, &first,
-            &joints_of_limbs, &count, &limbs.bent, &limbs.straight, given, given + 1, given + 2, given + 3, given + 4))
+    if (!PyArg_ParseTuple(arguments, "OOLLLOLdddLOOOOO", &positions, &rotations, &frames, &joints, &first,
+            &joints_of_limbs, &count, &limbs.bent, &limbs.clear, &limbs.straight, &limbs.glitch, given, given + 1,
+            given + 2, given + 3, given + 4))
         return NULL;
     if (positions == Py_None || rotations == Py_None || first < 0)
         return PyErr_Format(PyExc_ValueError, "no positions or rotations, or no such frames");

@@ -1,8 +1,9 @@
 """Straight limbs: a singularity that no pull leaves, so that they are bent a little where a layer is not met.
 
-A straight limb cannot begin to shorten: the first derivative of its length by its bend is nothing. Frames in which a
-constraint is missed, and a knee or an elbow straight that some constraint recruits, are solved again from a bend of a
-degree: a body that shall go down is missed, though the feet that hold it up are not.
+A straight limb cannot begin to shorten: the first derivative of its length by its bend is nothing. One that gives way
+to its other side in the input shortens to there, as far as it may. Frames in which a constraint is missed, and a knee
+or an elbow straight or bent back that some constraint recruits, are solved again from a bend of a degree: a body that
+shall go down is missed, though the feet that hold it up are not.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
+from motionedit.core.body.bends import turns_about
 from motionedit.core.motion import Motion
 from motionedit.core.priorities.frames import Known, Solved, solve_frames
 from motionedit.dataclass import replace
@@ -23,29 +25,32 @@ if TYPE_CHECKING:
     from motionedit.core.priorities.frames import Run
 
 _LITTLE = float(np.radians(1.0))
+_BACK = float(np.radians(0.2))  # so far back a limb counts as straight
 _MISSED = 1e-4  # metres or radians
 
 
 def bent_where_missed(run: Run, state: Solved) -> Solved:
-    """Return a solved motion, frames with missed constraints and straight limbs solved again from bent limbs.
+    """Return a solved motion, frames with missed constraints and limbs straight or bent back solved again.
 
     A frame keeps what it had where that does not help.
     """
     if np.maximum.reduce(state.left, axis=None, initial=0.0) < _MISSED:
         return state
     body, recruited = run.asked.body, frozenset().union(*(each.joints for each in run.asked.recruits))
-    bends = [bend for bend in body.bends if bend.joint in recruited and bend.straight.any()]
+    bends = [bend for bend in body.bends if bend.joint in recruited and _is_ever_straight(bend)]
     if not bends:
         return state
     missed = state.left.max(axis=1) > _MISSED
     rotations = state.motion.rotations.copy()
     again = np.zeros(len(rotations), dtype=np.bool_)
     for bend in bends:
-        frames = missed & bend.straight & _is_recruited(run, bend)
+        back = _back(rotations, bend)
+        frames = missed & (bend.straight | (back > 0.0)) & _is_recruited(run, bend)
         if not frames.any():
             continue
         hinges = [hinge for hinge in body.hinges if hinge.joint == bend.joint]
-        rotations[frames, bend.joint] = _bent(rotations[frames, bend.joint], bend, hinges)
+        turns = _LITTLE + back[frames]
+        rotations[frames, bend.joint] = _bent(rotations[frames, bend.joint], turns, bend, hinges)
         again |= frames
     if not again.any():
         return state
@@ -53,6 +58,16 @@ def bent_where_missed(run: Run, state: Solved) -> Solved:
     solved = solve_frames(run, start, reference=run.motion, pull_root=False, known=Known(~again, state.ranks))
     better = again & _is_better(solved, state)
     return _mixed(solved, state, better)
+
+
+def _is_ever_straight(bend: Bend) -> bool:
+    return bool(bend.straight.any()) or bend.bent[0] < -_BACK
+
+
+def _back(rotations: FloatArray, bend: Bend) -> FloatArray:
+    """Return how far a limb of a motion is bent back, shape (F,), rad: 0 where it is not, or no more than straight."""
+    angles = turns_about(bend.axis, bend.upper, rot.rotate(rotations[:, bend.joint], bend.lower))
+    return np.where(angles < -_BACK, -angles, 0.0)
 
 
 def _is_recruited(run: Run, bend: Bend) -> BoolArray:
@@ -73,16 +88,16 @@ def _is_better(after: Solved, before: Solved) -> BoolArray:
     return better
 
 
-def _bent(rotations: FloatArray, bend: Bend, hinges: list[Hinge]) -> FloatArray:
-    """Return a joint's local rotations bent by a degree: about its bend's axis, or the nearest that its hinges have."""
+def _bent(rotations: FloatArray, turns: FloatArray, bend: Bend, hinges: list[Hinge]) -> FloatArray:
+    """Return a joint's local rotations bent by turns (F,), rad: about its bend's axis, or the nearest of its hinges."""
     if not hinges:
-        return rot.multiply(rot.exp(_LITTLE * bend.axis), rotations)
+        return rot.multiply(rot.exp(turns[:, None] * bend.axis), rotations)
     identity = np.broadcast_to(rot.IDENTITY, rotations.shape)
     axes = [rot.rotate(rotations if hinge.is_second else identity, hinge.axis) for hinge in hinges]
     along = np.array([axis @ bend.axis for axis in axes])
     nearest = int(np.argmax(np.abs(along).mean(axis=1)))
-    turns = rot.exp(_LITTLE * np.sign(along[nearest])[:, None] * hinges[nearest].axis)
-    return rot.multiply(rotations, turns) if hinges[nearest].is_second else rot.multiply(turns, rotations)
+    turned = rot.exp((turns * np.sign(along[nearest]))[:, None] * hinges[nearest].axis)
+    return rot.multiply(rotations, turned) if hinges[nearest].is_second else rot.multiply(turned, rotations)
 
 
 def _mixed(new: Solved, old: Solved, better: BoolArray) -> Solved:

@@ -83,6 +83,28 @@ class Scene:
 
 
 @dataclass(frozen=True, eq=False)
+class Displacement:
+    """How far a constraint wants a point of the body from where the input has it, in the world.
+
+    Attributes
+    ----------
+    places : shape (F, 3)
+        Where the input has it.
+    span : slice
+        The n frames at which the constraint is active.
+    shift : shape (n, 3)
+        How far from there it is wanted; 0 along axes that do not count.
+    counted : shape (k, 3)
+        The axes that count, unit vectors.
+    """
+
+    places: FloatArray
+    span: slice
+    shift: FloatArray
+    counted: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
 class Stage:
     """What a task is made for: the frames (N,) that are solved together, and what the constraint may use of them.
 
@@ -216,6 +238,11 @@ class Constraint(ABC):
     def goal(self, targets: Targets) -> tuple[int, FloatArray] | None:
         """Return the joint that it puts in a place, and where, world positions (n, 3); None where it does not."""
         del targets
+        return None
+
+    def displacement(self, scene: Scene) -> Displacement | None:
+        """Return how far it wants its effector from where the input has it; None where that is no place of its own."""
+        del scene
         return None
 
     @abstractmethod

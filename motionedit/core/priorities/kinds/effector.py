@@ -10,7 +10,7 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.kinematics import Effector, effector_positions
 from motionedit.core.measure import WORLD, Measure
-from motionedit.core.priorities.kinds.constraint import Constraint, ConstraintErrors, Movable
+from motionedit.core.priorities.kinds.constraint import Constraint, ConstraintErrors, Displacement, Movable
 from motionedit.core.priorities.recruiting import EVERYTHING, RecruitRule, Recruits, recruit_chain
 from motionedit.core.priorities.solver.points import moved_by
 from motionedit.core.priorities.task_targets import Targets
@@ -111,6 +111,16 @@ class EffectorConstraint(Constraint):
         if rotations is not None:
             rotations = self.measure.rotations(poses.rotations[:, self.effector.joint], poses)
         return Targets(targets.first, targets.last, positions, rotations)
+
+    def displacement(self, scene: Scene) -> Displacement | None:
+        """Return how far it wants its effector from the input's place; None where it has no place in the world."""
+        if not self.places_effector or self.base is not None:
+            return None
+        targets, poses = self.targets(scene), scene.before.poses
+        places = effector_positions(poses, self.effector)
+        here, then = places[targets.span], poses.at(targets.span)
+        wanted = self.measure.aimed(self.measure.positions(here, then), targets.all_positions)
+        return Displacement(places, targets.span, self.measure.in_world(wanted, then) - here, self.measure.rows)
 
     def left(self, targets: Targets, after: Sight) -> ConstraintErrors:
         """Return how far the effector is from its targets' positions, and its joint from their rotations."""

@@ -246,6 +246,7 @@ def test_no_tree_is_an_error(skeleton):
     assert anatomy.leg_length >= 0.0
     assert anatomy.height >= anatomy.leg_length
     assert (anatomy.legs is None) == any("no legs" in line for line in anatomy.warnings)
+    assert all("; body: in a spec says which " in line for line in (*anatomy.warnings, *anatomy.missing))
 
 
 @pytest.mark.parametrize("links", [600, 2000])

@@ -14,12 +14,15 @@ import pytest
 import yaml
 
 from motionedit.core import rotations as rot
+from motionedit.core.body.anatomy import NOTHING_GIVEN
 from motionedit.core.body.bends import find_bends
 from motionedit.core.body.contacts import foot_plants
 from motionedit.core.body.ground import axis_name
 from motionedit.core.body.hinges import find_hinges
+from motionedit.core.body.mirrored import as_it_points
 from motionedit.core.body.quality import find_defects
 from motionedit.core.bvh import read_clip
+from motionedit.dataclass import replace
 from motionedit.jobs.clip.facts import facts_of
 
 FOLDER = Path(os.environ.get("MOTIONEDIT_CLIPS", ""))
@@ -30,7 +33,7 @@ WRITTEN = yaml.safe_load(Path(__file__).with_name("bodies_of_real_clips.yaml").r
 BODIES, CLIPS = WRITTEN["bodies"], WRITTEN["clips"]
 WITH_PLANTS = [name for name, clip in CLIPS.items() if "plants" in clip]
 WITHOUT_LEGS = [name for name, clip in CLIPS.items() if BODIES[clip["body"]]["left_leg"] is None]
-NO_LEGS = ("no legs found: half the height stands for the leg length",)
+NO_LEGS = ("no legs found: half the height stands for the leg length; body: in a spec says which joints are the legs",)
 
 # Where a border is written down to a few frames, so many seconds on both sides of it say nothing.
 BORDER = 0.035
@@ -148,6 +151,16 @@ def test_toes_point_forward(name):
     assert np.median(ahead) > 0.5
 
 
+# In one pose of one file a leg is straight and has no toe: nothing shows where it points.
+@pytest.mark.parametrize("name", [name for name in CLIPS if name not in WITHOUT_LEGS and "tpose" not in name])
+def test_a_body_whose_left_is_on_the_right_is_found_and_no_other(name):
+    found = facts(name)
+    left, right = found.anatomy.legs
+    exchanged = replace(found.anatomy, legs=(right, left))
+    for anatomy, mirrored in ((found.anatomy, False), (exchanged, True)):
+        assert as_it_points(anatomy, found.poses, first=found.first, given=NOTHING_GIVEN).mirrored == mirrored
+
+
 def hinges_of(found):
     return find_hinges(find_bends(found.clip.motion.skeleton, found.poses, found.anatomy, first=found.first))
 
@@ -162,6 +175,15 @@ def test_knees_and_elbows_are_hinges_also_where_a_clip_turns_them_as_balls(name)
     for hinge in hinges:
         assert np.linalg.norm(hinge.axis) == pytest.approx(1.0, abs=1e-12)
         assert hinge.limits[0] <= np.radians(3.0) < np.radians(150.0) <= hinge.limits[1]
+
+
+# One of them turns its elbows all the way round.
+@pytest.mark.parametrize("name", [name for name in CLIPS if "Files" not in name])
+def test_no_limb_of_a_clip_bends_far_to_its_other_side(name):
+    found = facts(name)
+    names = found.clip.motion.skeleton.names
+    far = {names[hinge.joint]: np.degrees(hinge.limits[0]) for hinge in hinges_of(found)}
+    assert {joint: back for joint, back in far.items() if back < -20.0} == {}
 
 
 @pytest.mark.parametrize("name", [name for name in CLIPS if re.search(r"cmu_(63|13|12|131|02|03|07)_", name)])

@@ -54,6 +54,50 @@ def test_a_limb_bends_as_it_does_elsewhere_in_the_clip_and_a_rest_pose_does_not_
     np.testing.assert_allclose(bends_of(rest, first=2)["LeftForeArm"].axis, [0.0, 0.0, 1.0], atol=1e-9)
 
 
+@pytest.fixture(params=["compiled", "numpy"])
+def _both(request, monkeypatch):
+    monkeypatch.setenv("MOTIONEDIT_SOLVER", request.param if request.param == "numpy" else "")
+
+
+def giving_way(joint, axis, *, back, bent, frames=400):
+    """Return a body with all limbs bent a little, one of which gives way by `back` degrees but in frames `bent`."""
+    motion = standing(SKELETON, frames)
+    for each in ("LeftLeg", "RightLeg", "LeftForeArm", "RightForeArm"):
+        motion = with_rotation(motion, each, slice(None), (0.1, 0.0, 0.0))
+    motion = with_rotation(motion, joint, slice(None), -np.radians(back) * np.array(axis))
+    for frame, angle in bent.items():
+        motion = with_rotation(motion, joint, frame, np.radians(angle) * np.array(axis))
+    return motion
+
+
+@pytest.mark.usefixtures("_both")
+@pytest.mark.parametrize("joint", ["LeftLeg", "RightForeArm"])
+@pytest.mark.parametrize("axis", [(1.0, 0.0, 0.0), (0.0, 0.0, -1.0)])
+def test_a_limb_bends_to_where_it_is_clearly_bent_however_long_it_gives_way_to_the_other_side(joint, axis):
+    motion = giving_way(joint, axis, back=9.0, bent=dict(enumerate((30.0, 50.0, 60.0, 40.0), 100)))
+    bend = bends_of(motion)[joint]
+    np.testing.assert_allclose(bend.axis, axis, atol=1e-9)
+    np.testing.assert_allclose(np.degrees(bend.bent), [-9.0, 60.0], atol=0.5)
+
+
+@pytest.mark.usefixtures("_both")
+@pytest.mark.parametrize(
+    ("back", "bent"),
+    [(9.0, {100: 60.0, 101: 60.0}), (9.0, {100: 12.0, 101: 14.0, 102: 14.0}), (20.0, dict.fromkeys(range(20), 50.0))],
+    ids=["a glitch", "no more than it gives way", "clearly to both"],
+)
+def test_a_limb_bends_to_the_side_of_most_frames_where_few_show_the_other(back, bent):
+    motion = giving_way("LeftLeg", (1.0, 0.0, 0.0), back=back, bent=bent)
+    np.testing.assert_allclose(bends_of(motion)["LeftLeg"].axis, [-1.0, 0.0, 0.0], atol=1e-9)
+
+
+@pytest.mark.usefixtures("_both")
+def test_a_rest_pose_that_is_clearly_bent_does_not_count():
+    motion = giving_way("LeftLeg", (1.0, 0.0, 0.0), back=9.0, bent=dict.fromkeys(range(4), 50.0))
+    np.testing.assert_allclose(bends_of(motion, first=4)["LeftLeg"].axis, [-1.0, 0.0, 0.0], atol=1e-9)
+    np.testing.assert_allclose(bends_of(motion, first=1)["LeftLeg"].axis, [1.0, 0.0, 0.0], atol=1e-9)
+
+
 def test_a_foot_without_a_toe_joint_shows_the_side_by_its_end_site():
     bones = [row for row in human_bones() if "Toe" not in row[0]]
     ends = {"LeftFoot": (0.0, -0.06, 0.13), "RightFoot": (0.0, -0.06, 0.13), "Head": (0.0, 0.18, 0.0)}

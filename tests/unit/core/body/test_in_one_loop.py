@@ -122,7 +122,7 @@ def test_joints_and_arrays_that_are_none_are_an_error_and_no_crash():
         compiled().jerks(places, 5, 2, np.zeros(1))
     with pytest.raises(ValueError, match="no such frames"):
         read_off("cones", None, turns, np.array([0]), np.ones(3), shape=(1, 6), first=5)
-    limbs, how = np.zeros((1, 4), int), (1, 0.1, 0.1)
+    limbs, how = np.zeros((1, 4), int), (1, 0.1, 0.2, 0.1, 2)
     out = [np.zeros((1, 5), bool), *map(np.zeros, (3, 6, 15, 10))]
     for given, first in (((places, None), 0), ((places, turns), -1)):
         with pytest.raises(ValueError, match="no positions or rotations, or no such frames"):

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 from human import BONES, skeleton_of, standing, with_rotation
 
+from motionedit.core import rotations as rot
 from motionedit.core.body.bends import find_bends
 from motionedit.core.body.center_of_mass import find_masses
 from motionedit.core.body.find_anatomy import find_anatomy
-from motionedit.core.body.hinges import plain_hinge
+from motionedit.core.body.hinges import find_hinges, plain_hinge
 from motionedit.core.kinematics import Effector, forward
 from motionedit.core.priorities.edit import edit_by_priorities
 from motionedit.core.priorities.kinds import Orientation, Position
@@ -81,6 +82,19 @@ def test_a_straight_arm_moves_toward_its_shoulder():
     motion = standing(SKELETON, FRAMES)
     edit = edited(motion, [wanted("LeftHand", (0.0, 0.1, 0.0), recruit=rule)])
     assert edit.errors[0].positions.max() < 1e-6
+
+
+@pytest.mark.usefixtures("solver")
+@pytest.mark.parametrize("turned", [0.0, 8.0, 10.0])
+def test_an_arm_that_gives_way_to_its_other_side_bends_to_its_own(turned):
+    # It gives way, but bends by 60 elsewhere: back, within its limits, the hand comes hardly nearer.
+    rule = RecruitRule("up_to", joint=INDEX("LeftArm"))
+    motion = with_rotation(standing(SKELETON, FRAMES), "LeftForeArm", slice(None), np.radians([turned, 0.0, 0.0]))
+    motion = with_rotation(motion, "LeftForeArm", slice(0, 4), np.radians([-60.0, 0.0, 0.0]))
+    hinges = find_hinges(find_bends(SKELETON, forward(motion), find_anatomy(SKELETON), first=0))
+    edit = edited(motion, [wanted("LeftHand", (0.0, 0.1, 0.0), recruit=rule)], hinges=hinges)
+    assert edit.errors[0].positions.max() < 1e-6
+    assert rot.log(edit.motion.rotations[32, INDEX("LeftForeArm")])[0] < -0.5
 
 
 def test_a_limb_that_cannot_help_keeps_what_it_had():
