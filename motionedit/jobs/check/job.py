@@ -6,11 +6,15 @@ import math
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from motionedit.core.arrays import median
 from motionedit.core.blocks import blocks_of
 from motionedit.core.body import ground
 from motionedit.core.body.anatomy import NOTHING_GIVEN
 from motionedit.core.body.quality import find_defects
 from motionedit.core.body.steps import own_steps
+from motionedit.core.units import STANDARD_LEG
 from motionedit.dataclass import dataclass, replace
 from motionedit.errors import EXIT_CLIP_FAILED, EXIT_DONE, EXIT_OUT_OF_TOLERANCE, MotionEditError, UsageError
 from motionedit.jobs.batch.one_clip import read_task
@@ -30,6 +34,8 @@ if TYPE_CHECKING:
     from motionedit.jobs.check.specs import SpecCheck
     from motionedit.jobs.clip.facts import ClipFacts
 
+# Metres at leg length 0.85 m: feet that stand further above or below the floor of the file stand on another.
+_OFF_THE_FLOOR = 0.1
 # What a limit may be set on, each with its words; a clip passes it where its measure is larger.
 MEASURES = {
     "foot_skate_mean": "m/s",
@@ -145,7 +151,8 @@ def _checked(
         lacking.get(partial(check.refuse_lacking, facts, task), otherwise=None)
     measures = _measures(facts)
     passed = [name for name, limit in limits.items() if measures[name] > limit]
-    errors = [str(error) for error in lacking.errors]
+    errors, stand = [str(error) for error in lacking.errors], _off_the_floor(facts)
+    off = [] if stand is None else [f"{stand}: skate, depth and floating are measured from 0, the floor of the file"]
     reasons = [f"{name} {measures[name]:.4g} above {limits[name]:.4g}" for name in passed] + errors
     record = {
         "clip": task.label,
@@ -158,9 +165,9 @@ def _checked(
         "measures": measures,
         "passed": passed,
         "spec_errors": errors,
-        "warnings": [*clip.warnings, *facts.warnings, *facts.anatomy.missing],
+        "warnings": [*clip.warnings, *facts.warnings, *facts.anatomy.missing, *off],
     }
-    return Checked(record, _line(record))
+    return Checked(record, _line(record, stand))
 
 
 def _facts(clip: Clip, task: ClipTask, check: SpecCheck | None, lacking: Faults, *, up: str) -> ClipFacts:
@@ -185,13 +192,24 @@ def _measures(facts: ClipFacts) -> dict[str, float]:
     return {name: counted[name] if name in counted else float(measured[name]) for name in MEASURES}
 
 
+def _off_the_floor(facts: ClipFacts) -> str | None:
+    """Return at which height toes stand, where that is not the floor that measures go by."""
+    heights, points = facts.tracks @ facts.up, facts.anatomy.sole_points
+    toes = [plant for plant in facts.phases if points[plant.point].part == "toe"]
+    stands = [float(heights[plant.start : plant.stop + 1, plant.point].mean()) for plant in toes]
+    height = float(median(np.array(stands))) if stands else 0.0
+    if abs(height) <= _OFF_THE_FLOOR * facts.anatomy.leg_length / STANDARD_LEG:
+        return None
+    return f"feet stand at {ground.axis_name(facts.up)} = {height:.4g}"
+
+
 def _found(facts: ClipFacts) -> list[str]:
     anatomy = facts.anatomy
     parts = {"legs": anatomy.legs, "arms": anatomy.arms, "head": anatomy.head}
     return [part for part, found in parts.items() if found is not None]
 
 
-def _line(record: Mapping[str, Any]) -> str:
+def _line(record: Mapping[str, Any], stand: str | None) -> str:
     """Return a clip's line."""
     measures, unit = record["measures"], record["unit"]
     words = [
@@ -207,5 +225,7 @@ def _line(record: Mapping[str, Any]) -> str:
         f"{measures['jumps']} jumps, {measures['flips']} flips",
         f"rest pose {measures['rest_pose_frames']}",
     ]
+    if stand is not None:
+        words.append(stand)
     reasons = f": {record['message']}" if record["message"] else ""
     return f"{record['clip']}: {record['status']}{reasons} ({'; '.join(words)})"
