@@ -293,7 +293,9 @@ def test_check_tells_of_each_clip_and_of_limits_that_are_passed(run, tmp_path):
 @pytest.mark.parametrize("height", [-40.0, -8.0, 0.0, 8.0, 40.0])
 def test_check_says_where_feet_stand_that_do_not_stand_on_the_floor(run, tmp_path, height):
     motion = read_clip(WALK).motion
-    shifted = Motion(motion.skeleton, motion.rotations, motion.translations + [0.0, height, 0.0], motion.frame_time)
+    shifted = Motion(
+        motion.skeleton, motion.rotations, motion.translations + np.array([0.0, height, 0.0]), motion.frame_time
+    )
     (tmp_path / "w.bvh").write_bytes(new_bytes(shifted))
     done = run("check", "w.bvh", "--report", "r.json")
     (clip,) = json.loads((tmp_path / "r.json").read_text())["clips"]
