@@ -18,6 +18,7 @@ Schema = Mapping[str, Any]
 # Forms that have a name of their own, explained once at the end of the page.
 NAMED = (
     (kinds.TIME, "[time](#forms)"),
+    (kinds.INSTANT, "a [time](#forms) that names no event"),
     (kinds.INTERVAL, "[interval](#forms)"),
     (kinds.DURATION, "[duration](#forms)"),
     (kinds.EFFECTOR, "[effector](#forms)"),

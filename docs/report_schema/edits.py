@@ -89,6 +89,22 @@ _PC_CLIP = {
         "the clip of the database that is nearest in coefficients",
         {side: text(f"{side} the edit") for side in ("before", "after")},
     ),
+    "hands": or_null(
+        obj(
+            "hands that hold one thing",
+            {
+                "grips": list_of(
+                    obj(
+                        "where they do",
+                        {"first_frame": count("the first frame"), "last_frame": count("the last one")},
+                    ),
+                    "in order",
+                ),
+                "apart_max": number_or_null("how far the edit leaves them apart; null where no grip was kept"),
+            },
+        ),
+        "where hands: keep looked for them, else null",
+    ),
     **VERIFY,
 }
 

@@ -7,11 +7,19 @@ from typing import TYPE_CHECKING
 
 import click
 
-from motionedit.cli.options import clips_argument, jobs_option, lenient_option, report_option, spec_option, up_option
+from motionedit.cli.options import (
+    clips_argument,
+    jobs_option,
+    lenient_option,
+    spec_option,
+    test_report_option,
+    up_option,
+)
 from motionedit.cli.verbosity import verbosity_of, verbosity_options
 
 if TYPE_CHECKING:
-    from motionedit.jobs.check import Checked
+    from motionedit.jobs.check.job import Checked
+    from motionedit.report.junit import Problem
 
 
 @click.command(
@@ -39,7 +47,7 @@ if TYPE_CHECKING:
 @jobs_option
 @up_option
 @lenient_option
-@report_option
+@test_report_option
 @verbosity_options
 def command(
     clips: tuple[Path, ...],
@@ -54,25 +62,27 @@ def command(
     """Tell whether clips, and a spec for them, are fit for use.
 
     Prints a line for each clip: rate, frames, unit, up, what of a body was found, skating and sliding feet, feet
-    below the floor or above it, jumps, flips and rest-pose frames; with a spec also what it names and the clip lacks.
-    Several clips are counted at the end.
+    below the floor or above it, jumps, flips and rest-pose frames; with a spec also what it names and the clip lacks,
+    but for events that may be those of edit-pc's model. A spec's body: and up: count for the measures. Several clips
+    are counted at the end.
 
     Exits with 0; 3 where a clip passes a limit or the spec does not fit it; 1 where one cannot be read.
 
     CLIPS are BVH files, folders of them, or '-' for standard input.
     """
-    from motionedit.cli.finish import show_count, show_failures, write_report
+    from motionedit.cli.finish import show_count, show_failures, write_tests
     from motionedit.cli.words import printable, to_stdout
-    from motionedit.jobs import check
     from motionedit.jobs.batch.outputs import refuse_clashes
     from motionedit.jobs.batch.plan import find_clips
-    from motionedit.report.record import report_bytes
+    from motionedit.jobs.check import job as check
+    from motionedit.jobs.check.specs import spec_check
 
     given = [task.source for task in find_clips(clips)]
     refuse_clashes([("the report", report)], [*given, spec_path, limits_file])
     held = check.limits_of(limits, limits_file)
     found: list[Checked] = []
-    for one in check.run(clips, limits=held, spec=spec_path, up=up, lenient=lenient, jobs=jobs):
+    spec = None if spec_path is None else spec_check(spec_path)
+    for one in check.run(clips, limits=held, check=spec, up=up, lenient=lenient, jobs=jobs):
         found.append(one)
         if one.line and str(report) != "-":
             to_stdout(printable(one.line))
@@ -81,5 +91,7 @@ def command(
     statuses = [one.record["status"] for one in found]
     show_count(statuses, exit_code=exit_code, verbosity=verbosity_of(click.get_current_context()))
     if report is not None:
-        write_report(report_bytes("check", [one.record for one in found]), report)
+        problems: dict[str, Problem] = {"unfit": "failure", "failed": "error"}
+        data = None if spec is None else spec.loaded.data
+        write_tests("check", [one.record for one in found], report, problems=problems, spec=data)
     return exit_code

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections import Counter
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import click
 
-from motionedit.cli.options import lenient_option, not_negative, report_option
+from motionedit.cli.options import lenient_option, not_negative, test_report_option
 from motionedit.cli.repeated import few_of_each_kind
 from motionedit.cli.verbosity import verbosity_of, verbosity_options
 from motionedit.cli.words import printable, to_stdout
 
 if TYPE_CHECKING:
     from motionedit.jobs.diff import Comparison
+    from motionedit.report.junit import Problem
 
 _PATH = click.Path(path_type=Path, allow_dash=True)
 
@@ -45,7 +46,7 @@ _PATH = click.Path(path_type=Path, allow_dash=True)
     help="Largest turn of a joint that counts as the same.",
 )
 @lenient_option
-@report_option
+@test_report_option
 @verbosity_options
 @click.pass_context
 def command(
@@ -64,10 +65,10 @@ def command(
     difference. Of many clips that are missing on one side a few are named; -v names all.
 
     Exits with 0 for the same motion, 3 for another one or a clip that is missing on one side, and 2 where a pair
-    cannot be compared: unreadable, another skeleton, frame count or frame rate. A report whose name ends in .xml
-    is JUnit, else it is JSON.
+    cannot be compared: unreadable, another skeleton, frame count or frame rate.
     """
     from motionedit.cli.boundary import complain
+    from motionedit.cli.finish import write_tests
     from motionedit.jobs import diff
 
     comparisons = diff.run(
@@ -89,7 +90,8 @@ def command(
             _print(comparisons, verbosity=verbosity_of(ctx))
         _count(comparisons)
     if report is not None:
-        _write(comparisons, report)
+        problems: dict[str, Problem] = {"different": "failure", "missing": "failure", "not_comparable": "error"}
+        write_tests("diff", [one.record() for one in comparisons], report, problems=problems)
     return diff.exit_code(comparisons)
 
 
@@ -113,20 +115,3 @@ def _count(comparisons: list[Comparison]) -> None:
     if len(comparisons) > 1:
         counts = Counter(one.status.replace("_", " ") for one in comparisons)
         to_stdout(f"{len(comparisons)} clips: " + ", ".join(f"{n} {status}" for status, n in counts.items()))
-
-
-def _write(comparisons: list[Comparison], report: Path) -> None:
-    from motionedit.cli.finish import write_report
-    from motionedit.report.junit import Case, junit_bytes
-    from motionedit.report.record import report_bytes
-
-    if report.suffix.lower() == ".xml":
-        problems: dict[str, Literal["failure", "error"]] = {
-            "different": "failure",
-            "missing": "failure",
-            "not_comparable": "error",
-        }
-        cases = [Case(one.name, problems.get(one.status), one.message) for one in comparisons]
-        write_report(junit_bytes("motionedit diff", cases), report)
-    else:
-        write_report(report_bytes("diff", [one.record() for one in comparisons]), report)

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from motionedit.jobs.batch.plan import RunOptions
     from motionedit.jobs.batch.run import BatchResult
+    from motionedit.report.junit import Problem
 
 
 def finish_batch(result: BatchResult, options: RunOptions, *, command: str, spec: Mapping[str, Any] | None) -> int:
@@ -131,6 +132,28 @@ def write_report(report: bytes | Iterable[bytes], path: Path, *, dry_run: bool =
     else:
         clean_leftovers([path.parent])
         write_file(path, report)
+
+
+def write_tests(
+    command: str,
+    records: Sequence[dict[str, Any]],
+    path: Path,
+    *,
+    problems: Mapping[str, Problem],
+    spec: Mapping[str, Any] | None = None,
+) -> None:
+    """Write the report of a command that tests clips: JUnit where its name ends in .xml, else JSON.
+
+    `problems` are the kinds of problem by the statuses of clips that do not pass.
+    """
+    from motionedit.report.junit import Case, junit_bytes
+    from motionedit.report.record import report_bytes
+
+    if path.suffix.lower() == ".xml":
+        cases = [Case(one["clip"], problems.get(one["status"]), one["message"] or "") for one in records]
+        write_report(junit_bytes(f"motionedit {command}", cases), path)
+    else:
+        write_report(report_bytes(command, records, spec=spec), path)
 
 
 def write_stdout(data: bytes) -> None:

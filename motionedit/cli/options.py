@@ -46,6 +46,24 @@ def not_empty(ctx: click.Context, parameter: click.Parameter, value: Any) -> Any
     return tuple(map(Path, value)) if isinstance(value, tuple) else value
 
 
+def not_junit(ctx: click.Context, parameter: click.Parameter, value: Path | None) -> Path | None:
+    """Refuse a report's name that build servers read as JUnit, which this command does not write."""
+    if value is not None and value.suffix.lower() == ".xml":
+        message = f"{value} would be JSON; check and diff alone write JUnit: name it {value.with_suffix('.json')}"
+        raise click.BadParameter(message, ctx=ctx, param=parameter)
+    return value
+
+
+def _report_option(text: str, callback: Callable[..., Any] | None = None) -> Decorator:
+    return click.option(
+        "--report",
+        metavar="FILE",
+        type=click.Path(path_type=Path, dir_okay=False, allow_dash=True),
+        callback=callback,
+        help=text,
+    )
+
+
 def one_shard(ctx: click.Context, parameter: click.Parameter, value: str | None) -> Shard | None:
     """Return the shard that is meant."""
     del ctx, parameter
@@ -83,11 +101,9 @@ up_option = click.option(
     show_default=True,
     help="The axis of the clips that points up.",
 )
-report_option = click.option(
-    "--report",
-    metavar="FILE",
-    type=click.Path(path_type=Path, dir_okay=False, allow_dash=True),
-    help="Write a JSON report; '-' prints it in place of the paths.",
+report_option = _report_option("Write a JSON report; '-' prints it in place of the paths.", callback=not_junit)
+test_report_option = _report_option(
+    "Write a JSON report, or JUnit where the name ends in .xml; '-' prints it in place of the lines."
 )
 report_frames_option = click.option(
     "--report-frames/--no-report-frames",

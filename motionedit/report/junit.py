@@ -1,4 +1,4 @@
-"""JUnit XML of a comparison, which build servers show test by test."""
+"""JUnit XML of clips that were compared or checked, which build servers show test by test."""
 
 from __future__ import annotations
 
@@ -11,12 +11,15 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 
+Problem = Literal["failure", "error"]
+
+
 @dataclass(frozen=True)
 class Case:
-    """One compared clip: `problem` is None where it passed; a failure is a difference, an error no comparison."""
+    """One clip: `problem` is None where it passed; a failure is what was looked for, an error that nothing was."""
 
     name: str
-    problem: Literal["failure", "error"] | None = None
+    problem: Problem | None = None
     message: str = ""
 
 

@@ -14,6 +14,11 @@ from motionedit.spec.points import LENGTH_KEYS, SPLINE_KEYS
 from motionedit.spec.scalars import Vector, one_of, word
 from motionedit.spec.values import EffectorSpec, parse_effectors
 
+_AXES = (
+    "Axes that count, the file's or those of frame: or relative_to:; default: all of [x, y, z]. Along the ground are "
+    "[x, z] where y is up, as in a heading, and [x, y] in a file whose z is up."
+)
+
 
 class PositionConstraint(Recruiting, Placed, EffectorItem, ConstraintItem):
     """An effector follows a trajectory: a shape constraint S(T(t))."""
@@ -22,9 +27,7 @@ class PositionConstraint(Recruiting, Placed, EffectorItem, ConstraintItem):
     measure_keys = ("frame", "relative_to", "axes")
 
     type: Literal["position"] = spec_key(kinds.constant("position"), description="The type: position.")
-    axes: tuple[int, ...] = spec_key(
-        kinds.AXES, default=(0, 1, 2), description="Axes that count; default: all of [x, y, z]."
-    )
+    axes: tuple[int, ...] = spec_key(kinds.AXES, default=(0, 1, 2), description=_AXES)
 
 
 class OrientationConstraint(Recruiting, Placed, EffectorItem, ConstraintItem):
@@ -67,9 +70,7 @@ class ComConstraint(Recruiting, ConstraintItem):
     frame: kinds.Frame = spec_key(
         kinds.FRAME, default="world", description="Axes of shifts: world, or the character's heading."
     )
-    axes: tuple[int, ...] = spec_key(
-        kinds.AXES, default=(0, 1, 2), description="Axes that count; default: all of [x, y, z]."
-    )
+    axes: tuple[int, ...] = spec_key(kinds.AXES, default=(0, 1, 2), description=_AXES)
 
     @property
     def default_name(self) -> str:

@@ -184,6 +184,12 @@ class EditPcSpec(Document):
         "whole, off leaves them to the solver; default keep (off with the other methods, residual: drop and timing: "
         "normalized).",
     )
+    hands: Literal["keep", "off"] | None = spec_key(
+        kinds.or_off(kinds.word("keep", "off")),
+        default=None,
+        description="Hands that hold one thing in the input: keep brings them together again as they were there, by "
+        "both arms, off leaves them to the solver; default keep (off where feet are by default).",
+    )
     plausibility: float | str | None = spec_key(
         kinds.or_off(kinds.either(("off",), kinds.number(above=0.0))),
         default=None,
@@ -218,10 +224,17 @@ class EditPcSpec(Document):
     @property
     def feet_in_force(self) -> Literal["keep", "move", "off"]:
         """What becomes of planted feet: keep, move or off."""
-        if self.feet is not None:
-            return self.feet
-        plain = self.solver.method == "map" and self.residual == "keep" and self.timing == "original"
-        return "keep" if plain else "off"
+        return self.feet or ("keep" if self._is_plain else "off")
+
+    @property
+    def hands_in_force(self) -> Literal["keep", "off"]:
+        """What becomes of hands that hold one thing: keep or off."""
+        return self.hands or ("keep" if self._is_plain else "off")
+
+    @property
+    def _is_plain(self) -> bool:
+        """Whether the output is the input but for a likely change, so that what stood or held shall do so."""
+        return self.solver.method == "map" and self.residual == "keep" and self.timing == "original"
 
     @classmethod
     def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
@@ -234,10 +247,11 @@ class EditPcSpec(Document):
             yield from _differing_priorities(data)
             if "residual_share" in data:
                 yield Fault(f"belongs to method: map; {method} has the components alone", ("residual_share",))
-        if data.get("feet") in ("keep", "move"):
-            for key, value in (("residual", "drop"), ("timing", "normalized")):
-                if data.get(key) == value:
-                    yield Fault(f"the clip's own plants say nothing of an output with {key}: {value}", ("feet",))
+        for key, value in (("residual", "drop"), ("timing", "normalized")):
+            if data.get(key) == value and data.get("feet") in ("keep", "move"):
+                yield Fault(f"the clip's own plants say nothing of an output with {key}: {value}", ("feet",))
+            if data.get(key) == value and data.get("hands") == "keep":
+                yield Fault(f"the clip's own grips say nothing of an output with {key}: {value}", ("hands",))
         if isinstance(solver, dict) and solver.get("method") == "damped":
             if "unit" not in data:
                 yield Fault("needs unit: in the spec, such as unit: cm; damped works in lengths", ("solver", "method"))

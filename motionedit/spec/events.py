@@ -10,21 +10,31 @@ from motionedit.spec import kinds, scalars
 from motionedit.spec.faults import Fault, FaultyValueError, faulty, show
 from motionedit.spec.model import Context, Kind, SpecModel, spec_key
 from motionedit.spec.nested import mapping, reference_to
-from motionedit.spec.times import Interval, parse_event_name, parse_interval, unknown_event
+from motionedit.spec.times import (
+    INSTANT_WORDS,
+    Interval,
+    Time,
+    parse_event_name,
+    parse_instant,
+    parse_interval,
+    unknown_event,
+)
 from motionedit.spec.values import EffectorSpec
 
 FRAMES_WORDS = "a frame for all clips, a CSV file with the columns clip,frame, or {CLIP: FRAME, ...}"
+# A frame, or a time whose frame depends on the clip.
+When = int | Time
 
 
 @dataclass(frozen=True)
 class EventFrames:
-    """Frames of an event: `every` for all clips, or `by_clip`, read from `file` where that is not None.
+    """Frames or times of an event: `every` for all clips, or `by_clip`, read from `file` where that is not None.
 
     The keys of `by_clip` are relative paths or stems of clips, as written.
     """
 
-    every: int | None = None
-    by_clip: Mapping[str, int] = field(default_factory=dict)
+    every: When | None = None
+    by_clip: Mapping[str, When] = field(default_factory=dict)
     file: Path | None = None
 
 
@@ -40,12 +50,12 @@ def _event_frames(value: object, context: Context) -> EventFrames:
         return EventFrames(by_clip=table, file=context.folder / file)
     if isinstance(value, dict):
         faults: list[Fault] = []
-        by_clip: dict[str, int] = {}
+        by_clip: dict[str, When] = {}
         for clip, frame in value.items():
             try:
                 if frame is None:
                     raise faulty("needs a frame")
-                by_clip[clip] = scalars.whole(frame, at_least=0)
+                by_clip[clip] = _when(frame)
             except FaultyValueError as error:
                 faults += [fault.under(clip) for fault in error.faults]
         if faults:
@@ -56,11 +66,16 @@ def _event_frames(value: object, context: Context) -> EventFrames:
     return EventFrames(every=scalars.whole(value, at_least=0))
 
 
+def _when(value: object, words: str = INSTANT_WORDS) -> When:
+    return parse_instant(value, words=words) if isinstance(value, str) else scalars.whole(value, at_least=0)
+
+
 def _label(context: Context, file: str) -> str:
     return file if context.label in ("", ".") or Path(file).is_absolute() else f"{context.label}/{file}"
 
 
 _FRAME = {"type": "integer", "minimum": 0}
+_WHEN = kinds.INSTANT.json
 # Each rule looks at a whole clip, and rules wait for others.
 MOST_EVENTS = 1000
 FRAMES = Kind(
@@ -70,7 +85,7 @@ FRAMES = Kind(
         "anyOf": [
             _FRAME,
             {"type": "string", "minLength": 1},
-            {"type": "object", "additionalProperties": _FRAME},
+            {"type": "object", "additionalProperties": _WHEN},
         ]
     },
 )
@@ -160,7 +175,7 @@ class EventSpec(SpecModel):
         FRAMES,
         default=None,
         description="0-based frames in the input clips: one for all, a CSV file (columns clip,frame; relative to the "
-        "spec), or by clip (relative path or unique stem).",
+        "spec), or by clip (relative path or unique stem), where times such as 3.76s may stand, too.",
     )
     detect: DetectRule | None = spec_key(
         replace(mapping(DetectRule), null=True),
@@ -176,16 +191,17 @@ class EventSpec(SpecModel):
 
 
 def event(model: type[EventSpec]) -> Kind:
-    """Return the kind of events: a bare frame, ``hit: 94``, stands for ``hit: {frames: 94}``."""
-    words = "a frame such as 94, or {frames: ...} or {detect: ...}"
+    """Return the kind of events: a bare frame, ``hit: 94``, stands for ``hit: {frames: 94}``; so does a time."""
+    words = "a frame such as 94, a time such as 3.76s or 71.2%, or {frames: ...} or {detect: ...}"
 
     def parse(value: object, context: Context) -> EventSpec:
-        if isinstance(value, (str, bool, list)):
+        if isinstance(value, (bool, list)):
             raise faulty(f"must be {words}; not {show(value)}")
-        frame = isinstance(value, (int, float))
-        return model.parse({"frames": scalars.whole(value, at_least=0)} if frame else value, context)
+        if isinstance(value, (int, float, str)):
+            return model().changed({"frames": EventFrames(every=_when(value, words)), "given": frozenset({"frames"})})
+        return model.parse(value, context)
 
-    return Kind(parse, words, {"anyOf": [_FRAME, reference_to(model)]}, models=(model,))
+    return Kind(parse, words, {"anyOf": [_WHEN, reference_to(model)]}, models=(model,))
 
 
 def event_faults(events: object) -> Iterator[Fault]:

@@ -24,6 +24,7 @@ EVENT = rf"{_WORD}(?:-{_WORD})*"
 # Groups: amount and unit; event, sign, amount and unit.
 INSTANT = rf"({AMOUNT})(?:{BLANKS}([s%]))?"
 FROM_EVENT = rf"({EVENT})(?:{BLANKS}([-+]){BLANKS}({AMOUNT})(?:{BLANKS}(s))?)?"
+PLAIN_INSTANT = rf"{BLANKS}\+?{INSTANT}{BLANKS}"
 TIME = rf"{BLANKS}(?:\+?{INSTANT}|{FROM_EVENT}){BLANKS}"
 DURATION = rf"{BLANKS}\+?({AMOUNT})(?:{BLANKS}(s))?{BLANKS}"
 

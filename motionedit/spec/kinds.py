@@ -23,6 +23,7 @@ _JOINTS: Schema = {"type": "array", "items": _NAME, "minItems": 1, "uniqueItems"
 _POSITIVE: Schema = {"type": "number", "exclusiveMinimum": 0, "maximum": scalars.LARGEST}
 _FRAME: Schema = {"type": "integer", "minimum": 0}
 _TIME: Schema = {"anyOf": [_FRAME, _text(grammar.TIME)]}
+_INSTANT: Schema = {"anyOf": [_FRAME, _text(grammar.PLAIN_INSTANT)]}
 _DURATION: Schema = {"anyOf": [_FRAME, _text(grammar.DURATION)]}
 _EVENT_NAME: Schema = {**_text(grammar.EVENT), "not": {"enum": list(times.RESERVED_NAMES)}}
 
@@ -200,6 +201,7 @@ AXES = Kind(
     {"type": "array", "items": {"enum": list(scalars.AXES)}, "minItems": 1, "uniqueItems": True},
 )
 TIME = Kind(_time, f"a time: {times.TIME_WORDS}", _TIME)
+INSTANT = Kind(_plainly(times.parse_instant), times.INSTANT_WORDS, _INSTANT)
 INTERVAL = Kind(_interval, "an interval [from, to]", {"type": "array", "items": _TIME, "minItems": 2, "maxItems": 2})
 DURATION = Kind(_plainly(times.parse_duration), f"a duration: {times.DURATION_WORDS}", _DURATION)
 EFFECTOR = Kind(_plainly(values.parse_effector), f"an effector: {values.EFFECTOR_WORDS}", _EFFECTOR)

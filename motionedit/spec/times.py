@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 _TIME = re.compile(grammar.TIME)
+_INSTANT = re.compile(grammar.PLAIN_INSTANT)
 _DURATION = re.compile(grammar.DURATION)
 # What would be a time or a duration without its sign.
 _NEGATIVE = re.compile(rf"-{grammar.INSTANT}")
@@ -22,6 +23,7 @@ _NEGATIVE = re.compile(rf"-{grammar.INSTANT}")
 RESERVED_NAMES = ("first", "mean", "event")
 
 TIME_WORDS = "a frame such as 94, or 3.76s, 71.2%, an event's name, or hit + 1.5s"
+INSTANT_WORDS = "a frame such as 94, or a time such as 3.76s or 71.2%"
 DURATION_WORDS = "whole frames such as 40, or seconds such as 0.8s"
 
 # A half frame that binary fractions put a hair too low is still a half: 0.145 s at 0.01 s a frame is 14.5 frames.
@@ -137,6 +139,20 @@ def parse_time(value: object) -> Time:
     if _NEGATIVE.fullmatch(text):
         raise faulty(f"must not be negative: frames count from 0; not {show(value)}")
     raise faulty(f"must be a time: {TIME_WORDS}; not {show(value)}")
+
+
+def parse_instant(value: object, *, words: str = INSTANT_WORDS) -> Time:
+    """Return the time of a plain value that names no event: ``94``, ``3.76s``, ``71.2%``; `words` say what it may be.
+
+    Raises
+    ------
+    FaultyValueError
+        Where it is none of these, negative, or more than 100 %.
+    """
+    text = _text(value)
+    if _INSTANT.fullmatch(text) or _NEGATIVE.fullmatch(text):
+        return parse_time(value)
+    raise faulty(f"must be {words}; not {show(value)}")
 
 
 def _text(value: object) -> str:

@@ -15,8 +15,8 @@ HANDED_OVER = {
     "fit_pca": {"normalize.normalization_file"},
     "edit_pc": {"preview.with_page"},
     "edit_prioritized": {"preview.with_page"},
-    # Whether a spec fits a clip the edit says, and what unit it is likely in, `info`.
-    "check": {"edit_prioritized.job", "info.job"},
+    # Whether a spec fits a clip its command says, and what unit it is likely in, `info`.
+    "check": {"edit_pc.without_model", "edit_prioritized.job", "normalize.measures", "info.job"},
 }
 
 

@@ -10,7 +10,9 @@ import pytest
 import motionedit
 from motionedit.core import rotations as rot
 from motionedit.core.body.contacts import sole_tracks
+from motionedit.core.bvh import new_bytes, read_clip
 from motionedit.core.kinematics import forward
+from motionedit.core.motion import Motion
 from motionedit.jobs.clip.facts import facts_of
 
 DATA = Path(__file__).parents[2] / "data"
@@ -65,6 +67,8 @@ def test_a_foot_in_the_air_goes_where_another_constraint_puts_it(edit):
     after, record = edit([FEET, {**kick, "points": [{"at": middle, "shift": [0, 8, 0]}]}], clip=WALK)
     assert drift(after, before.phases) < 0.01
     assert record["constraints"][-1]["error_max"] < 0.01
+    # As docs/feet.md has it: the foot is left to the kick between two stretches.
+    assert [each["name"] for each in record["constraints"]] == ["feet", "feet-stretch-2", "feet-2", "LeftFoot"]
 
 
 def test_plants_stand_where_the_reference_has_them(edit):
@@ -284,6 +288,21 @@ def test_check_tells_of_each_clip_and_of_limits_that_are_passed(run, tmp_path):
     assert [each["status"] for each in clips] == ["ok", "unfit"]
     assert run("check", WALK, SKATING).exit_code == 0
     assert run("check", WALK, SKATING, "-j", "2", "--limit", "foot_sliding_share=0.5").stdout == done.stdout
+
+
+@pytest.mark.parametrize("height", [-40.0, -8.0, 0.0, 8.0, 40.0])
+def test_check_says_where_feet_stand_that_do_not_stand_on_the_floor(run, tmp_path, height):
+    motion = read_clip(WALK).motion
+    shifted = Motion(
+        motion.skeleton, motion.rotations, motion.translations + np.array([0.0, height, 0.0]), motion.frame_time
+    )
+    (tmp_path / "w.bvh").write_bytes(new_bytes(shifted))
+    done = run("check", "w.bvh", "--report", "r.json")
+    (clip,) = json.loads((tmp_path / "r.json").read_text())["clips"]
+    said = [line for line in clip["warnings"] if line.startswith("feet stand at y = ")]
+    assert ("feet stand at y = " in done.stdout) == bool(said) == (abs(height) > 10.0)
+    if said:
+        assert abs(float(said[0].split(" = ")[1].split(":")[0]) - height) < 3.0
 
 
 def test_check_takes_limits_of_a_file_and_refuses_what_is_no_limit(run, tmp_path):

@@ -1,6 +1,7 @@
 """Normalizing and fitting the golf swings: which clips make a database, what a run refuses and what it says."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 
@@ -145,6 +146,28 @@ def test_events_come_from_a_table_and_a_clip_that_has_none_is_named(run, data, t
     result = run("normalize", data, "-s", spec, "-o", "n")
     assert result.exit_code == 1
     assert f"no frame for {data / 'swing10.bvh'}; add it to frames, or give detect" in result.stderr
+
+
+def test_a_clip_that_is_like_one_of_the_database_is_told_why_it_is_none(run, data, tmp_path):
+    frames = "{swing01: 91, swing02: 87, swing03: 96}"
+    (tmp_path / "n.yaml").write_text(f"schema: motionedit/normalize/v1\nevents: {{hit: {{frames: {frames}}}}}\n")
+    clips = [data / f"swing0{n}.bvh" for n in (1, 2, 3)]
+    assert run("normalize", *clips, "-s", "n.yaml", "-o", "n").exit_code == 0
+    assert run("fit-pca", "n", "-o", "m.npz").exit_code == 0
+    goal = "{at: hit, effector: {end_site: Club}, shift: [0, 0, 1]}"
+    (tmp_path / "e.yaml").write_text(f"schema: motionedit/edit-pc/v1\ngoals: [{goal}]\n")
+    (tmp_path / "copy.bvh").write_bytes(clips[1].read_bytes())
+    (tmp_path / "swing03.bvh").write_bytes((data / "swing04.bvh").read_bytes())
+    for name, why in (
+        ("copy", ": it has the bytes of the database's 'swing02' under another name; a clip is known by"),
+        ("swing03", ": it has the name of the database's 'swing03' and other bytes; a clip is known by"),
+        (data / "swing05", "; give it in the spec, as"),
+    ):
+        done = run("edit-pc", f"{name}.bvh", "-m", "m.npz", "-s", "e.yaml", "-o", "o.bvh")
+        assert done.exit_code == 1
+        assert f"no frame for the model's event 'hit'{why}" in done.stderr
+        assert f"events: {{hit: {{frames: {{{Path(name).name}: FRAME}}}}}}" in done.stderr
+    assert run("edit-pc", clips[1], "-m", "m.npz", "-s", "e.yaml", "-o", "o.bvh").exit_code == 0
 
 
 def test_normalize_warns_of_an_event_at_the_edge_of_its_window_and_of_a_clip_of_another_length(run, data, tmp_path):

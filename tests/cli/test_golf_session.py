@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from motionedit.core import kinematics, rotations
 from motionedit.core.bvh import parse_clip, read_clip, resampled_bytes
 from motionedit.core.motion import Motion
 from motionedit.jobs.fit_pca import database
@@ -204,6 +205,33 @@ def test_a_clip_from_standard_input_goes_to_standard_output(run, golf, data, tmp
     assert piped.exit_code == 0
     clip = parse_clip(piped.stdout_bytes, label="piped")
     assert len(clip.motion) == 129
+
+
+def slips(golf, clip, **spec):
+    """Return by how much the left hand moves on the right hand's grip, cm, shape (F,), and the edit's record."""
+    edit = golf.edit(clip, [0, 0, 10], **spec)
+    places = []
+    for path in (clip, edit.path):
+        motion = read_clip(path).motion
+        poses, names = kinematics.forward(motion), motion.skeleton.names
+        left, right = names.index("LeftHand"), names.index("RightHand")
+        apart = poses.positions[:, left] - poses.positions[:, right]
+        places.append(rotations.unrotate(poses.rotations[:, right], apart))
+    return np.linalg.norm(places[1] - places[0], axis=1), edit.record
+
+
+def test_both_hands_stay_on_the_club_unless_they_are_let_go(golf):
+    for swing in golf.swings:
+        slipped, record = slips(golf, swing)
+        assert slipped.max() < 3.0
+        assert np.median(slipped) < 1e-3
+        assert record["status"] in ("ok", "rough")
+        last = len(read_clip(swing).motion) - 1
+        assert record["hands"]["grips"] == [{"first_frame": 0, "last_frame": last}]
+        assert record["hands"]["apart_max"] == pytest.approx(slipped.max(), abs=1e-3)
+    slipped, record = slips(golf, golf.swings[9], hands="off")
+    assert slipped.max() > 20.0
+    assert record["hands"] is None
 
 
 def test_shifts_in_the_heading_frame_are_the_characters_own(run, golf, data, tmp_path):

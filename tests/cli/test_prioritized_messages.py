@@ -12,6 +12,13 @@ from prioritized_edits import ARM_ONLY, FEET_AS_CAPTURED, RAISED, WALK, hand
         ({"effector": "LeftHnd"}, {}, "constraints.0.effector", "no joint 'LeftHnd' in"),
         ({"effector": {"end_site": "LeftHand"}}, {}, "constraints.0.effector", "has no end site"),
         ({"relative_to": "Spin1"}, {}, "constraints.0.relative_to", "did you mean 'Spine1'?"),
+        (
+            {"relative_to": "LeftHandIndex1"},
+            {},
+            "constraints.0.relative_to",
+            "'LeftHandIndex1' hangs on the effector in",
+        ),
+        ({"type": "pose", "relative_to": "LThumb"}, {}, "constraints.0.relative_to", "never moves in that frame"),
         ({"recruit": {"up_to": "RightArm"}}, {}, "constraints.0.recruit.up_to", "'RightArm' is not on the way of 'h'"),
         ({"recruit": {"joints": ["LeftArm", "Arm"]}}, {}, "constraints.0.recruit.joints.1", "no joint 'Arm'"),
         ({}, {"defaults": {"recruit": {"up_to": "Head"}}}, "defaults.recruit.up_to", "'Head' is not on the way"),
@@ -35,6 +42,14 @@ def test_what_the_clip_lacks_is_said_in_one_line_with_its_place(edit, constraint
     assert f": {place}: " in error
     assert message in error
     assert not done.path.exists()
+
+
+def test_a_joint_that_hangs_on_the_effector_is_a_measure_where_one_between_is_recruited(edit):
+    points = [{"hold": [66, 72], "shift": [0, 0, 0.5]}]
+    asked = hand(*points, relative_to="LeftHandIndex1", recruit={"joints": ["LeftFingerBase"]})
+    done = edit([asked])
+    assert done.result.exit_code == 0
+    assert done.constraint("hand")["recruited"] == ["LeftFingerBase"]
 
 
 def test_all_that_a_clip_lacks_is_said_together(edit):

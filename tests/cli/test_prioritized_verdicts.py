@@ -39,6 +39,17 @@ def test_what_only_rides_warns_where_it_is_far_off_and_does_not_fail_strict(edit
     assert edit([RAISED, {**riding, "tolerance": 0.5}], "--strict").result.exit_code == 3
 
 
+def test_points_that_strict_does_not_count_warn_where_they_are_missed_at_all(edit):
+    # Half a centimetre: what asks for nothing of its own is not warned of for so little.
+    ask = {"name": "ask", "type": "position", "effector": "LeftHand", "priority": 1}
+    asked = [{**ask, "points": [{"during": [66, 72]}]}, hand({"during": [66, 72], "shift": [0, 0.5, 0]})]
+    done = edit(asked, "--strict")
+    assert (done.result.exit_code, done.record["status"]) == (0, "ok")
+    assert done.constraint("ask")["status"] == "out_of_tolerance"
+    (warning,) = done.warnings
+    assert "warning: ask: 0.5 from its goal at frame " in warning
+
+
 def test_the_report_tells_every_frame(edit):
     record = edit([FEET_AS_CAPTURED, RAISED]).record
     hand = record["constraints"][-1]

@@ -59,11 +59,20 @@ def test_keys_are_words_and_nothing_is_endless():
     assert "spec: a key must be a word, not 3" in refused(motionedit.edit_prioritized, "data/walk.bvh", {3: 4})
 
 
+AN_EVENT = "a frame such as 94, a time such as 3.76s or 71.2%, or {frames: ...} or {detect: ...}"
+
+
 @pytest.mark.parametrize(
     ("frame", "message"),
     [
-        ("x", "events.hit: must be a frame such as 94, or {frames: ...} or {detect: ...}; not 'x'"),
-        (None, "events.hit: needs a value: a frame such as 94, or {frames: ...} or {detect: ...}"),
+        (
+            "x",
+            f"events.hit: must be {AN_EVENT}; not 'x'",
+        ),
+        (
+            None,
+            f"events.hit: needs a value: {AN_EVENT}",
+        ),
         (object(), "events.hit: a value of type object cannot stand in a spec"),
         (9000, f"events.hit: in {SWING}: frame 9000 is outside the take, whose frames are 0 to 120"),
     ],

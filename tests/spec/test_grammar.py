@@ -47,7 +47,7 @@ def both(kind, value):
 @example("-0s")
 @example("+5")
 @example(" \u3000événement-eins\u2003+ .5e1 s\n")
-@pytest.mark.parametrize("kind", [kinds.TIME, kinds.DURATION], ids=["time", "duration"])
+@pytest.mark.parametrize("kind", [kinds.TIME, kinds.INSTANT, kinds.DURATION], ids=["time", "instant", "duration"])
 def test_the_parser_and_the_schema_take_the_same_times(kind, value):
     if isinstance(value, float) and not value.is_integer():
         # A number is refused where it is no whole one, by both.

@@ -223,6 +223,19 @@ events:
 """
 
 
+class Clip(list):
+    """A clip as far as times ask for it: its frames, of which 25 are a second."""
+
+    frame_time = 0.04
+    label = "walk.bvh"
+    motion = property(lambda self: self)
+
+
+def given_in(loaded, relative, *, others=()):
+    """Return what a spec gives for a clip of 101 frames."""
+    return explicit_events(loaded, Clip(range(101)), relative=relative, others=others)
+
+
 @pytest.mark.parametrize(
     ("clip", "hit"),
     [
@@ -233,31 +246,49 @@ events:
     ],
 )
 def test_a_clip_of_a_table_is_named_by_path_or_stem(clip, hit, load):
-    found = explicit_events(load(EVENTS, "normalize"), clip)
+    found = given_in(load(EVENTS, "normalize"), clip)
     assert found == ({"every": 7} if hit is None else {"every": 7, "hit": hit})
+
+
+@pytest.mark.parametrize(
+    ("event", "frame"),
+    [("2s", 50), ("50%", 50), ("100%", 100), ("'7'", 7), (" 1.5 s", 38), ("{frames: {a: 3s, b: 9}}", 75)],
+)
+def test_a_time_stands_where_a_frame_of_an_event_may(load, event, frame):
+    for command in ("normalize", "edit-prioritized"):
+        more = "" if command == "normalize" else "\nconstraints: []"
+        assert given_in(load(f"events: {{hit: {event}}}{more}", command), "a.bvh") == {"hit": frame}
+
+
+@pytest.mark.parametrize(("event", "key"), [("5s", "hit"), ("{frames: {a: 5s}}", "hit.frames.a")])
+def test_a_time_of_an_event_outside_its_clip_is_refused(load, event, key):
+    found = refusal(given_in, load(f"events: {{hit: {event}}}", "normalize"), "a.bvh")
+    assert found == (
+        f"spec.yaml:2: events.{key}: in walk.bvh: 5s (frame 125) is outside the clip, whose frames are 0 to 100"
+    )
 
 
 def test_a_stem_that_two_clips_share_is_refused(load):
     loaded = load(EVENTS, "normalize")
     clips = ("a/swing01.bvh", "b/swing01.bvh", "c/swing02.bvh")
-    found = refusal(explicit_events, loaded, clips[0], others=clips)
+    found = refusal(given_in, loaded, clips[0], others=clips)
     assert found == (
         "spec.yaml:6: events.hit.frames.swing01: 'swing01' may be a/swing01.bvh or b/swing01.bvh; give the clip's path"
     )
-    assert explicit_events(loaded, clips[2], others=clips) == {"every": 7}
+    assert given_in(loaded, clips[2], others=clips) == {"every": 7}
 
 
 def test_a_name_that_is_another_clip_s_whole_path_is_not_this_one_s(load):
     clips = ("swing01.bvh", "b/swing01.bvh")
     loaded = load(EVENTS, "normalize")
-    assert explicit_events(loaded, clips[0], others=clips) == {"every": 7, "hit": 1}
-    assert explicit_events(loaded, clips[1], others=clips) == {"every": 7}
+    assert given_in(loaded, clips[0], others=clips) == {"every": 7, "hit": 1}
+    assert given_in(loaded, clips[1], others=clips) == {"every": 7}
 
 
 def test_an_event_outside_its_clip_is_refused(load):
     def events(loaded, clip, *, frames):
         facts = SimpleNamespace(first=0, last=frames - 1)
-        known = explicit_events(loaded, clip)
+        known = given_in(loaded, clip)
         given = {name: event for name, event in loaded.model.events.items() if event.detect is None}
         return event_frames(given, facts, Place(loaded, ("events",), clip), known=known)
 
@@ -274,6 +305,6 @@ def test_a_clip_of_thousands_is_found_in_a_table_of_thousands_without_looking_at
     (tmp_path / "hits.csv").write_text("clip,frame\n" + "".join(f"swing{i},{i}\n" for i in range(3000)))
     loaded = load("events: {hit: {frames: hits.csv}}", "normalize")
     started = time.process_time()
-    found = [explicit_events(loaded, clip, others=clips)["hit"] for clip in clips]
+    found = [given_in(loaded, clip, others=clips)["hit"] for clip in clips]
     assert found == list(range(3000))
     assert time.process_time() - started < 5.0  # every clip beside every row takes a minute

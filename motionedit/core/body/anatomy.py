@@ -55,6 +55,11 @@ class Arm:
     elbow: int
     wrist: int
 
+    @property
+    def as_leg(self) -> Leg:
+        """Its joints as those of a leg: what solves two bones does not mind which."""
+        return Leg(self.shoulder, self.elbow, self.wrist, None)
+
 
 @dataclass(frozen=True)
 class Anatomy:

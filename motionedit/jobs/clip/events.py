@@ -18,13 +18,16 @@ from motionedit.jobs.clip.faults import Faults
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
+    from motionedit.core.bvh import Clip
     from motionedit.core.kinematics import Effector
+    from motionedit.core.motion import Motion
     from motionedit.core.skeleton import Skeleton
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.jobs.clip.resolve import Place
     from motionedit.spec.document import Document
     from motionedit.spec.events import DetectRule, EventSpec
     from motionedit.spec.load import LoadedSpec
+    from motionedit.spec.times import Time
 
 
 _QUANTITIES: dict[str, Quantity] = {"height": "height", "speed": "speed", "distance": "distance"}
@@ -34,8 +37,10 @@ _NO_NAMES = frozenset(("", "."))
 _EFFECTORS: LastFew[Effector] = LastFew(16)
 
 
-def explicit_events(loaded: LoadedSpec[Document], relative: str, *, others: Collection[str] = ()) -> dict[str, float]:
-    """Return the frames that the spec itself gives for a clip's events.
+def explicit_events(
+    loaded: LoadedSpec[Document], clip: Clip, *, relative: str, others: Collection[str] = ()
+) -> dict[str, float]:
+    """Return the frames that the spec itself gives for a clip's events, or the times.
 
     Parameters
     ----------
@@ -47,21 +52,25 @@ def explicit_events(loaded: LoadedSpec[Document], relative: str, *, others: Coll
     Raises
     ------
     SpecError
-        Where a stem is not unique.
+        Where a stem is not unique, or a time is outside the clip.
     """
     found: dict[str, float] = {}
     for name, event in loaded.model.events.items():
         if event.frames is None:
             continue
-        value = event.frames.every
+        value, place = event.frames.every, resolve.Place(loaded, ("events", name), clip.label)
         if value is None:
-            place = resolve.Place(loaded, ("events", name, "frames"), relative)
-            key = _clip_key(event.frames.by_clip, relative, others, place)
+            by_clip = event.frames.by_clip
+            key = _clip_key(by_clip, relative, others, resolve.Place(loaded, (*place.keys, "frames"), relative))
             if key is None:
                 continue
-            value = event.frames.by_clip[key]
-        found[name] = float(value)
+            value, place = by_clip[key], place.at("frames", key)
+        found[name] = float(value if isinstance(value, int) else _frame(value, clip.motion, place))
     return found
+
+
+def _frame(time: Time, motion: Motion, place: Place) -> int:
+    return resolve.frame(time, place, frames=len(motion), frame_time=motion.frame_time, events={})
 
 
 def event_frames(
@@ -110,9 +119,9 @@ def found_events(
             raise place.at(name).error(message)
     # A rule may wait for another's event; the spec has refused rings, so each round finds at least one.
     waiting = {name: spec.detect for name, spec in specs.items() if spec.detect is not None and name not in frames}
-    effectors = _effectors(waiting, facts, place)
+    effectors = rule_effectors(waiting, facts, place)
     while waiting:
-        ready = [name for name, rule in waiting.items() if not _waits_for(rule) & waiting.keys()]
+        ready = [name for name, rule in waiting.items() if not waits_for(rule) & waiting.keys()]
         for name in ready:
             rule, where = waiting.pop(name), place.at(name).at("detect")
             windows[name] = _window(rule, facts, where, events=frames)
@@ -120,13 +129,20 @@ def found_events(
     return FoundEvents(frames, {name: windows[name] for name in specs if name in windows})
 
 
-def _waits_for(rule: DetectRule) -> set[str]:
+def waits_for(rule: DetectRule) -> set[str]:
+    """Return the events whose frames a rule needs."""
     times = [] if rule.between is None else [rule.between.start, rule.between.stop]
     return {name for name in (rule.after, *(time.event for time in times)) if name is not None}
 
 
-def _effectors(rules: Mapping[str, DetectRule], facts: ClipFacts, place: Place) -> dict[str, Effector]:
-    """Return the points that rules are about, by their events."""
+def rule_effectors(rules: Mapping[str, DetectRule], facts: ClipFacts, place: Place) -> dict[str, Effector]:
+    """Return the points that rules are about, by their events.
+
+    Raises
+    ------
+    SpecError, MotionEditErrors
+        Of all that the clip lacks.
+    """
     faults = Faults()
     found: dict[str, Effector] = {}
     for name, rule in rules.items():
@@ -182,7 +198,7 @@ def _window(rule: DetectRule, facts: ClipFacts, place: Place, *, events: Mapping
     return min(max(start, facts.first), stop), stop
 
 
-def _clip_key(by_clip: Mapping[str, int], relative: str, others: Collection[str], place: Place) -> str | None:
+def _clip_key(by_clip: Mapping[str, object], relative: str, others: Collection[str], place: Place) -> str | None:
     """Return the key that means a clip: its path or its name, each with or without .bvh."""
     path = _posix(relative)
     keys = _keys_by_path(tuple(by_clip))

@@ -67,7 +67,7 @@ def clip_goals(
         Goals name what the clip lacks.
     """
     motion = facts.clip.motion
-    _refuse_unknown_joints(loaded, facts)
+    refuse_unknown_joints(loaded, facts)
     least = max(DEFAULT_TOLERANCE / model.space.scale, solver_tolerance(loaded.model))
     goals = []
     for i, goal in enumerate(loaded.model.goals):
@@ -79,7 +79,7 @@ def clip_goals(
     return goals
 
 
-def _refuse_unknown_joints(loaded: LoadedSpec[EditPcSpec], facts: ClipFacts) -> None:
+def refuse_unknown_joints(loaded: LoadedSpec[EditPcSpec], facts: ClipFacts) -> None:
     """Raise the errors of all joints that goals name and the clip lacks."""
     faults, skeleton = Faults(), facts.clip.motion.skeleton
     for i, goal in enumerate(loaded.model.goals):

@@ -33,6 +33,7 @@ from motionedit.jobs.clip.kept_rules import body_said
 from motionedit.jobs.clip.metrics import edit_metrics, feet_of
 from motionedit.jobs.clip.roughness import rough_lines
 from motionedit.jobs.edit_pc.goals import clip_goals, numbers_of
+from motionedit.jobs.edit_pc.holding import Holding, edit_holding
 from motionedit.jobs.edit_pc.model_events import events_for_model, refuse_unknown_events
 from motionedit.jobs.edit_pc.record import Judged, edit_record, goal_line
 from motionedit.jobs.edit_pc.solver import chosen_solver, plausibility_bound, residual_share
@@ -174,7 +175,8 @@ class _Edit:
 
         requests, feet = [goal.request for goal in goals], spec.feet_in_force
         edit = solve(requests) if feet == "off" else edit_standing(solve, again, requests, facts, places=feet)
-        return self._outcome(facts, projection, edit, goals, before=poses, bound=bound)
+        held = Holding(edit) if spec.hands_in_force == "off" else edit_holding(edit, requests, facts)
+        return self._outcome(facts, projection, held, goals, before=poses, bound=bound)
 
     def _feet(
         self,
@@ -223,19 +225,20 @@ class _Edit:
         self,
         facts: ClipFacts,
         projection: Projection,
-        edit: CoefficientEdit,
+        held: Holding,
         goals: Sequence[ClipGoal],
         *,
         before: WorldPoses,
         bound: float | None,
     ) -> Outcome:
-        spec, motion = self.loaded.model, facts.clip.motion
+        spec, motion, edit = self.loaded.model, facts.clip.motion, held.edit
         retimed = spec.timing == "normalized"
         changed = bool(edit.touched.any() or edit.moved.any())
         after = kinematics.forward(edit.motion) if changed else before
         traces = (feet_of(facts, [facts.poses]), None if retimed else feet_of(facts, [after]))
         steps = None if retimed else change_steps(motion, edit.motion, first=facts.first)
-        odd, rough = unexplained(projection, self.model, seconds=projection.seconds)
+        odd, strange = unexplained(projection, self.model, seconds=projection.seconds)
+        rough = [*strange, *held.rough]
         if traces[1] is not None and steps is not None and changed:
             rough += rough_lines(
                 facts,
@@ -256,7 +259,7 @@ class _Edit:
         result = edit_record(self.model, projection, edit, goals, poses=after, verdicts=verdicts)
         return Outcome(
             resampled_bytes(facts.clip, edit.motion) if retimed else _edited_bytes(facts.clip, projection, edit),
-            {"message": result.message, **about, **result.record},
+            {"message": result.message, **about, **result.record, "hands": held.record},
             result.status,
             result.warnings,
             motion=edit.motion if changed or retimed else None,

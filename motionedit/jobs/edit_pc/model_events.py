@@ -14,11 +14,14 @@ from motionedit.jobs.clip.kept_rules import KeptRules
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from motionedit.core.pca.model import MotionModel
+    from motionedit.core.pca.model import DatabaseClip, MotionModel
     from motionedit.jobs.batch.plan import ClipTask
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.spec.edit_pc import EditPcSpec
     from motionedit.spec.load import LoadedSpec
+
+
+_KNOWN_BY = "a clip is known by its name and its bytes"
 
 
 def refuse_unknown_events(loaded: LoadedSpec[EditPcSpec], model: MotionModel) -> None:
@@ -57,7 +60,7 @@ def events_for_model(
     SpecError
         As `event_frames`.
     """
-    known = explicit_events(loaded, task.relative, others=others)
+    known = explicit_events(loaded, facts.clip, relative=task.relative, others=others)
     place = resolve.Place(loaded, ("events",), task.label)
     rules = dict(loaded.model.events)
     database = _database_events(model, facts, task)
@@ -74,19 +77,33 @@ def events_for_model(
     for name in needed:
         if name not in frames:
             message = (
-                f"no frame for the model's event '{name}'; give it in the spec, as events: "
-                f"{{{name}: {{frames: {{{PurePosixPath(task.relative).stem}: 94}}}}}}"
+                f"no frame for the model's event '{name}'{_why_unknown(model, facts, task)}; give it in the spec, as "
+                f"events: {{{name}: {{frames: {{{PurePosixPath(task.relative).stem}: FRAME}}}}}}"
             )
             raise ClipError(message, file=task.label)
     return frames
 
 
 def _database_events(model: MotionModel, facts: ClipFacts, task: ClipTask) -> dict[str, float]:
-    stem = PurePosixPath(task.relative).stem
     for clip in model.clips:
-        if PurePosixPath(clip.name).name == stem and clip.digest == facts.clip.sha256:
+        if _is_named(clip, task) and clip.digest == facts.clip.sha256:
             return dict(clip.events)
     return {}
+
+
+def _why_unknown(model: MotionModel, facts: ClipFacts, task: ClipTask) -> str:
+    """Return why a clip that is like one of the database is not taken for it, or an empty text."""
+    for clip in model.clips:
+        if clip.digest == facts.clip.sha256 and not _is_named(clip, task):
+            return f": it has the bytes of the database's '{clip.name}' under another name; {_KNOWN_BY}"
+    for clip in model.clips:
+        if _is_named(clip, task) and clip.digest != facts.clip.sha256:
+            return f": it has the name of the database's '{clip.name}' and other bytes; {_KNOWN_BY}"
+    return ""
+
+
+def _is_named(clip: DatabaseClip, task: ClipTask) -> bool:
+    return PurePosixPath(clip.name).name == PurePosixPath(task.relative).stem
 
 
 def _model_rules(model: MotionModel, names: Sequence[str], *, label: str) -> dict[str, Any]:

@@ -32,6 +32,7 @@ from motionedit.jobs.edit_prioritized.loose_feet import loose_feet
 from motionedit.jobs.edit_prioritized.record import edit_record
 from motionedit.jobs.edit_prioritized.recruits import breach_error, breach_warnings, immovable_warnings, layer_lines
 from motionedit.jobs.edit_prioritized.reference import reference_facts, reference_files, refuse_missing_reference
+from motionedit.jobs.edit_prioritized.rest_pose import moved_rest_pose
 from motionedit.jobs.edit_prioritized.standing import on_feet
 from motionedit.jobs.preview.with_page import with_page
 
@@ -172,7 +173,7 @@ class EditByPriorities:
         none: dict[str, float] = {}
 
         def frames() -> dict[str, float]:
-            known = explicit_events(self.loaded, task.relative, others=self.others)
+            known = explicit_events(self.loaded, sized.facts.clip, relative=task.relative, others=self.others)
             return event_frames(spec.events, sized.facts, place, known=known)
 
         events = faults.get(frames, otherwise=none)
@@ -230,11 +231,12 @@ class EditByPriorities:
         record = {**about, "solver": edit.solver, **result.record, "passes": spec.smoothing.pass_count}
         breaches = breach_warnings(edit.breaches, asked, facts, rule=spec.recruiting_rule)
         immovable = immovable_warnings(asked, edit.recruits, facts)
+        rest = moved_rest_pose(sized.input, edit.motion, asked, first=facts.first, scale=sized.scale)
         return Outcome(
             _content(clip, edit, sized) if changed else unedited_bytes(clip),
             {"message": result.message, **record},
             result.status,
-            (*sized.warnings, *immovable, *breaches, *loose, *result.warnings),
+            (*sized.warnings, *immovable, *breaches, *rest, *loose, *result.warnings),
             motion=_in_clip_units(edit, sized, slice(None)) if changed and self.verify else None,
             details=(*layer_lines(asked, edit.recruits, sized.body.hinges, facts), *breaches)
             if self.tells_plan

@@ -22,7 +22,8 @@ if TYPE_CHECKING:
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.jobs.edit_prioritized.constraints import ClipConstraint
 
-# A constraint that --strict does not count is worth a warning from so many tolerances on: 1 cm, 1 degree.
+# What has no points, asks to stay as it was, and is not counted by --strict is worth a warning from so many tolerances
+# on: 1 cm, 1 degree.
 FAR_OFF = 10.0
 
 
@@ -58,7 +59,7 @@ def edit_record(
         if one.each.counts:
             statuses.append(found.status)
             missed.append(line)
-        if one.each.counts or one.largest > FAR_OFF:
+        if one.each.counts or one.each.constraint.points or one.largest > FAR_OFF:
             warnings.append(line)
     solved = edit.iterations[edit.iterations > 0]
     record = {

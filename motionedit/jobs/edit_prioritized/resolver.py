@@ -77,7 +77,7 @@ class Resolver:
             **given,
         )
         for each in found:
-            self._check_recruits(each, place)
+            self._check_recruits(each, place, base=measured.get("relative_to"))
         return found
 
     def _value(self, own: OwnValue, constraint: Place) -> Any:  # noqa: ANN401  of any kind
@@ -137,13 +137,13 @@ class Resolver:
         )
         return RecruitRule("joints", joints=joints, root=root)
 
-    def _check_recruits(self, constraint: Constraint, place: Place) -> None:
-        """Find an `up_to` that is not above the effector."""
+    def _check_recruits(self, constraint: Constraint, place: Place, *, base: int | None) -> None:
+        """Find an `up_to` that is not above the effector, and a base that goes wherever the effector goes."""
         if self.faults.errors:
             return
         skeleton = self.facts.clip.motion.skeleton
         try:
-            constraint.recruits(Movable(skeleton, self.facts.travel, frozenset()))
+            recruits = constraint.recruits(Movable(skeleton, self.facts.travel, frozenset()))
         except NotOnTheWayError as error:
             names = listed([skeleton.names[j] for j in sorted(error.way, reverse=True)])
             joint = skeleton.names[error.joint]
@@ -151,6 +151,18 @@ class Resolver:
                 f"'{joint}' is not on the way of '{constraint.name}' to the root in {place.clip}, which is {names}"
             )
             self.faults.add(resolve.recruit_place(place).at("up_to").error(message))
+            return
+        effector = constraint.at
+        if base is None or effector is None or effector.joint not in skeleton.chain(base):
+            return
+        between = set(skeleton.chain(base).tolist()) - set(skeleton.chain(effector.joint).tolist())
+        if not between & recruits.joints:
+            message = (
+                f"'{skeleton.names[base]}' hangs on the effector in {place.clip} and goes wherever it goes, so that it "
+                "never moves in that frame; name another joint, such as one above it, recruit joints between the two, "
+                "or leave it out for the world"
+            )
+            self.faults.add(place.at("relative_to").error(message))
 
     def _points(self, points: Sequence[Point], axes: GivenAxes, place: Place) -> tuple[ControlPoint, ...]:
         found: list[ControlPoint] = []

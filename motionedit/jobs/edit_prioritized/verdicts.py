@@ -10,6 +10,7 @@ from motionedit.core.priorities.blame import blame_of
 from motionedit.core.priorities.settings import LayeredSettings, PaperFilter
 from motionedit.core.priorities.solver.problem import order_of_layers
 from motionedit.dataclass import dataclass
+from motionedit.jobs.edit_prioritized.rest_pose import begins_within, rest_pose_words
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 _DIGITS = 6
 _OUT_OF_REACH = "out of reach of the joints it recruits"
 _FILTERED = "the low-pass on the root moved it (smoothing: paper)"
-_SMOOTHED = "the smoothing left it there"
+_SMOOTHED = "within reach at that frame by itself, but not along a smooth path"
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +109,17 @@ def verdict(i: int, one: Measured, edit: PrioritizedEdit, settings: LayeredSetti
             alone = measured(one.each, blame.left, scale)
             reason = _reason(i, one, [each.name for each in blamed], edit, settings, is_met_alone=not alone.missed)
     status = "unreachable" if reason == _OUT_OF_REACH else "out_of_tolerance"
+    reason += _rest_pose(i, one, edit, reason)
     return Verdict("ok" if one.each.may_give_way else status, tuple(names), reason)
+
+
+def _rest_pose(i: int, one: Measured, edit: PrioritizedEdit, reason: str) -> str:
+    """Return that a constraint is missed as it begins within the rest pose, or an empty text."""
+    first = edit.asked.body.first
+    in_the_way = reason == _SMOOTHED or (reason == _OUT_OF_REACH and one.worst < first)
+    if not in_the_way or not begins_within(edit.asked.constraints[i], first):
+        return ""
+    return f"; its points begin within {rest_pose_words(first)}: begin at frame {first}"
 
 
 def _reason(

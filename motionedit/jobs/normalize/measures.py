@@ -109,7 +109,7 @@ def _events(
     others: Sequence[str],
 ) -> tuple[dict[str, float], list[str]]:
     """Return the frames of all events of a clip, and what is odd about them."""
-    known = explicit_events(loaded, task.relative, others=others)
+    known = explicit_events(loaded, facts.clip, relative=task.relative, others=others)
     place = resolve.Place(loaded, ("events",), task.label)
     found = found_events(loaded.model.events, facts, place, known=known)
     for name in loaded.model.events:

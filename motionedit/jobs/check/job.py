@@ -6,15 +6,21 @@ import math
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from motionedit.core.arrays import median
 from motionedit.core.blocks import blocks_of
 from motionedit.core.body import ground
+from motionedit.core.body.anatomy import NOTHING_GIVEN
 from motionedit.core.body.quality import find_defects
 from motionedit.core.body.steps import own_steps
-from motionedit.dataclass import dataclass
+from motionedit.core.units import STANDARD_LEG
+from motionedit.dataclass import dataclass, replace
 from motionedit.errors import EXIT_CLIP_FAILED, EXIT_DONE, EXIT_OUT_OF_TOLERANCE, MotionEditError, UsageError
 from motionedit.jobs.batch.one_clip import read_task
 from motionedit.jobs.batch.plan import find_clips
 from motionedit.jobs.clip.facts import facts_of
+from motionedit.jobs.clip.faults import Faults
 from motionedit.jobs.clip.metrics import clip_metrics, feet_of
 from motionedit.jobs.info.job import likely_unit
 from motionedit.regular_files import read_file
@@ -25,8 +31,11 @@ if TYPE_CHECKING:
 
     from motionedit.core.bvh import Clip
     from motionedit.jobs.batch.plan import ClipTask
+    from motionedit.jobs.check.specs import SpecCheck
     from motionedit.jobs.clip.facts import ClipFacts
 
+# Metres at leg length 0.85 m: feet that stand further above or below the floor of the file stand on another.
+_OFF_THE_FLOOR = 0.1
 # What a limit may be set on, each with its words; a clip passes it where its measure is larger.
 MEASURES = {
     "foot_skate_mean": "m/s",
@@ -96,7 +105,7 @@ def run(
     clips: Sequence[Path],
     *,
     limits: Mapping[str, float],
-    spec: Path | None = None,
+    check: SpecCheck | None = None,
     up: str = "auto",
     lenient: bool = False,
     jobs: int = 1,
@@ -107,11 +116,10 @@ def run(
     ------
     UsageError
         No clip at all.
-    MotionEditError
-        A spec that is faulty whatever the clip.
     """
     tasks = find_clips(clips)
-    check = None if spec is None else _spec_check(spec, tuple(task.relative for task in tasks))
+    if check is not None:
+        check = replace(check, others=tuple(task.relative for task in tasks))
     one = partial(_checked, limits=dict(limits), check=check, up=up, lenient=lenient)
     if jobs == 1 or len(tasks) < 2:
         yield from map(one, tasks)
@@ -131,16 +139,20 @@ def exit_code(found: Sequence[Checked]) -> int:
 
 
 def _checked(
-    task: ClipTask, *, limits: Mapping[str, float], check: _SpecCheck | None, up: str, lenient: bool
+    task: ClipTask, *, limits: Mapping[str, float], check: SpecCheck | None, up: str, lenient: bool
 ) -> Checked:
+    lacking = Faults()
     try:
         clip = read_task(task, lenient=lenient)
-        facts = facts_of(clip, up=up)
+        facts = _facts(clip, task, check, lacking, up=up)
     except MotionEditError as error:
         return Checked({"clip": task.label, "status": "failed", "message": str(error)}, "", error)
+    if check is not None:
+        lacking.get(partial(check.refuse_lacking, facts, task), otherwise=None)
     measures = _measures(facts)
     passed = [name for name, limit in limits.items() if measures[name] > limit]
-    errors = [] if check is None else check.errors(clip, task)
+    errors, stand = [str(error) for error in lacking.errors], _off_the_floor(facts)
+    off = [] if stand is None else [f"{stand}: skate, depth and floating are measured from 0, the floor of the file"]
     reasons = [f"{name} {measures[name]:.4g} above {limits[name]:.4g}" for name in passed] + errors
     record = {
         "clip": task.label,
@@ -153,9 +165,17 @@ def _checked(
         "measures": measures,
         "passed": passed,
         "spec_errors": errors,
-        "warnings": [*clip.warnings, *facts.warnings, *facts.anatomy.missing],
+        "warnings": [*clip.warnings, *facts.warnings, *facts.anatomy.missing, *off],
     }
-    return Checked(record, _line(record))
+    return Checked(record, _line(record, stand))
+
+
+def _facts(clip: Clip, task: ClipTask, check: SpecCheck | None, lacking: Faults, *, up: str) -> ClipFacts:
+    """Return a clip's facts by the body and the up axis that a spec gives; joints that it lacks go to `lacking`."""
+    if check is None:
+        return facts_of(clip, up=up)
+    given = lacking.get(partial(check.body_in, clip, task), otherwise=NOTHING_GIVEN)
+    return facts_of(clip, up=check.loaded.model.up if up == "auto" else up, given=given)
 
 
 def _measures(facts: ClipFacts) -> dict[str, float]:
@@ -172,13 +192,24 @@ def _measures(facts: ClipFacts) -> dict[str, float]:
     return {name: counted[name] if name in counted else float(measured[name]) for name in MEASURES}
 
 
+def _off_the_floor(facts: ClipFacts) -> str | None:
+    """Return at which height toes stand, where that is not the floor that measures go by."""
+    heights, points = facts.tracks @ facts.up, facts.anatomy.sole_points
+    toes = [plant for plant in facts.phases if points[plant.point].part == "toe"]
+    stands = [float(heights[plant.start : plant.stop + 1, plant.point].mean()) for plant in toes]
+    height = float(median(np.array(stands))) if stands else 0.0
+    if abs(height) <= _OFF_THE_FLOOR * facts.anatomy.leg_length / STANDARD_LEG:
+        return None
+    return f"feet stand at {ground.axis_name(facts.up)} = {height:.4g}"
+
+
 def _found(facts: ClipFacts) -> list[str]:
     anatomy = facts.anatomy
     parts = {"legs": anatomy.legs, "arms": anatomy.arms, "head": anatomy.head}
     return [part for part, found in parts.items() if found is not None]
 
 
-def _line(record: Mapping[str, Any]) -> str:
+def _line(record: Mapping[str, Any], stand: str | None) -> str:
     """Return a clip's line."""
     measures, unit = record["measures"], record["unit"]
     words = [
@@ -194,43 +225,7 @@ def _line(record: Mapping[str, Any]) -> str:
         f"{measures['jumps']} jumps, {measures['flips']} flips",
         f"rest pose {measures['rest_pose_frames']}",
     ]
+    if stand is not None:
+        words.append(stand)
     reasons = f": {record['message']}" if record["message"] else ""
     return f"{record['clip']}: {record['status']}{reasons} ({'; '.join(words)})"
-
-
-@dataclass(frozen=True)
-class _SpecCheck:
-    """A spec of edit-prioritized that clips are held against; of other commands it is read, and that is all."""
-
-    spec: Path
-    command: str
-    others: tuple[str, ...]
-
-    def errors(self, clip: Clip, task: ClipTask) -> list[str]:
-        """Return what the spec names and the clip lacks, a line each."""
-        if self.command != "edit-prioritized":
-            return []
-        from motionedit.jobs.edit_prioritized.job import EditByPriorities
-        from motionedit.spec.load import load_spec
-
-        try:
-            EditByPriorities(load_spec(self.spec, "edit-prioritized"), self.others).resolved(clip, task)
-        except MotionEditError as error:
-            return [str(each) for each in error.errors]
-        return []
-
-
-def _spec_check(spec: Path, others: tuple[str, ...]) -> _SpecCheck:
-    """Return what holds clips against a spec, which is read whole.
-
-    Raises
-    ------
-    MotionEditError
-        Its faults.
-    """
-    from motionedit.spec import SPEC_COMMANDS
-    from motionedit.spec.load import load_spec, spec_command
-
-    command = spec_command(spec, SPEC_COMMANDS)
-    load_spec(spec, command)  # type: ignore[call-overload]  # one of them
-    return _SpecCheck(spec, command, others)

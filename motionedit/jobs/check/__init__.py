@@ -1,0 +1,1 @@
+"""Whether clips, and a spec for them, are fit for use."""

@@ -1,0 +1,71 @@
+"""An edit whose hands hold one thing as they did in the input."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from motionedit.core.body.bends import find_bends
+from motionedit.core.hands.closing import close_grips
+from motionedit.core.hands.grips import find_grips
+from motionedit.core.units import STANDARD_LEG
+from motionedit.dataclass import dataclass, replace
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from motionedit.core.coefficients.edit import CoefficientEdit
+    from motionedit.core.coefficients.goal_chains import GoalRequest
+    from motionedit.jobs.clip.facts import ClipFacts
+
+# Metres at leg length 0.85 m by which hands that hold one thing come apart where a viewer sees it.
+_SEEN = 0.03
+
+
+@dataclass(frozen=True, eq=False)
+class Holding:
+    """An edit whose hands hold what they held.
+
+    Attributes
+    ----------
+    edit : CoefficientEdit
+    record : dict or None
+        What the report says of the hands; None where nothing was looked for.
+    rough : tuple of str
+        What of it a viewer would see.
+    """
+
+    edit: CoefficientEdit
+    record: dict[str, Any] | None = None
+    rough: tuple[str, ...] = ()
+
+
+def edit_holding(edit: CoefficientEdit, requests: Sequence[GoalRequest], facts: ClipFacts) -> Holding:
+    """Return an edit whose hands are together where the clip's hold one thing."""
+    motion, anatomy = facts.clip.motion, facts.anatomy
+    if anatomy.arms is None or not (edit.touched.any() or edit.moved.any()):
+        return Holding(edit)
+    grips = find_grips(facts.poses, anatomy, frame_time=motion.frame_time, first=facts.first)
+    bends = find_bends(motion.skeleton, facts.poses, anatomy, first=facts.first) if grips else ()
+    left, right = ({each.frame for each in requests if _is_about(each, arm.shoulder, facts)} for arm in anatomy.arms)
+    closed = close_grips(edit.motion, motion, grips, anatomy, bends, goals=(left, right)) if grips else None
+    if closed is None:
+        return Holding(edit, {"grips": [], "apart_max": None})
+    worst = int(np.argmax(closed.off))
+    apart, seen = float(closed.off[worst]), _SEEN * anatomy.leg_length / STANDARD_LEG
+    line = (
+        f"hands that hold one thing come apart by {apart:.3g} at frame {worst}: farther than the arms bring them back "
+        f"({seen:.3g} would be seen)"
+    )
+    return Holding(
+        replace(edit, motion=closed.motion, touched=edit.touched | closed.touched),
+        {"grips": [{"first_frame": a, "last_frame": b} for a, b in grips], "apart_max": apart},
+        (line,) if apart > seen else (),
+    )
+
+
+def _is_about(request: GoalRequest, shoulder: int, facts: ClipFacts) -> bool:
+    """Return whether an arm moves a goal's effector, or what it is measured in."""
+    joints = [request.effector.joint, *([] if request.measure.base is None else [request.measure.base])]
+    return any(shoulder in facts.clip.motion.skeleton.chain(joint) for joint in joints)

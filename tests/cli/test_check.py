@@ -1,0 +1,138 @@
+"""Clips held against a spec by check: what the spec's own command would miss in them is said, and nothing else."""
+
+import json
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import pytest
+
+DATA = Path(__file__).parents[2] / "data"
+WALK, SWING = DATA / "walk.bvh", DATA / "golf" / "swing04.bvh"
+
+
+@pytest.fixture
+def held_against(run, tmp_path):
+    """Return a runner of check with a spec: a command's name, the spec's other lines, and clips (one swing)."""
+
+    def invoke(command, text, *arguments, clips=(SWING,)):
+        (tmp_path / "s.yaml").write_text(f"schema: motionedit/{command}/v1\n{text}\n")
+        return run("check", *clips, "-s", "s.yaml", *arguments)
+
+    return invoke
+
+
+@pytest.mark.parametrize(
+    ("goal", "message"),
+    [
+        ("{at: 4, effector: Fooo, shift: [0, 0, 1]}", "goals.0.effector: no joint 'Fooo' in"),
+        ("{at: 4, effector: {end_site: Hips}, shift: [0, 0, 1]}", "has no end site"),
+        ("{at: hit, effector: Head, relative_to: Bust, shift: [0, 0, 1]}", "goals.0.relative_to: no joint 'Bust' in"),
+        ("{at: 400, effector: Head, shift: [0, 0, 1]}", "goals.0.at: in"),
+        ("{at: top + 30s, effector: Head, shift: [0, 0, 1]}", "goals.0.at: in"),
+    ],
+)
+def test_a_goal_names_what_the_clip_lacks(held_against, goal, message):
+    top = "events: {top: {detect: {effector: Club, maximum_of: height}}}"
+    done = held_against("edit-pc", f"{top}\ngoals: [{goal}]")
+    assert done.exit_code == 3
+    assert message in done.stdout
+
+
+@pytest.mark.parametrize("command", ["edit-pc", "normalize"])
+def test_a_rule_watches_a_joint_that_the_clip_lacks(held_against, command):
+    rule = "events: {top: {detect: {effector: Fooo, maximum_of: height}}}"
+    done = held_against(command, rule + ("\ngoals: []" if command == "edit-pc" else ""))
+    assert done.exit_code == 3
+    assert "events.top.detect.effector: no joint 'Fooo' in" in done.stdout
+
+
+def test_every_fault_of_a_spec_is_told(held_against):
+    goals = "goals: [{at: 4, effector: Fooo, shift: [0, 0, 1]}, {at: 400, effector: Baar, shift: [0, 0, 1]}]"
+    done = held_against("edit-pc", goals)
+    for key in ("goals.0.effector", "goals.1.effector", "goals.1.at"):
+        assert f" {key}: " in done.stdout
+
+
+def test_an_event_that_the_model_may_know_is_let_pass(held_against):
+    after = "events: {late: {detect: {effector: Club, maximum_of: height, after: hit}}, other: {frames: {swing05: 9}}}"
+    goals = ", ".join(f"{{at: {name}, effector: Head, shift: [0, 0, 1]}}" for name in ("hit", "late", "other"))
+    assert held_against("edit-pc", f"{after}\ngoals: [{goals}]").exit_code == 0
+
+
+def test_an_event_of_normalize_needs_a_frame_in_every_clip(held_against):
+    done = held_against("normalize", "events: {hit: {frames: {swing04: 85}}}", clips=(SWING, DATA / "golf/swing05.bvh"))
+    assert done.exit_code == 3
+    lines = done.stdout.splitlines()
+    assert ": ok (" in lines[0]
+    assert "events.hit: no frame for" in lines[1]
+
+
+def test_joints_to_exclude_are_looked_for(held_against):
+    assert "exclude_joints.0: no joint 'Fooo'" in held_against("fit-pca", "exclude_joints: [Fooo, Club]").stdout
+    assert held_against("fit-pca", "exclude_joints: [Club]").exit_code == 0
+
+
+@pytest.mark.parametrize("jobs", ["1", "2"])
+def test_a_spec_that_fits_passes_by_workers_too(held_against, jobs):
+    rule = "events: {top: {detect: {effector: Club, maximum_of: height}}}"
+    goals = "goals: [{at: top, effector: {end_site: Club}, shift: [0, 0, 1]}]"
+    clips = (SWING, DATA / "golf" / "swing05.bvh")
+    assert held_against("edit-pc", f"{rule}\n{goals}", "-j", jobs, clips=clips).exit_code == 0
+
+
+SPECS = {"normalize": "", "fit-pca": "", "edit-pc": "goals: []", "edit-prioritized": "constraints: []"}
+
+
+@pytest.mark.parametrize("command", SPECS)
+def test_clips_are_measured_by_the_body_and_the_up_that_the_spec_gives(held_against, command):
+    done = held_against(command, f"{SPECS[command]}\nbody: {{left_arm: none, right_arm: none}}\nup: z")
+    assert done.exit_code == 0
+    assert "; z up; legs, head; " in done.stdout
+    assert "; y up; " in held_against(command, f"{SPECS[command]}\nup: z", "--up", "y").stdout
+
+
+@pytest.mark.parametrize("command", SPECS)
+def test_a_body_that_the_clip_lacks_is_told_once_and_the_clip_measured(held_against, command):
+    done = held_against(command, f"{SPECS[command]}\nbody: {{head: Skul}}")
+    assert done.exit_code == 3
+    assert done.stdout.count("body.head: no joint 'Skul'") == 1
+    assert "; legs, arms, head; " in done.stdout
+
+
+def test_the_report_has_the_spec_that_clips_are_held_against(held_against, run, tmp_path):
+    held_against("edit-pc", "goals: [{at: 4, effector: Fooo, shift: [0, 0, 1]}]", "--report", "r.json")
+    spec = json.loads((tmp_path / "r.json").read_text())["spec"]
+    goal = {"at": 4, "effector": "Fooo", "shift": [0, 0, 1]}
+    assert spec == {"schema": "motionedit/edit-pc/v1", "goals": [goal]}
+    run("check", SWING, "--report", "r.json")
+    assert json.loads((tmp_path / "r.json").read_text())["spec"] is None
+
+
+def test_a_report_named_xml_is_junit(held_against, tmp_path):
+    (tmp_path / "cut.bvh").write_text("HIERARCHY\n")
+    clips = (SWING, DATA / "golf" / "swing05.bvh", "cut.bvh")
+    spec = "events: {hit: {frames: {swing04: 85}}}"
+    assert held_against("normalize", spec, "--report", "r.xml", clips=clips).exit_code == 1
+    suite = ET.parse(tmp_path / "r.xml").getroot()[0]  # noqa: S314  written a line above
+    assert [[child.tag for child in case] for case in suite] == [[], ["failure"], ["error"]]
+    assert suite.get("name") == "motionedit check"
+    assert "events.hit: no frame for" in suite[1][0].get("message")
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("normalize", SWING, "-s", "s.yaml", "-o", "n"),
+        ("fit-pca", "n", "-o", "m.npz"),
+        ("edit-pc", SWING, "-m", "s.yaml", "-s", "s.yaml", "-o", "o.bvh"),
+        ("edit-prioritized", SWING, "-s", "s.yaml", "-o", "o.bvh"),
+        ("info", SWING),
+    ],
+    ids=lambda arguments: arguments[0],
+)
+def test_a_command_without_junit_refuses_its_name(run, tmp_path, arguments):
+    (tmp_path / "s.yaml").write_text("schema: motionedit/edit-prioritized/v1\nconstraints: []\n")
+    done = run(*arguments, "--report", "b.XML")
+    assert done.exit_code == 2
+    assert "b.XML would be JSON; check and diff alone write JUnit: name it b.json" in done.stderr
+    assert not (tmp_path / "o.bvh").exists()
