@@ -33,7 +33,7 @@ class PositionConstraint(Recruiting, Placed, EffectorItem, ConstraintItem):
 class OrientationConstraint(Recruiting, Placed, EffectorItem, ConstraintItem):
     """A joint is turned as asked."""
 
-    point_keys = ("orientation",)
+    point_keys = ("orientation", "turn")
     has_position = False
     has_angle = True
 
@@ -43,7 +43,7 @@ class OrientationConstraint(Recruiting, Placed, EffectorItem, ConstraintItem):
 class PoseConstraint(Recruiting, Placed, EffectorItem, ConstraintItem):
     """Position and orientation together: a footplant that cannot roll."""
 
-    point_keys = ("position", "shift", "orientation", *SPLINE_KEYS)
+    point_keys = ("position", "shift", "orientation", "turn", *SPLINE_KEYS)
     has_angle = True
 
     type: Literal["pose"] = spec_key(kinds.constant("pose"), description="The type: pose.")

@@ -19,19 +19,22 @@ DEFAULT_PLAUSIBILITY = 3.0
 class PcGoal(EffectorItem):
     """Where an effector shall be at one frame."""
 
-    at_least_one = (("position", "shift", "orientation"),)
-    at_most_one = (("position", "shift"),)
+    at_least_one = (("position", "shift", "orientation", "turn"),)
+    at_most_one = (("position", "shift"), ("orientation", "turn"))
     between_keys = (
         NOT_TWO_FRAMES,
         {"if": {"required": ["axes"]}, "then": {"anyOf": [{"required": [key]} for key in ("position", "shift")]}},
-        {"if": {"not": {"required": ["orientation"]}}, "then": {"properties": {"tolerance": without("angle")}}},
+        {
+            "if": {"not": {"anyOf": [{"required": [key]} for key in ("orientation", "turn")]}},
+            "then": {"properties": {"tolerance": without("angle")}},
+        },
     )
 
     at: Time = spec_key(kinds.TIME, description="The instant of the goal.")
     position: Vector | None = spec_key(
         kinds.VECTOR,
         default=None,
-        description="Where the effector shall be, in clip units. One of position, shift, orientation is needed.",
+        description="Where the effector shall be, in clip units. One of position, shift, orientation, turn is needed.",
     )
     shift: Vector | None = spec_key(
         kinds.VECTOR,
@@ -43,10 +46,16 @@ class PcGoal(EffectorItem):
         default=None,
         description="How the effector's joint shall be turned, in degrees; alone or beside position or shift.",
     )
+    turn: OrientationSpec | None = spec_key(
+        kinds.ORIENTATION,
+        default=None,
+        description="By how much the effector's joint shall be turned from its own rotation at that frame, about the "
+        "axes of frame: or relative_to:, in degrees; instead of orientation.",
+    )
     frame: kinds.Frame = spec_key(
         kinds.FRAME,
         default="world",
-        description="Axes of position, shift and orientation: world, or the character's heading.",
+        description="Axes of position, shift, orientation and turn: world, or the character's heading.",
     )
     relative_to: str | None = spec_key(
         kinds.JOINT, default=None, description="Measure in this joint's frame instead of the world's."
@@ -81,17 +90,17 @@ class PcGoal(EffectorItem):
     @classmethod
     def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
         """Yield what is wrong between keys."""
-        placed = "position" in data or "shift" in data
-        if "axes" in data and "orientation" in data and not placed:
+        placed, turned = "position" in data or "shift" in data, "orientation" in data or "turn" in data
+        if "axes" in data and turned and not placed:
             yield Fault("belongs to position or shift; an orientation has all its axes", ("axes",))
         if data.get("frame") == "heading" and "relative_to" in data:
             yield Fault("stands beside frame: heading; give one of them", ("relative_to",))
         yield from measured_in_itself(data)
         tolerance = data.get("tolerance")
         if isinstance(tolerance, dict):
-            if "angle" in tolerance and "orientation" not in data:
-                yield Fault("belongs to a goal with an orientation", ("tolerance", "angle"))
-            if "position" in tolerance and "orientation" in data and not placed:
+            if "angle" in tolerance and not turned:
+                yield Fault("belongs to a goal with an orientation or turn", ("tolerance", "angle"))
+            if "position" in tolerance and turned and not placed:
                 yield Fault("belongs to a goal with a position or shift", ("tolerance", "position"))
 
 

@@ -23,7 +23,7 @@ class Point(SpecModel):
     """A hold, a ride or an instant; which goals it may have depends on the constraint's type."""
 
     exactly_one = (("hold", "during", "at"),)
-    at_most_one = (("position", "shift"), LENGTH_KEYS)
+    at_most_one = (("position", "shift"), ("orientation", "turn"), LENGTH_KEYS)
     between_keys = tuple({"not": {"required": ["during", key]}} for key in ("position", "orientation"))
 
     hold: Interval | None = spec_key(
@@ -47,7 +47,14 @@ class Point(SpecModel):
     orientation: OrientationSpec | None = spec_key(
         kinds.ORIENTATION,
         default=None,
-        description="How the effector's joint shall be turned, in degrees; default: as in the input.",
+        description="How the effector's joint shall be turned, in degrees; default: as in the input. At most one of "
+        "orientation, turn.",
+    )
+    turn: OrientationSpec | None = spec_key(
+        kinds.ORIENTATION,
+        default=None,
+        description="By how much the effector's joint shall be turned from the input's own rotation, about the axes of "
+        "frame: or relative_to:, in degrees: at the start of a hold, along a ride, at an instant.",
     )
     distance: float | None = spec_key(
         _LENGTH,

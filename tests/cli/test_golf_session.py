@@ -207,6 +207,17 @@ def test_a_clip_from_standard_input_goes_to_standard_output(run, golf, data, tmp
     assert len(clip.motion) == 129
 
 
+def test_a_goal_turns_a_joint_by_so_much_from_where_it_is(golf):
+    swing, hit = golf.swings[3], HITS["swing04"]
+    found = []
+    edit = golf.edit(swing, goal={"effector": "RightHand", "turn": {"rotation_vector": [0, 12, 0]}})
+    for path in (swing, edit.path):
+        motion = read_clip(path).motion
+        found.append(kinematics.forward(motion).rotations[hit, motion.skeleton.names.index("RightHand")])
+    turn = np.degrees(rotations.log(rotations.multiply(found[1], rotations.conjugate(found[0]))))
+    np.testing.assert_allclose(turn, [0, 12, 0], atol=0.01)
+
+
 def slips(golf, clip, **spec):
     """Return by how much the left hand moves on the right hand's grip, cm, shape (F,), and the edit's record."""
     edit = golf.edit(clip, [0, 0, 10], **spec)

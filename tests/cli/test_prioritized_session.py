@@ -151,6 +151,44 @@ def test_orientation_pose_aim_and_posture_hold_in_the_file(edit):
     np.testing.assert_allclose(motion.rotations[:, spine], read_clip(WALK).motion.rotations[:, spine], atol=1e-6)
 
 
+def turned_by(path, joint, *, base=None):
+    """Return what turns a joint's rotations in the walk into those of an edit, in the world or in a joint's frame."""
+    found = []
+    for each in (WALK, path):
+        motion = read_clip(each).motion
+        poses, names = forward(motion), motion.skeleton.names
+        q = poses.rotations[:, names.index(joint)]
+        found.append(q if base is None else rot.between(poses.rotations[:, names.index(base)], q))
+    return found, np.degrees(rot.log(rot.multiply(found[1], rot.conjugate(found[0]))))
+
+
+def test_a_joint_is_turned_by_so_much_from_where_it_is(edit):
+    by = {"rotation_vector": [0, 25, 0]}
+    turn = {"type": "orientation", "effector": "Head", "recruit": {"up_to": "Neck"}}
+    ride = edit([{**turn, "points": [{"during": [60, 80], "turn": by}]}])
+    assert ride.constraint("Head")["error_angle_max"] < 0.01
+    np.testing.assert_allclose(turned_by(ride.path, "Head")[1][60:81], np.tile([0, 25, 0], (21, 1)), atol=1e-3)
+    hold = edit([{**turn, "points": [{"hold": [60, 80], "turn": by}]}])
+    (before, after), _ = turned_by(hold.path, "Head")
+    wanted = rot.multiply(rot.exp(np.radians([0.0, 25.0, 0.0])), before[60])
+    assert np.degrees(rot.angle_between(after[60:81], wanted)).max() < 1e-3
+    instant = edit([{**turn, "points": [{"at": 60, "turn": by}]}])
+    np.testing.assert_allclose(turned_by(instant.path, "Head")[1][60], [0, 25, 0], atol=1e-3)
+
+
+def test_a_turn_is_about_the_axes_of_the_heading_or_of_a_joint(edit):
+    by = {"rotation_vector": [20, 0, 0]}
+    turn = {"type": "orientation", "effector": "Head", "recruit": {"up_to": "Neck"}}
+    points = [{"during": [60, 80], "turn": by}]
+    heading = edit([{**turn, "frame": "heading", "points": points}])
+    about = turned_by(heading.path, "Head")[1][60:81]
+    across = facts_of(read_clip(WALK)).heading_frame().axes[0]
+    np.testing.assert_allclose(about, np.tile(20.0 * across, (21, 1)), atol=1e-3)
+    inside = edit([{**turn, "relative_to": "Spine1", "points": points}])
+    seen = turned_by(inside.path, "Head", base="Spine1")[1][60:81]
+    np.testing.assert_allclose(seen, np.tile([20, 0, 0], (21, 1)), atol=1e-3)
+
+
 @pytest.mark.parametrize("recruit", ["all", {"joints": ["Neck", "Neck1", "Head"]}])
 def test_eyes_follow_a_hand_that_moves(edit, recruit):
     eyes = {"type": "aim", "effector": "Head", "axis": [0, 0, 1], "target": "LeftHand", "recruit": recruit}

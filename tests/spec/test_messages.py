@@ -22,7 +22,9 @@ def test_the_table_of_faults_is_read_whole():
     assert len(FAULTS) == text.count("\n## ") == text.count("\n->\n")
 
 
-GOAL_KEYS = "name, effector, at, position, shift, orientation, frame, relative_to, axes, weight, priority, tolerance"
+GOAL_KEYS = (
+    "name, effector, at, position, shift, orientation, turn, frame, relative_to, axes, weight, priority, tolerance"
+)
 
 BEGIN = "a spec begins with schema: motionedit/edit-pc/v1"
 FIRST = "the first line is schema: motionedit/edit-pc/v1"

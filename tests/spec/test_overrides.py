@@ -82,7 +82,7 @@ def test_the_file_is_not_touched_by_an_override_of_a_shared_anchor(load):
 
 
 ITEMS = "the items are 0 to 2; by name: ball, RightHand, Head"
-KEYS = "name, effector, at, position, shift, orientation, frame, relative_to, axes, weight, priority, tolerance"
+KEYS = "name, effector, at, position, shift, orientation, turn, frame, relative_to, axes, weight, priority, tolerance"
 NINES = "9" * 5000
 DEEP = "a" + ".a" * 5000
 

@@ -49,3 +49,7 @@ class GivenAxes:
     def rotation(self, q: FloatArray) -> FloatArray:
         """Return a rotation in the world."""
         return q if self.heading is None else rot.multiply(self.heading.rotation, q)
+
+    def turn(self, q: FloatArray) -> FloatArray:
+        """Return what turns about these axes as `q` does, in the world."""
+        return q if self.heading is None else rot.multiply(self.rotation(q), rot.conjugate(self.heading.rotation))

@@ -112,6 +112,9 @@ def _request(goal: PcGoal, facts: ClipFacts, place: Place, *, frame: int, poses:
     if goal.shift is not None:
         position = seen(poses, frame, effector, measure)[0] + np.array(goal.shift)
     rotation = None if goal.orientation is None else axes.rotation(resolve.orientation(goal.orientation))
+    if goal.turn is not None:
+        turn = axes.turn(resolve.orientation(goal.turn))
+        rotation = rot.multiply(turn, seen(poses, frame, effector, measure)[1])
     return GoalRequest(frame, effector, position, rotation, goal.weight, measure, goal.priority)
 
 

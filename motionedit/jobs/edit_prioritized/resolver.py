@@ -198,6 +198,7 @@ class Resolver:
             position=None if point.position is None else axes.position(point.position) * self.scale,
             shift=None if point.shift is None else np.array(point.shift) * self.scale,
             orientation=None if point.orientation is None else axes.rotation(resolve.orientation(point.orientation)),
+            turn=None if point.turn is None else axes.turn(resolve.orientation(point.turn)),
             tension=point.tension,
             continuity=point.continuity,
             bias=point.bias,

@@ -39,6 +39,8 @@ class ControlPoint:
         position.
     orientation : shape (4,) or None
         Quaternion; None is the input's own (a hold: as at its start).
+    turn : shape (4,) or None
+        In place of an orientation: what turns the input's own (a hold: as at its start) further.
     tension, continuity, bias : float
         Of the spline, for ``at``. A hold has tension 1 whatever it says.
     """
@@ -49,6 +51,7 @@ class ControlPoint:
     position: FloatArray | None = None
     shift: FloatArray | None = None
     orientation: FloatArray | None = None
+    turn: FloatArray | None = None
     tension: float = 0.0
     continuity: float = 0.0
     bias: float = 0.0

@@ -65,6 +65,8 @@ def rotation_targets(
 
 def _source(point: ControlPoint, rotations: FloatArray) -> FloatArray:
     """Return the rotations a point would have at every frame, shape (F, 4)."""
+    if point.turn is not None:
+        rotations = rot.multiply(point.turn, rotations)
     own = rotations[point.start]
     wanted = own if point.orientation is None else point.orientation
     if point.mode == "hold":
