@@ -146,7 +146,6 @@ def test_axes_of_several_positions_add_up_and_the_same_axis_is_taken_once(edit):
     "other",
     [
         {"type": "position", "effector": "Spine", "points": [{"at": 72, "shift": [5, 0, 0]}]},
-        {"type": "position", "effector": "Hips", "relative_to": "LeftFoot"},
         {"type": "com", "points": [{"at": 72, "shift": [5, 0, 0]}]},
         {"type": "orientation", "effector": "Hips"},
     ],

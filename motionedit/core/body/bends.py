@@ -11,7 +11,7 @@ from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
 from motionedit.core.body.in_one_loop import read_off
 from motionedit.core.compiled import compiled
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -27,9 +27,11 @@ if TYPE_CHECKING:
     _Towards = Callable[[], FloatArray | None]
 
 _BENT = float(np.sin(np.radians(2.0)))  # a limb bent by more than this shows to which side it bends
-_CLEAR = float(np.sin(np.radians(15.0)))  # further no elbow and no knee gives way to its other side
+_CLEAR_ANGLE = float(np.radians(15.0))  # further no elbow and no knee gives way to its other side
+_CLEAR = float(np.sin(_CLEAR_ANGLE))
 _GLITCH = 2  # so few frames show nothing by themselves
 _STRAIGHT = float(np.sin(np.radians(0.2)))  # a limb bent by less than this hardly shortens when it bends
+_TOES_SAY = 0.5  # of a shank that goes straight to the toes
 
 _BLOCK_POSES = 1 << 13
 
@@ -67,12 +69,15 @@ def find_bends(skeleton: Skeleton, poses: WorldPoses, anatomy: Anatomy, *, first
 
     A limb bends as it does in the clip's own frames from `first` on: in all where it is bent at all, but where those
     in which it is clearly bent say otherwise, these count alone. One that is always straight bends as bodies do: knees
-    to the toes' side, elbows so that the hands come to the front.
+    to the toes' side, elbows so that the hands come to the front. So do knees that are never clearly bent, and whose
+    toes clearly say otherwise.
     """
     limbs = _limbs_of(skeleton, anatomy)
-    found = _bends_at_once(poses, limbs, first)
-    if found is not None:
-        return found
+    found = _bends_at_once(poses, limbs, first) or _bends_by_blocks(poses, anatomy, limbs, first)
+    return tuple(_as_toes_say(bend, skeleton, poses, anatomy, first) for bend in found)
+
+
+def _bends_by_blocks(poses: WorldPoses, anatomy: Anatomy, limbs: NDArray[np.int64], first: int) -> tuple[Bend, ...]:
     front = cache(lambda: _front(poses, anatomy))
 
     def backward(leg: Leg) -> FloatArray | None:
@@ -85,6 +90,24 @@ def find_bends(skeleton: Skeleton, poses: WorldPoses, anatomy: Anatomy, *, first
     together = max(_BLOCK_POSES // len(poses.positions), 1)
     blocks = (slice(i, i + together) for i in range(0, len(limbs), together))
     return tuple(bend for some in blocks for bend in _bends(poses, limbs[some], towards[some], first))
+
+
+def _as_toes_say(bend: Bend, skeleton: Skeleton, poses: WorldPoses, anatomy: Anatomy, first: int) -> Bend:
+    """Return a bend, to its other side where it is a knee, never clearly bent, and would take the shank to the toes."""
+    leg = next((leg for leg in anatomy.legs or () if leg.knee == bend.joint), None)
+    if leg is None or np.count_nonzero(np.abs(bend.angles) > _CLEAR_ANGLE) > _GLITCH:
+        return bend
+    after = poses.at(slice(first, None))
+    toes = way_to_toes(after, leg)
+    if toes is None:
+        return bend
+    axis = rot.rotate(after.rotations[:, skeleton.parents[leg.knee]], bend.axis)
+    moved = rot.cross(axis, after.positions[:, leg.ankle] - after.positions[:, leg.knee])
+    size = np.maximum(rot.length(moved) * rot.length(toes), np.finfo(float).tiny)
+    if float(np.mean(rot.dot(moved, toes) / size)) < _TOES_SAY:
+        return bend
+    least, most = bend.bent
+    return replace(bend, axis=frozen(-bend.axis), angles=frozen(-bend.angles), bent=(-most, -least))
 
 
 @lru_cache(maxsize=8)

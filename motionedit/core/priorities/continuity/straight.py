@@ -2,8 +2,9 @@
 
 A straight limb cannot begin to shorten: the first derivative of its length by its bend is nothing. One that gives way
 to its other side in the input shortens to there, as far as it may. Frames in which a constraint is missed, and a knee
-or an elbow straight or bent back that some constraint recruits, are solved again from a bend of a degree: a body that
-shall go down is missed, though the feet that hold it up are not.
+or an elbow straight or bent back that some constraint recruits, are solved again from a bend of a degree, and of as
+much as it was bent back: the limb is then as long as before. A body that shall go down is missed, though the feet that
+hold it up are not.
 """
 
 from __future__ import annotations
@@ -49,7 +50,7 @@ def bent_where_missed(run: Run, state: Solved) -> Solved:
         if not frames.any():
             continue
         hinges = [hinge for hinge in body.hinges if hinge.joint == bend.joint]
-        turns = _LITTLE + back[frames]
+        turns = _LITTLE + 2.0 * back[frames]
         rotations[frames, bend.joint] = _bent(rotations[frames, bend.joint], turns, bend, hinges)
         again |= frames
     if not again.any():

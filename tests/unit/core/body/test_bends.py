@@ -87,15 +87,26 @@ def test_a_limb_bends_to_where_it_is_clearly_bent_however_long_it_gives_way_to_t
     ids=["a glitch", "no more than it gives way", "clearly to both"],
 )
 def test_a_limb_bends_to_the_side_of_most_frames_where_few_show_the_other(back, bent):
-    motion = giving_way("LeftLeg", (1.0, 0.0, 0.0), back=back, bent=bent)
-    np.testing.assert_allclose(bends_of(motion)["LeftLeg"].axis, [-1.0, 0.0, 0.0], atol=1e-9)
+    motion = giving_way("LeftForeArm", (1.0, 0.0, 0.0), back=back, bent=bent)
+    np.testing.assert_allclose(bends_of(motion)["LeftForeArm"].axis, [-1.0, 0.0, 0.0], atol=1e-9)
+
+
+@pytest.mark.usefixtures("_both")
+@pytest.mark.parametrize(("bent", "clearly"), [({}, False), ({3: 40.0, 4: 40.0}, False), ({3: 16, 4: 16, 5: 16}, True)])
+def test_knees_that_are_only_ever_past_straight_bend_to_the_toes_side(bent, clearly):
+    # The toes point along z, which is a bend about x; the clear frames are to the other side.
+    motion = giving_way("LeftLeg", (-1.0, 0.0, 0.0), back=-6.0, bent=bent)
+    bend = bends_of(motion)["LeftLeg"]
+    np.testing.assert_allclose(bend.axis, [-1.0 if clearly else 1.0, 0.0, 0.0], atol=1e-9)
+    angles = np.degrees(np.unique(bend.angles.round(9)))
+    np.testing.assert_allclose(angles if clearly else -angles[::-1], sorted({6.0, *bent.values()}), atol=1e-6)
 
 
 @pytest.mark.usefixtures("_both")
 def test_a_rest_pose_that_is_clearly_bent_does_not_count():
-    motion = giving_way("LeftLeg", (1.0, 0.0, 0.0), back=9.0, bent=dict.fromkeys(range(4), 50.0))
-    np.testing.assert_allclose(bends_of(motion, first=4)["LeftLeg"].axis, [-1.0, 0.0, 0.0], atol=1e-9)
-    np.testing.assert_allclose(bends_of(motion, first=1)["LeftLeg"].axis, [1.0, 0.0, 0.0], atol=1e-9)
+    motion = giving_way("LeftForeArm", (1.0, 0.0, 0.0), back=9.0, bent=dict.fromkeys(range(4), 50.0))
+    np.testing.assert_allclose(bends_of(motion, first=4)["LeftForeArm"].axis, [-1.0, 0.0, 0.0], atol=1e-9)
+    np.testing.assert_allclose(bends_of(motion, first=1)["LeftForeArm"].axis, [1.0, 0.0, 0.0], atol=1e-9)
 
 
 def test_a_foot_without_a_toe_joint_shows_the_side_by_its_end_site():

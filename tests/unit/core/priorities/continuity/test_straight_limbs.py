@@ -71,6 +71,18 @@ def test_the_hips_go_down_on_straight_legs_whose_feet_are_held(passes):
     np.testing.assert_array_equal(edit.motion.rotations[:30], motion.rotations[:30])
 
 
+@pytest.mark.usefixtures("solver")
+def test_the_hips_go_down_on_knees_that_a_capture_has_past_straight_all_along():
+    motion = standing(SKELETON, FRAMES)
+    for side in ("Left", "Right"):
+        motion = with_rotation(motion, f"{side}Leg", slice(None), (-0.08, 0.0, 0.0))
+    hinges = find_hinges(find_bends(SKELETON, forward(motion), find_anatomy(SKELETON), first=0))
+    edit = edited(motion, [wanted("Hips", (0.0, -0.12, 0.0)), *feet()], hinges=hinges)
+    assert max(errors.positions.max() for errors in edit.errors if errors.positions is not None) < 1e-6
+    for side in ("Left", "Right"):
+        assert rot.log(edit.motion.rotations[32, INDEX(f"{side}Leg")])[0] > 0.5, "the shank goes back"
+
+
 def test_without_knowing_its_knees_a_body_stays_where_it_is():
     edit = edited(standing(SKELETON, FRAMES), [wanted("Hips", (0.0, -0.12, 0.0)), *feet()], bends=False)
     assert edit.errors[0].positions.max() == pytest.approx(0.12, abs=1e-6)
