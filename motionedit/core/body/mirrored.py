@@ -21,7 +21,7 @@ _BY_BODY = "body: calls left what is on the right, as toes and knees point; the 
 
 # Of what toes straight ahead would give; all clips that were looked at give 0.84 or more, to the other side.
 _CLEARLY = 0.5
-_FRAMES = 256  # at most are looked at
+_FRAMES = 64  # at most are looked at
 
 
 def as_it_points(anatomy: Anatomy, poses: WorldPoses, *, first: int, given: GivenBody) -> Anatomy:

@@ -49,8 +49,8 @@ def share_to_left(across: FloatArray, *, up: FloatArray, ahead: FloatArray) -> f
 
     Left is up x ahead, which need not be square to each other: a part of 1 then. All have shape (F, 3), any units.
     """
-    lean = np.sum(rot.cross(up, ahead) * across, axis=-1)
-    size = np.linalg.norm(up, axis=-1) * np.linalg.norm(ahead, axis=-1) * np.linalg.norm(across, axis=-1)
+    lean = rot.dot(rot.cross(up, ahead), across)
+    size = rot.length(up) * rot.length(ahead) * rot.length(across)
     return float(median(lean / np.maximum(size, np.finfo(float).tiny)))
 
 
