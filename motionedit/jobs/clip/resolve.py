@@ -11,7 +11,6 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
 from motionedit.core.body.anatomy import GivenBody
-from motionedit.core.body.same_part import same_part
 from motionedit.core.kinematics import Effector
 from motionedit.dataclass import dataclass
 from motionedit.jobs.clip.faults import ITS_JOINTS, Faults
@@ -88,6 +87,8 @@ def joint(name: str, skeleton: Skeleton, place: Where) -> int:
         return found[0]
     if found:
         raise place.error(f"{place.clip} has {len(found)} joints named '{name}'; a spec needs their names to differ")
+    from motionedit.core.body.same_part import same_part  # errors alone ask for it
+
     names = tuple(dict.fromkeys(skeleton.names))
     # A rig's prefix ("mixamorig:") hides likeness from the general search.
     ending = [other for other in names if other.rpartition(":")[2] == name]
