@@ -34,7 +34,7 @@ PROGRAM = Path(sys.executable).parent / "motionedit"
 CLIPS = 20
 # Of what two workers share: enough that a process alone takes three seconds or more, ten times what it takes to start
 # and to end. A cheaper clip takes more of them.
-EDITED, NORMALIZED, FITTED, BY_MODEL = 400, 3000, 1000, 200
+EDITED, NORMALIZED, FITTED, BY_MODEL = 600, 3600, 1200, 200
 # Clips of the model that edits by.
 BASE = 100
 LONG = 20_000
