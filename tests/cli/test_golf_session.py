@@ -7,10 +7,12 @@ import numpy as np
 import pytest
 
 from motionedit.core import kinematics, rotations
-from motionedit.core.bvh import parse_clip, read_clip, resampled_bytes
+from motionedit.core.bvh import new_bytes, parse_clip, read_clip, resampled_bytes
 from motionedit.core.motion import Motion
+from motionedit.dataclass import replace
 from motionedit.jobs.fit_pca import database
 from studies.lab import effector_path
+from studies.paper.study import GOLF
 
 EVENTS = Path(__file__).resolve().parents[2] / "data" / "golf" / "events.csv"
 HITS = {name: int(frame) for name, frame in (line.split(",") for line in EVENTS.read_text().split()[1:])}
@@ -205,6 +207,21 @@ def test_a_clip_from_standard_input_goes_to_standard_output(run, golf, data, tmp
     assert piped.exit_code == 0
     clip = parse_clip(piped.stdout_bytes, label="piped")
     assert len(clip.motion) == 129
+
+
+def test_what_is_misread_of_a_body_is_said_of_an_edit(golf, tmp_path):
+    swings = []
+    for swing in golf.swings[:3]:
+        motion = read_clip(swing).motion
+        mirrored, places = motion.rotations.copy(), motion.translations.copy()
+        mirrored[..., [2, 3]] *= -1.0  # in x, and no name with it
+        places[..., 0] *= -1.0
+        skeleton = replace(motion.skeleton, offsets=motion.skeleton.offsets * [-1.0, 1.0, 1.0])
+        swings.append(tmp_path / swing.name)
+        swings[-1].write_bytes(new_bytes(Motion(skeleton, mirrored, places, motion.frame_time)))
+    edit = golf.edit(swings[0], [0, 0, 1], model=golf.lab.model(swings, GOLF))
+    assert any("what is taken for left is on the right" in line for line in edit.warnings)
+    assert not any("on the right" in line for line in golf.edit(golf.swings[0], [0, 0, 1]).warnings)
 
 
 def test_a_goal_turns_a_joint_by_so_much_from_where_it_is(golf):

@@ -255,7 +255,7 @@ class _Edit:
         share = residual_share(spec, self.model) if spec.solver.method == "map" else None
         if share is not None and self.model.components.left_out is None and spec.residual_share == "auto":
             odd.append(f"the model has no left-out error, so residual_share is {share:g}; make it again with fit-pca")
-        verdicts = Judged(bound, share, odd, rough)
+        verdicts = Judged(bound, share, (*facts.warnings, *odd), rough)
         result = edit_record(self.model, projection, edit, goals, poses=after, verdicts=verdicts)
         return Outcome(
             resampled_bytes(facts.clip, edit.motion) if retimed else _edited_bytes(facts.clip, projection, edit),
