@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, TypeVar
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from motionedit.dataclass import dataclass
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray, IntArray
 
+_T = TypeVar("_T")
 Part = Literal["heel", "toe"]
 
 
@@ -96,6 +97,10 @@ class Anatomy:
     height: float
     warnings: tuple[str, ...]
     mirrored: bool = False
+
+    def left_first(self, pair: tuple[_T, _T]) -> tuple[_T, _T]:
+        """Return a pair of what is called left and right with that first which is on the left."""
+        return pair[::-1] if self.mirrored else pair
 
     @property
     def missing(self) -> tuple[str, ...]:

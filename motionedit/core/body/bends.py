@@ -250,9 +250,9 @@ def _front(poses: WorldPoses, anatomy: Anatomy) -> FloatArray | None:
     legs, arms = anatomy.legs, anatomy.arms
     if legs is None or arms is None:
         return None
-    shoulders = [poses.positions[:, arm.shoulder] for arm in arms]
+    shoulders = [poses.positions[:, arm.shoulder] for arm in anatomy.left_first(arms)]
     hips = [poses.positions[:, leg.thigh] for leg in legs]
-    across = shoulders[1] - shoulders[0] if anatomy.mirrored else shoulders[0] - shoulders[1]
+    across = shoulders[0] - shoulders[1]
     trunk = shoulders[0] + shoulders[1] - hips[0] - hips[1]
     front: FloatArray = rot.cross(across, trunk)
     return front

@@ -121,8 +121,8 @@ def stance_frame(poses: WorldPoses, anatomy: Anatomy, *, up: FloatArray, frame: 
     """
     if anatomy.legs is None:
         return None
-    left_ankle, right_ankle = (poses.positions[frame, leg.ankle] for leg in anatomy.legs)
-    across = right_ankle - left_ankle if anatomy.mirrored else left_ankle - right_ankle
+    left_ankle, right_ankle = (poses.positions[frame, leg.ankle] for leg in anatomy.left_first(anatomy.legs))
+    across = left_ankle - right_ankle
     level = across - (across @ up) * up
     length = sqrt(level @ level)
     if length < _STANCE_SHARE * anatomy.leg_length:
@@ -143,4 +143,4 @@ def _sideways(anatomy: Anatomy) -> list[tuple[int, int]]:
         pairs.append((anatomy.legs[0].thigh, anatomy.legs[1].thigh))
     if anatomy.arms is not None:
         pairs.append((anatomy.arms[0].shoulder, anatomy.arms[1].shoulder))
-    return [pair[::-1] for pair in pairs] if anatomy.mirrored else pairs
+    return [anatomy.left_first(pair) for pair in pairs]

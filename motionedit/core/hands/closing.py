@@ -12,6 +12,7 @@ from motionedit.core.feet.knees import knee_of
 from motionedit.core.feet.legs import LegGoal, legs_onto, turns_freely
 from motionedit.core.kinematics import forward
 from motionedit.core.motion import Motion
+from motionedit.core.timeline.interpolation import smooth_step
 from motionedit.core.units import STANDARD_LEG
 from motionedit.dataclass import dataclass
 
@@ -70,25 +71,25 @@ class Closed:
 
 def close_grips(
     edited: Motion,
-    reference: Motion,
+    before: WorldPoses,
     grips: Sequence[tuple[int, int]],
     anatomy: Anatomy,
     bends: Sequence[Bend],
     *,
     goals: tuple[Collection[int], Collection[int]],
 ) -> Closed | None:
-    """Return an edited motion whose hands are as far apart, and turned so, as the reference's, wherever they grip.
+    """Return an edited motion whose hands are as far apart, and turned so, as the input's, wherever they grip.
 
-    The arm that the reference has bent further gives way the more, for a straight one leads a swing and has no choice;
+    The arm that the input has bent further gives way the more, for a straight one leads a swing and has no choice;
     near a frame with a goal for one hand the other one does. Of an arm that is too short the hand stays behind, and the
     arm nearly straight; hands that an edit takes far apart stay so. None where arms cannot be turned freely.
 
     Parameters
     ----------
-    edited, reference : Motion
-        Of one skeleton, frame by frame; clip units.
+    edited, before
+        The motion, and the input's world transforms; clip units.
     grips : sequence of (first, last)
-        By `find_grips` of the reference.
+        By `find_grips` of the input.
     bends : sequence of Bend
         Those of the elbows among them.
     goals : (frames, frames)
@@ -98,7 +99,7 @@ def close_grips(
     arms = [arm.as_leg for arm in anatomy.arms or ()]
     if not arms or not all(arm.knee in axes and turns_freely(edited.skeleton, arm) for arm in arms):
         return None
-    before, now = forward(reference), forward(edited)
+    now = forward(edited)
     theirs = [_pose_of(before, arm.ankle) for arm in arms]
     mine = [_pose_of(now, arm.ankle) for arm in arms]
     seen = theirs[1].of(theirs[0])
@@ -107,9 +108,7 @@ def close_grips(
     together = mine[0].towards(mine[1].to(seen), left / np.maximum(left + right, _TINY))
     wanted = [together, together.to(theirs[0].of(theirs[1]))]
     gap = rot.length(mine[1].of(mine[0]).place - seen.place) * (STANDARD_LEG / anatomy.leg_length)
-    gripped = _gripped(grips, len(edited), edited.frame_time)
-    brought = [float(_smooth_step((_LEFT - gap[a : b + 1].max()) / (_LEFT - _BROUGHT))) for a, b in grips]
-    share = _gripped(grips, len(edited), edited.frame_time, brought) * (1.0 - (1.0 - free[0]) * (1.0 - free[1]))
+    share = _brought(grips, gap, edited.frame_time) * (1.0 - (1.0 - free[0]) * (1.0 - free[1]))
     knees = [knee_of(edited.skeleton, now, arm, axes[arm.knee]) for arm in arms]
     onto = []
     for arm, knee, own, other in zip(arms, knees, mine, wanted, strict=True):
@@ -123,8 +122,11 @@ def close_grips(
     motion = Motion(edited.skeleton, frozen(rotations), edited.translations, edited.frame_time)
     after = forward(motion)
     hands = [_pose_of(after, arm.ankle) for arm in arms]
-    off = rot.length(hands[1].of(hands[0]).place - seen.place)
-    return Closed(motion, touched, np.where(gripped == 1.0, off, 0.0))
+    off = np.zeros(len(edited))
+    for start, stop in grips:
+        span = slice(start, stop + 1)
+        off[span] = rot.length(hands[1].of(hands[0]).place - seen.place)[span]
+    return Closed(motion, touched, off)
 
 
 def _slack(poses: WorldPoses, arm: Leg) -> FloatArray:
@@ -148,23 +150,19 @@ def _nearness(frames: Collection[int], count: int, frame_time: float) -> FloatAr
     return nearness
 
 
-def _gripped(
-    grips: Sequence[tuple[int, int]], count: int, frame_time: float, most: Sequence[float] | None = None
-) -> FloatArray:
-    """Return 1 where hands grip, or the `most` of each grip, and what eases to 0 beside it, shape (count,)."""
-    frames = np.arange(count)
-    gripped = np.zeros(count)
-    for (start, stop), height in zip(grips, most or [1.0] * len(grips), strict=True):
+def _brought(grips: Sequence[tuple[int, int]], gap: FloatArray, frame_time: float) -> FloatArray:
+    """Return how far hands are brought together, shape (F,): one share in a grip, by its widest gap; 0 far from all."""
+    frames = np.arange(len(gap))
+    brought = np.zeros(len(gap))
+    for start, stop in grips:
+        most = _eased_in((_LEFT - gap[start : stop + 1].max()) / (_LEFT - _BROUGHT))
         outside = np.maximum(np.maximum(start - frames, frames - stop), 0)
-        gripped = np.maximum(gripped, height * _smooth_step(1.0 - outside * (frame_time / _EASE)))
-    return gripped
+        brought = np.maximum(brought, most * _eased_in(1.0 - outside * (frame_time / _EASE)))
+    return brought
 
 
-def _smooth_step(share: FloatArray | float) -> FloatArray:
-    """Return what goes from 0 at 0 to 1 at 1, level at both."""
-    within = np.clip(share, 0.0, 1.0)
-    stepped: FloatArray = within * within * (3.0 - 2.0 * within)
-    return stepped
+def _eased_in(share: FloatArray | float) -> FloatArray:
+    return smooth_step(np.clip(share, 0.0, 1.0))
 
 
 def _within_reach(knee: Knee, shoulder: FloatArray, own: FloatArray, place: FloatArray) -> FloatArray:

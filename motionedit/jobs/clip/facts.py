@@ -12,6 +12,7 @@ from motionedit.core.arrays import frozen
 from motionedit.core.blocks import BLOCK_FRAMES, frame_blocks
 from motionedit.core.body import ground
 from motionedit.core.body.anatomy import NOTHING_GIVEN, Anatomy, GivenBody
+from motionedit.core.body.bends import find_bends
 from motionedit.core.body.bones import find_bones, travel_joint
 from motionedit.core.body.contacts import planted, plants_of, sole_tracks, stands_of
 from motionedit.core.body.find_anatomy import find_anatomy
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from motionedit.core.arrays import FloatArray
+    from motionedit.core.body.bends import Bend
     from motionedit.core.body.contacts import Plant, Stand
     from motionedit.core.body.steps import Steps
     from motionedit.core.bvh import Clip
@@ -112,6 +114,11 @@ class ClipFacts:
         """The paths of heels and toes, shape (F, P, 3), as `sole_tracks`."""
         (tracks,) = self.world.gathered(lambda poses: [sole_tracks(poses, self.anatomy)])
         return frozen(tracks)
+
+    @cached_property
+    def bends(self) -> tuple[Bend, ...]:
+        """To which side knees and elbows bend, as `find_bends`."""
+        return find_bends(self.clip.motion.skeleton, self.poses, self.anatomy, first=self.first)
 
     @cached_property
     def sole_stands(self) -> tuple[Stand, ...]:

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from motionedit.core.body.bends import find_bends
 from motionedit.core.hands.closing import close_grips
 from motionedit.core.hands.grips import find_grips
 from motionedit.core.units import STANDARD_LEG
@@ -47,9 +46,8 @@ def edit_holding(edit: CoefficientEdit, requests: Sequence[GoalRequest], facts: 
     if anatomy.arms is None or not (edit.touched.any() or edit.moved.any()):
         return Holding(edit)
     grips = find_grips(facts.poses, anatomy, frame_time=motion.frame_time, first=facts.first)
-    bends = find_bends(motion.skeleton, facts.poses, anatomy, first=facts.first) if grips else ()
     left, right = ({each.frame for each in requests if _is_about(each, arm.shoulder, facts)} for arm in anatomy.arms)
-    closed = close_grips(edit.motion, motion, grips, anatomy, bends, goals=(left, right)) if grips else None
+    closed = close_grips(edit.motion, facts.poses, grips, anatomy, facts.bends, goals=(left, right)) if grips else None
     if closed is None:
         return Holding(edit, {"grips": [], "apart_max": None})
     worst = int(np.argmax(closed.off))

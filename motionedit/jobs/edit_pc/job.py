@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import kinematics
-from motionedit.core.body.bends import find_bends
 from motionedit.core.body.ground import axis_name
 from motionedit.core.body.steps import change_steps
 from motionedit.core.bvh import edited_bytes, resampled_bytes, unedited_bytes
@@ -246,7 +245,7 @@ class _Edit:
                 touched=np.asarray(edit.touched.any(axis=0)),
                 steps=steps,
                 traces=(traces[0], traces[1]),
-                bends=find_bends(motion.skeleton, facts.poses, facts.anatomy, first=facts.first),
+                bends=facts.bends,
             )
         about = {
             "unit": None if spec.unit is None else spec.unit.name,

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motionedit.core.body.bends import find_bends
 from motionedit.core.body.center_of_mass import Masses, find_masses, scaled_masses
 from motionedit.core.body.hinges import OFF_AXIS_ENERGY, Hinge, channel_hinges, find_hinges, hinge_of, with_limits_of
 from motionedit.core.body.limits import Limits, Range, given_limits, human_limits
@@ -92,9 +91,8 @@ def _ranges(
     loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults: Faults, warnings: list[str]
 ) -> tuple[tuple[Bend, ...], tuple[Hinge, ...], Limits]:
     """Return how the joints of a clip bend and turn in it, and how far they may."""
-    bends = find_bends(facts.clip.motion.skeleton, facts.poses, facts.anatomy, first=facts.first)
-    hinges = _hinges(loaded, facts, bends, faults, warnings)
-    return bends, tuple(hinges), _limits(loaded, facts, hinges, faults, warnings)
+    hinges = _hinges(loaded, facts, facts.bends, faults, warnings)
+    return facts.bends, tuple(hinges), _limits(loaded, facts, hinges, faults, warnings)
 
 
 def _masses(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults: Faults) -> Masses:

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 from motionedit.core.blocks import blocks_of
 from motionedit.core.body import ground
-from motionedit.core.body.bends import find_bends
 from motionedit.core.body.contacts import foot_plants
 from motionedit.core.body.hinges import find_hinges
 from motionedit.core.body.quality import find_defects
@@ -183,7 +182,7 @@ def _hinges(facts: ClipFacts) -> list[dict[str, Any]]:
             "axis": hinge.axis,
             "limits": [math.degrees(limit) for limit in hinge.limits],
         }
-        for hinge in find_hinges(find_bends(motion.skeleton, facts.poses, facts.anatomy, first=facts.first))
+        for hinge in find_hinges(facts.bends)
     ]
 
 

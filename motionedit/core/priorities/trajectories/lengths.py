@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from motionedit.core.priorities.trajectories.positions import ControlPoint, active_interval
+from motionedit.core.timeline.interpolation import smooth_step
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -80,4 +81,4 @@ def _blend(targets: FloatArray, before: FloatArray, after: FloatArray, start: in
     """Write what is between two sources from `start` to `stop`, whose own frames are the sources'."""
     t = np.linspace(0.0, 1.0, stop - start + 1)
     span = slice(start, stop + 1)
-    targets[span] = before[span] + t * t * (3.0 - 2.0 * t) * (after[span] - before[span])
+    targets[span] = before[span] + smooth_step(t) * (after[span] - before[span])

@@ -15,6 +15,7 @@ import numpy as np
 from motionedit.core.blocks import BLOCK_FRAMES
 from motionedit.core.priorities.trajectories.splines import Basis, basis_of, kochanek_bartels
 from motionedit.core.timeline import round_half_up
+from motionedit.core.timeline.interpolation import smooth_step
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -111,8 +112,7 @@ def share_of(points: Sequence[ControlPoint], *, ease_in: float, ease_out: float,
     rise = np.ones(frames) if start <= first else np.clip((f - first) / (start - first), 0.0, 1.0)
     fall = np.ones(frames) if stop >= last else np.clip((last - f) / (last - stop), 0.0, 1.0)
     t = rise * fall
-    share: FloatArray = t * t * (3.0 - 2.0 * t)
-    return share
+    return smooth_step(t)
 
 
 def position_targets(

@@ -10,6 +10,7 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.priorities.trajectories.positions import active_interval, eased, share_of
 from motionedit.core.rotation_vectors import least_turned
+from motionedit.core.timeline.interpolation import smooth_step
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -94,7 +95,7 @@ def _blend(
         return
     arc = _arcs(before[span], after[span], weights)[inside - span.start]
     t = ((inside - start) / (stop - start))[:, None]
-    targets[inside] = rot.multiply(before[inside], rot.exp(t * t * (3.0 - 2.0 * t) * arc))
+    targets[inside] = rot.multiply(before[inside], rot.exp(smooth_step(t) * arc))
 
 
 def _arcs(before: FloatArray, after: FloatArray, weights: FloatArray) -> FloatArray:

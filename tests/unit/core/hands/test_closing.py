@@ -35,7 +35,7 @@ class Swing:
         return Motion(self.motion.skeleton, rotations, self.motion.translations, self.motion.frame_time)
 
     def close(self, edited, *, grips=((0, 120),), goals=((), ())):
-        return close_grips(edited, self.motion, grips, self.anatomy, self.bends, goals=goals)
+        return close_grips(edited, self.poses, grips, self.anatomy, self.bends, goals=goals)
 
     def seen(self, motion):
         """Return where the right hand is in the left hand's frame, and how it is turned."""
@@ -113,7 +113,7 @@ def test_an_arm_comes_to_straight_gently(swing):
     poses = kinematics.forward(still)
     bends = find_bends(still.skeleton, poses, swing.anatomy, first=0)
     goals = (list(range(61)), [])
-    closed = close_grips(edited, still, ((0, 60),), swing.anatomy, bends, goals=goals)
+    closed = close_grips(edited, poses, ((0, 60),), swing.anatomy, bends, goals=goals)
     after = kinematics.forward(closed.motion)
     shoulder, elbow, wrist = (
         after.positions[:, j] for j in (swing.right.shoulder, swing.right.elbow, swing.right.wrist)
@@ -168,7 +168,7 @@ def test_arms_whose_joints_do_not_turn_freely_are_left_alone(swing):
     channels[swing.right.elbow] = channels[swing.right.elbow][:1]
     skeleton = replace(motion.skeleton, channels=tuple(channels))
     bound = Motion(skeleton, motion.rotations, motion.translations, motion.frame_time)
-    assert close_grips(bound, bound, ((0, 120),), swing.anatomy, swing.bends, goals=((), ())) is None
+    assert close_grips(bound, swing.poses, ((0, 120),), swing.anatomy, swing.bends, goals=((), ())) is None
 
 
 def test_arms_without_length_stay_where_they_are(swing):
@@ -180,5 +180,5 @@ def test_arms_without_length_stay_where_they_are(swing):
         Motion(skeleton, m.rotations, m.translations, m.frame_time) for m in (swing.motion, swing.turned(6.0))
     )
     with np.errstate(all="raise", under="ignore"):
-        closed = close_grips(edited, short, ((0, 120),), swing.anatomy, swing.bends, goals=((), ()))
+        closed = close_grips(edited, kinematics.forward(short), ((0, 120),), swing.anatomy, swing.bends, goals=((), ()))
     assert np.isfinite(closed.motion.rotations).all()
