@@ -1,12 +1,19 @@
-"""edit-prioritized: what is said of goals that are met or missed, of loose feet, in reports and before the work."""
+"""edit-prioritized: what is said of goals that are met or missed, of loose feet and hands, in reports and before the work."""
 
 import re
 
 import numpy as np
 import pytest
+import yaml
 from prioritized_edits import ARM_ONLY, FEET_AS_CAPTURED, RAISED, WALK, hand
+from scipy.spatial.transform import Rotation
 
+from motionedit.core.bvh import read_clip
+from motionedit.core.kinematics import forward
 from studies.lab import effector_path
+
+SWING = WALK.parent / "golf" / "swing04.bvh"
+HANDS = ("LeftHand", "RightHand")
 
 
 def test_an_unreachable_hand_warns_and_fails_strict_alone(edit):
@@ -147,6 +154,34 @@ def test_one_foot_that_is_held_says_nothing_of_the_other(edit):
 def test_a_foot_that_is_held_in_other_frames_alone_is_told_of(edit):
     feet = {**FEET_AS_CAPTURED, "points": [{"during": [0, 5]}], "ease_out": 0}
     assert len(loose(edit([feet, RAISED]))) == 2
+
+
+def parted(done):
+    return [line for line in done.warnings if "no constraint keeps them together" in line]
+
+
+def left_as_the_right_has_it(path):
+    poses, names = forward(read_clip(path).motion), list(read_clip(path).motion.skeleton.names)
+    left, right = (names.index(name) for name in HANDS)
+    apart = poses.positions[:, left] - poses.positions[:, right]
+    return Rotation.from_quat(poses.rotations[:, right], scalar_first=True).inv().apply(apart)
+
+
+def test_a_club_that_one_hand_takes_along_says_that_the_other_no_longer_holds_it(edit):
+    aside = {"type": "position", "points": [{"at": 94, "shift": [10, 0, 0]}]}
+    right = {**aside, "effector": "RightHand", "recruit": {"up_to": "RightShoulder"}}
+    done = edit([right], clip=SWING)
+    (line,) = parted(done)
+    way, frame = re.search(r"hands that hold one thing come apart by (\S+) at frame (\d+), and", line).groups()
+    ways = np.linalg.norm(left_as_the_right_has_it(done.path) - left_as_the_right_has_it(SWING), axis=1)
+    assert int(frame) == np.argmax(ways)
+    assert float(way) == pytest.approx(ways.max(), rel=1e-2)
+    # As the warning says, and as it says nothing of: both placed, or hands that hold nothing.
+    grip = yaml.safe_load(re.search(r"\{.*\}", line).group())
+    assert not parted(edit([right, grip], clip=SWING))
+    left = {**aside, "effector": "LeftHand", "recruit": {"up_to": "LeftShoulder"}}
+    assert not parted(edit([right, {**left, "points": [{"at": 94, "shift": [-10, 0, 0]}]}], clip=SWING))
+    assert not parted(edit([hand({"at": 70, "shift": [0, 20, 0]}, recruit=ARM_ONLY)]))
 
 
 def test_the_papers_filter_is_named_where_it_leaves_an_error(edit):

@@ -21,6 +21,8 @@ _TOGETHER = 0.25
 # slip, in a captured swing at 0.27; those that meet in passing, and fists on guard, go at 0.5 and more.
 _SLIPS = 0.4
 _SHORTEST = 0.3  # seconds
+# Metres at leg length 0.85 m by which hands that hold one thing come apart where a viewer sees it.
+SEEN_APART = 0.03
 
 
 def find_grips(poses: WorldPoses, anatomy: Anatomy, *, frame_time: float, first: int) -> tuple[tuple[int, int], ...]:
@@ -43,11 +45,14 @@ def find_grips(poses: WorldPoses, anatomy: Anatomy, *, frame_time: float, first:
     spans = [(start, stop) for start, stop in runs(near) if (stop - start) * frame_time >= _SHORTEST]
     if not spans:
         return ()
-    speeds = np.maximum(
-        _speeds(rot.unrotate(poses.rotations[:, right], apart), frame_time),
-        _speeds(rot.unrotate(poses.rotations[:, left], apart), frame_time),
-    )
+    hands = [(poses.positions[:, j], poses.rotations[:, j]) for j in (left, right)]
+    speeds = np.maximum(*(_speeds(seen_by(a, b), frame_time) for a, b in (hands, hands[::-1])))
     return tuple((start, stop) for start, stop in spans if median(speeds[start : stop + 1]) <= _SLIPS * unit)
+
+
+def seen_by(hand: tuple[FloatArray, FloatArray], other: tuple[FloatArray, FloatArray]) -> FloatArray:
+    """Return where one hand has the other, shape (F, 3), of positions (F, 3) and rotations (F, 4) in the world."""
+    return rot.unrotate(hand[1], other[0] - hand[0])
 
 
 def _speeds(places: FloatArray, frame_time: float) -> FloatArray:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from motionedit.core.hands.closing import close_grips
-from motionedit.core.hands.grips import find_grips
+from motionedit.core.hands.grips import SEEN_APART, find_grips
 from motionedit.core.units import STANDARD_LEG
 from motionedit.dataclass import dataclass, replace
 
@@ -17,9 +17,6 @@ if TYPE_CHECKING:
     from motionedit.core.coefficients.edit import CoefficientEdit
     from motionedit.core.coefficients.goal_chains import GoalRequest
     from motionedit.jobs.clip.facts import ClipFacts
-
-# Metres at leg length 0.85 m by which hands that hold one thing come apart where a viewer sees it.
-_SEEN = 0.03
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +48,7 @@ def edit_holding(edit: CoefficientEdit, requests: Sequence[GoalRequest], facts: 
     if closed is None:
         return Holding(edit, {"grips": [], "apart_max": None})
     worst = int(np.argmax(closed.off))
-    apart, seen = float(closed.off[worst]), _SEEN * anatomy.leg_length / STANDARD_LEG
+    apart, seen = float(closed.off[worst]), SEEN_APART * anatomy.leg_length / STANDARD_LEG
     line = (
         f"hands that hold one thing come apart by {apart:.3g} at frame {worst}: farther than the arms bring them back "
         f"({seen:.3g} would be seen)"

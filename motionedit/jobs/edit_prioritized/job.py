@@ -28,12 +28,12 @@ from motionedit.jobs.clip.roughness import rough_lines
 from motionedit.jobs.edit_prioritized.body import sized_clip
 from motionedit.jobs.edit_prioritized.constraints import clip_constraints
 from motionedit.jobs.edit_prioritized.floors import refuse_floors_out_of_reach
-from motionedit.jobs.edit_prioritized.loose_feet import loose_feet
 from motionedit.jobs.edit_prioritized.record import edit_record
 from motionedit.jobs.edit_prioritized.recruits import breach_error, breach_warnings, immovable_warnings, layer_lines
 from motionedit.jobs.edit_prioritized.reference import reference_facts, reference_files, refuse_missing_reference
 from motionedit.jobs.edit_prioritized.rest_pose import moved_rest_pose
 from motionedit.jobs.edit_prioritized.standing import on_feet
+from motionedit.jobs.edit_prioritized.unheld import grips_in, loose_feet, loose_hands
 from motionedit.jobs.preview.with_page import with_page
 
 if TYPE_CHECKING:
@@ -51,6 +51,7 @@ if TYPE_CHECKING:
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.jobs.edit_prioritized.body import SizedClip
     from motionedit.jobs.edit_prioritized.constraints import ClipConstraint
+    from motionedit.jobs.edit_prioritized.unheld import Grip
     from motionedit.spec.edit_prioritized import EditPrioritizedSpec
     from motionedit.spec.load import LoadedSpec
 
@@ -116,6 +117,7 @@ class EditByPriorities:
             return self._unedited(clip, sized)
         refuse_floors_out_of_reach(self.loaded, sized, [c.constraint for c in constraints], curve=settings.curve)
         before = feet_of(sized.facts, blocks_of(sized.facts.poses), masses=sized.masses)
+        grips = grips_in(sized)
         # What is read off the input has been read, its phases with it: an edit of a long clip needs the room.
         if len(sized.motion) > BLOCK_FRAMES:
             sized.facts.forget_poses()
@@ -132,7 +134,7 @@ class EditByPriorities:
         except RecruitingError as error:
             asked = [c.constraint for c in constraints]
             raise breach_error(self.loaded, error.breach, asked, sized.facts) from None
-        return self._outcome(sized, constraints, edit, settings, before=before)
+        return self._outcome(sized, constraints, edit, settings, before=before, grips=grips)
 
     def _unedited(self, clip: Clip, sized: SizedClip) -> Outcome:
         """Return a clip of which nothing is asked, or nothing that is in it."""
@@ -203,6 +205,7 @@ class EditByPriorities:
         settings: LayeredSettings,
         *,
         before: Trace,
+        grips: Sequence[Grip],
     ) -> Outcome:
         facts, spec = sized.facts, self.loaded.model
         clip = facts.clip
@@ -223,7 +226,7 @@ class EditByPriorities:
         asked = [each.constraint for each in constraints]
         # Of both traces, then of every constraint: of a long clip they take the room one after the other.
         about = self._about(sized, before, after, steps)
-        loose = loose_feet(sized, asked, before, after)
+        loose = [*loose_feet(sized, asked, before, after), *loose_hands(sized, asked, edit.motion, grips)]
         del before, after
         result = edit_record(
             edit, constraints, facts, scale=sized.scale, settings=settings, rough=(*sized.let_go, *rough)
