@@ -1,4 +1,4 @@
-"""edit-prioritized: what is said of goals that are met or missed, of loose feet and hands, in reports and before the work."""
+"""edit-prioritized: what is said of goals, of loose feet and hands, in reports and before the work."""
 
 import re
 
