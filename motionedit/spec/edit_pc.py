@@ -199,6 +199,13 @@ class EditPcSpec(Document):
         description="Hands that hold one thing in the input: keep brings them together again as they were there, by "
         "both arms, off leaves them to the solver; default keep (off where feet are by default).",
     )
+    hinges: Literal["auto", "off"] | None = spec_key(
+        kinds.or_off(kinds.word("auto", "off")),
+        default=None,
+        description="Knees and elbows: auto bends them no further than a body does, or the input, neither back nor "
+        "shut, and the rest of the body meets the goals; off leaves them to the solver; default auto (off where feet "
+        "are by default).",
+    )
     plausibility: float | str | None = spec_key(
         kinds.or_off(kinds.either(("off",), kinds.number(above=0.0))),
         default=None,
@@ -241,6 +248,11 @@ class EditPcSpec(Document):
         return self.hands or ("keep" if self._is_plain else "off")
 
     @property
+    def hinges_in_force(self) -> Literal["auto", "off"]:
+        """What becomes of knees and elbows that are bent too far: auto or off."""
+        return self.hinges or ("auto" if self._is_plain else "off")
+
+    @property
     def _is_plain(self) -> bool:
         """Whether the output is the input but for a likely change, so that what stood or held shall do so."""
         return self.solver.method == "map" and self.residual == "keep" and self.timing == "original"
@@ -257,10 +269,9 @@ class EditPcSpec(Document):
             if "residual_share" in data:
                 yield Fault(f"belongs to method: map; {method} has the components alone", ("residual_share",))
         for key, value in (("residual", "drop"), ("timing", "normalized")):
-            if data.get(key) == value and data.get("feet") in ("keep", "move"):
-                yield Fault(f"the clip's own plants say nothing of an output with {key}: {value}", ("feet",))
-            if data.get(key) == value and data.get("hands") == "keep":
-                yield Fault(f"the clip's own grips say nothing of an output with {key}: {value}", ("hands",))
+            for what, own in (("feet", "plants"), ("hinges", "bends"), ("hands", "grips")):
+                if data.get(key) == value and data.get(what) in ("keep", "move", "auto"):
+                    yield Fault(f"the clip's own {own} say nothing of an output with {key}: {value}", (what,))
         if isinstance(solver, dict) and solver.get("method") == "damped":
             if "unit" not in data:
                 yield Fault("needs unit: in the spec, such as unit: cm; damped works in lengths", ("solver", "method"))

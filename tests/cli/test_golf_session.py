@@ -262,6 +262,22 @@ def test_both_hands_stay_on_the_club_unless_they_are_let_go(golf):
     assert record["hands"] is None
 
 
+@pytest.mark.parametrize(("swing", "shift"), [("swing04", [0, 10, 0]), ("swing10", [-10, 0, 0])])
+def test_elbows_are_not_bent_back_and_the_hand_goes_where_it_shall(run, golf, data, tmp_path, swing, shift):
+    goal = {"at": "hit", "effector": "RightHand", "shift": shift}
+    found = {}
+    for hinges in ("off", "auto"):
+        spec = edit_spec(tmp_path / "e.yaml", goals=[goal], hands="off", hinges=hinges)
+        clip = data / f"{swing}.bvh"
+        run("edit-pc", clip, "-m", golf.model, "-s", spec, "-o", f"{hinges}.bvh", "--report", "r.json")
+        found[hinges] = json.loads((tmp_path / "r.json").read_text())["clips"][0]
+        before, after = (effector_path(p, "RightHand")[HITS[swing]] for p in (clip, tmp_path / f"{hinges}.bvh"))
+        np.testing.assert_allclose(after - before, shift, atol=0.01)
+    assert found["off"]["status"] == "rough"
+    assert "RightForeArm: bent back by" in found["off"]["message"]
+    assert found["auto"]["status"] == "ok"
+
+
 def test_shifts_in_the_heading_frame_are_the_characters_own(run, golf, data, tmp_path):
     spec = edit_spec(tmp_path / "e.yaml")
     run(

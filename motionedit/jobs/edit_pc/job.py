@@ -10,10 +10,7 @@ from motionedit.core import kinematics
 from motionedit.core.body.ground import axis_name
 from motionedit.core.body.steps import change_steps
 from motionedit.core.bvh import edited_bytes, resampled_bytes, unedited_bytes
-from motionedit.core.coefficients.edit import edit_by_coefficients
-from motionedit.core.coefficients.methods import Likeliest
-from motionedit.core.coefficients.planted_feet import FIRM, LOOSE, planted_feet
-from motionedit.core.coefficients.projection import of_another, project, project_resampled
+from motionedit.core.coefficients.projection import project, project_resampled
 from motionedit.core.pca.fit import components_for
 from motionedit.core.pca.model_file import read_model
 from motionedit.core.pca.rules import checked_rules
@@ -32,11 +29,10 @@ from motionedit.jobs.clip.kept_rules import body_said
 from motionedit.jobs.clip.metrics import edit_metrics, feet_of
 from motionedit.jobs.clip.roughness import rough_lines
 from motionedit.jobs.edit_pc.goals import clip_goals, numbers_of
-from motionedit.jobs.edit_pc.holding import Holding, edit_holding
 from motionedit.jobs.edit_pc.model_events import events_for_model, refuse_unknown_events
 from motionedit.jobs.edit_pc.record import Judged, edit_record, goal_line
-from motionedit.jobs.edit_pc.solver import chosen_solver, plausibility_bound, residual_share
-from motionedit.jobs.edit_pc.standing import edit_standing, plants_without
+from motionedit.jobs.edit_pc.solver import plausibility_bound, residual_share
+from motionedit.jobs.edit_pc.solving import Solving
 from motionedit.jobs.edit_pc.unexplained import unexplained
 from motionedit.jobs.preview.with_page import with_page
 
@@ -46,17 +42,15 @@ if TYPE_CHECKING:
 
     from motionedit.core.bvh import Clip
     from motionedit.core.coefficients.edit import CoefficientEdit
-    from motionedit.core.coefficients.goal_chains import GoalRequest
-    from motionedit.core.coefficients.planted_feet import PlantedFoot
     from motionedit.core.coefficients.projection import Projection
     from motionedit.core.kinematics import WorldPoses
-    from motionedit.core.motion import Motion
     from motionedit.core.pca.model import MotionModel
     from motionedit.jobs.batch.plan import ClipTask, RunOptions
     from motionedit.jobs.batch.run import BatchResult
     from motionedit.jobs.batch.verdicts import Verdicts
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.jobs.edit_pc.goals import ClipGoal
+    from motionedit.jobs.edit_pc.holding import Holding
     from motionedit.spec.edit_pc import EditPcSpec
     from motionedit.spec.load import LoadedSpec
 
@@ -147,53 +141,8 @@ class _Edit:
         poses = kinematics.forward(projection.motion) if spec.timing == "normalized" else facts.poses
         goals = clip_goals(self.loaded, model, facts, events=events, poses=poses)
         bound = plausibility_bound(spec, model, projection.coefficients, asked=_asked_together(spec, goals))
-        solver = chosen_solver(spec, model, bound=bound, feet=self._feet(facts, projection, goals, poses=facts.poses))
-
-        def solve(requests: Sequence[GoalRequest]) -> CoefficientEdit:
-            return edit_by_coefficients(
-                projection,
-                model,
-                requests,
-                solver=solver,
-                residual="keep" if spec.residual == "keep" else "drop",
-                first=facts.first if spec.timing == "original" else 0,
-                per_goal=spec.coefficients == "per_goal",
-            )
-
-        def again(motion: Motion, requests: Sequence[GoalRequest], still: Sequence[int]) -> Motion:
-            now = of_another(projection, model, motion)
-            firm = () if still else self._feet(facts, now, goals, poses=kinematics.forward(motion), deviation=FIRM)
-            return edit_by_coefficients(
-                now,
-                model,
-                requests,
-                solver=Likeliest(share=1.0, bound=None, feet=firm, still=tuple(still)),
-                residual="keep",
-                first=facts.first,
-            ).motion
-
-        requests, feet = [goal.request for goal in goals], spec.feet_in_force
-        edit = solve(requests) if feet == "off" else edit_standing(solve, again, requests, facts, places=feet)
-        held = Holding(edit) if spec.hands_in_force == "off" else edit_holding(edit, requests, facts)
+        held = Solving(spec, model, facts, projection, tuple(goal.request for goal in goals), bound).edit()
         return self._outcome(facts, projection, held, goals, before=poses, bound=bound)
-
-    def _feet(
-        self,
-        facts: ClipFacts,
-        projection: Projection,
-        goals: Sequence[ClipGoal],
-        *,
-        poses: WorldPoses,
-        deviation: float = LOOSE,
-    ) -> tuple[PlantedFoot, ...]:
-        """Return the points of feet that stand; none where they are left alone, or where a goal is about the foot."""
-        if self.loaded.model.feet_in_force == "off":
-            return ()
-        points = [point.effector for point in facts.anatomy.sole_points]
-        plants = plants_without(facts, {(goal.request.effector.joint, goal.request.frame) for goal in goals})
-        return planted_feet(
-            projection, self.model.space, poses=poses, plants=plants, points=points, deviation=deviation
-        )
 
     def _projection(self, facts: ClipFacts, task: ClipTask) -> tuple[Projection, dict[str, float]]:
         """Return a clip in the model's coordinates, and the frames of its events."""

@@ -1,0 +1,76 @@
+"""Knees and elbows that an edit bends further than a body does, back or shut, and that are held where these end."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core import rotations as rot
+from motionedit.core.arrays import frozen
+from motionedit.core.body.bends import turns_about
+from motionedit.core.motion import Motion
+from motionedit.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from motionedit.core.arrays import FloatArray
+    from motionedit.core.body.bends import Bend
+
+# How a bend comes to a limit: s log(1 + exp(b / s)) in place of b, which without it would stop dead there.
+_SOFT = float(np.radians(5.0))
+_ROUNDING = 1e-9  # rad
+# Where bones that are a hand's width thick lie on each other, unless the input bends them further. Captured elbows go
+# beyond the 150 degrees of a hinge.
+_SHUT = float(np.radians(165.0))
+
+
+@dataclass(frozen=True, eq=False)
+class HeldBends:
+    """A motion, and the joints that were turned for it."""
+
+    motion: Motion
+    joints: tuple[int, ...]
+
+
+def hold_bends(before: Motion, after: Motion, bends: Sequence[Bend], *, first: int) -> HeldBends:
+    """Return an edited motion whose knees and elbows bend within their limits.
+
+    b' = b + (c(b) - b) (1 - exp(-(b - b0)^2 / s^2)) about the axis of the bend, b the edit's and b0 the input's, c(b) =
+    l + s log(1 + exp((b - l) / s)) at the lower limit l, and the same at the upper: where an edit changes nothing, nor
+    does this. Limbs that are never beyond stay as they are.
+
+    Parameters
+    ----------
+    bends : sequence of Bend
+        The input's.
+    first : int
+        Frames before it are a rest pose, and stay.
+    """
+    rotations, turned = after.rotations.copy(), []
+    for bend in bends:
+        own, now = (_angles(motion, bend)[first:] for motion in (before, after))
+        least, most = bend.bent
+        low, high = min(0.0, least), max(_SHUT, most)
+        if ((low - _ROUNDING <= now) & (now <= high + _ROUNDING)).all():
+            continue
+        more = (_held(now, low, high) - now) * -np.expm1(-(((now - own) / _SOFT) ** 2))
+        turn = rot.exp(more[:, None] * bend.axis)
+        rotations[first:, bend.joint] = rot.multiply(turn, rotations[first:, bend.joint])
+        turned.append(bend.joint)
+    return HeldBends(Motion(after.skeleton, frozen(rotations), after.translations, after.frame_time), tuple(turned))
+
+
+def _angles(motion: Motion, bend: Bend) -> FloatArray:
+    """Return how far a limb is bent, shape (F,), rad: from a quarter turn back to three forward."""
+    angles = turns_about(bend.axis, bend.upper, rot.rotate(motion.rotations[:, bend.joint], bend.lower))
+    bent: FloatArray = np.where(angles < -0.5 * np.pi, angles + 2.0 * np.pi, angles)
+    return bent
+
+
+def _held(angles: FloatArray, low: float, high: float) -> FloatArray:
+    """Return angles that come to a limit softly, and stay within."""
+    above = low + _SOFT * np.logaddexp(0.0, (angles - low) / _SOFT)
+    held: FloatArray = high - _SOFT * np.logaddexp(0.0, (high - above) / _SOFT)
+    return held

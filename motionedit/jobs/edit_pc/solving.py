@@ -1,0 +1,91 @@
+"""Goals solved in a clip, and the edit made believable: limbs that bend, feet that stand, hands that hold."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from motionedit.core import kinematics
+from motionedit.core.coefficients.edit import edit_by_coefficients
+from motionedit.core.coefficients.methods import Likeliest
+from motionedit.core.coefficients.planted_feet import FIRM, LOOSE, planted_feet
+from motionedit.core.coefficients.projection import of_another
+from motionedit.dataclass import dataclass
+from motionedit.jobs.edit_pc.bending import edit_bending
+from motionedit.jobs.edit_pc.holding import Holding, edit_holding
+from motionedit.jobs.edit_pc.solver import chosen_solver
+from motionedit.jobs.edit_pc.standing import edit_standing, plants_without
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Sequence
+
+    from motionedit.core.coefficients.edit import CoefficientEdit
+    from motionedit.core.coefficients.goal_chains import GoalRequest
+    from motionedit.core.coefficients.planted_feet import PlantedFoot
+    from motionedit.core.coefficients.projection import Projection
+    from motionedit.core.motion import Motion
+    from motionedit.core.pca.model import MotionModel
+    from motionedit.jobs.clip.facts import ClipFacts
+    from motionedit.spec.edit_pc import EditPcSpec
+
+
+@dataclass(frozen=True, eq=False)
+class Solving:
+    """What goals of a clip are solved with; `bound` is that of `plausibility_bound`."""
+
+    spec: EditPcSpec
+    model: MotionModel
+    facts: ClipFacts
+    projection: Projection
+    requests: tuple[GoalRequest, ...]
+    bound: float | None
+
+    def edit(self) -> Holding:
+        """Return the edit as the spec wants it."""
+        spec, facts, requests = self.spec, self.facts, self.requests
+        edit = self._solved()
+        if spec.hinges_in_force == "off":
+            edit = self._stand(edit, ())
+        else:
+            edit = edit_bending(edit, self._again, self._stand, requests, facts)
+        return Holding(edit) if spec.hands_in_force == "off" else edit_holding(edit, requests, facts)
+
+    def _solved(self) -> CoefficientEdit:
+        spec, feet = self.spec, self._feet(self.projection, self.facts.poses, deviation=LOOSE)
+        return edit_by_coefficients(
+            self.projection,
+            self.model,
+            self.requests,
+            solver=chosen_solver(spec, self.model, bound=self.bound, feet=feet),
+            residual="keep" if spec.residual == "keep" else "drop",
+            first=self.facts.first if spec.timing == "original" else 0,
+            per_goal=spec.coefficients == "per_goal",
+        )
+
+    def _again(
+        self, motion: Motion, requests: Sequence[GoalRequest], still: Collection[int], *, firm: bool = False
+    ) -> Motion:
+        """Return a motion with goals met again, as `Again` has it, by the pose at their frames alone."""
+        now = of_another(self.projection, self.model, motion)
+        feet = self._feet(now, kinematics.forward(motion), deviation=FIRM) if firm else ()
+        solver = Likeliest(share=1.0, bound=None, feet=feet, still=tuple(sorted(still)))
+        return edit_by_coefficients(
+            now, self.model, requests, solver=solver, residual="keep", first=self.facts.first
+        ).motion
+
+    def _stand(self, edit: CoefficientEdit, still: Collection[int]) -> CoefficientEdit:
+        places = self.spec.feet_in_force
+        if places == "off":
+            return edit
+        return edit_standing(edit, self._again, self.requests, self.facts, places=places, still=still)
+
+    def _feet(
+        self, projection: Projection, poses: kinematics.WorldPoses, *, deviation: float
+    ) -> tuple[PlantedFoot, ...]:
+        """Return the points of feet that stand; none where they are left alone, or where a goal is about the foot."""
+        if self.spec.feet_in_force == "off":
+            return ()
+        points = [point.effector for point in self.facts.anatomy.sole_points]
+        plants = plants_without(self.facts, {(each.effector.joint, each.frame) for each in self.requests})
+        return planted_feet(
+            projection, self.model.space, poses=poses, plants=plants, points=points, deviation=deviation
+        )
