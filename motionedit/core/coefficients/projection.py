@@ -27,6 +27,9 @@ if TYPE_CHECKING:
     from motionedit.core.pca.model import MotionModel
     from motionedit.core.timeline.warp import TimeWarp
 
+# Seconds: a place on the timeline comes to rest at its ends within some four of these.
+_REST = 0.05
+
 
 @dataclass(frozen=True, eq=False)
 class Projection:
@@ -71,15 +74,40 @@ def clip_joints(space: PoseSpace, joint_map: IntArray) -> IntArray:
 
 
 def project(
-    motion: Motion, model: MotionModel, *, joint_map: IntArray, alignment: Alignment, warp: TimeWarp
+    motion: Motion, model: MotionModel, *, joint_map: IntArray, alignment: Alignment, warp: TimeWarp, first: int
 ) -> Projection:
-    """Return the clip in the model's space, in its own timing; alpha_0 is that of its resampled copy, eq. (3)."""
+    """Return the clip in the model's space, in its own timing; alpha_0 is that of its resampled copy, eq. (3).
+
+    Parameters
+    ----------
+    first : int
+        The clip's first frame after a rest pose.
+    """
     on_timeline = project_resampled(motion, model, joint_map=joint_map, alignment=alignment, warp=warp)
-    places = warp.to_timeline(np.arange(len(motion), dtype=np.float64))
+    places = _places(warp, len(motion), first=first, rate=model.timeline.frame_rate)
     travel = int(joint_map[model.travel])
     joints = clip_joints(model.space, joint_map)
     rows = _rows(motion, model, travel=travel, joints=joints, alignment=alignment, places=places)
     return replace(on_timeline, motion=motion, places=places, rows=rows)
+
+
+def _places(warp: TimeWarp, frames: int, *, first: int, rate: float) -> FloatArray:
+    """Return s(f) of each frame, shape (frames,).
+
+    Where the clip goes on beyond the timeline s comes to rest at its end, by r log(1 + exp(x / r)): to stop there at
+    once would be a corner of whatever changes along the timeline.
+    """
+    at = np.arange(frames, dtype=np.float64)
+    start, stop = warp.source[0], warp.source[-1]
+    places, end, soft = warp.to_timeline(at), warp.timeline[-1], _REST * rate
+    beside = warp.to_timeline(np.array([start + 1.0, stop - 1.0]))
+    if start > first:
+        places = places + beside[0] * np.minimum(at - start, 0.0)
+        places = soft * np.logaddexp(0.0, places / soft)
+    if stop < frames - 1:
+        places = places + (end - beside[1]) * np.maximum(at - stop, 0.0)
+        places = end - soft * np.logaddexp(0.0, (end - places) / soft)
+    return places
 
 
 def project_resampled(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -166,7 +167,7 @@ class _Edit:
             position=align["position"],
             at=begins if align["at"] is None else events[align["at"]],
         )
-        view = project if self.loaded.model.timing == "original" else project_resampled
+        view = partial(project, first=facts.first) if self.loaded.model.timing == "original" else project_resampled
         return view(motion, model, joint_map=joint_map, alignment=alignment, warp=warp), events
 
     def _outcome(

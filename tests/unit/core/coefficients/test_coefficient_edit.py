@@ -13,6 +13,7 @@ from motionedit.core.coefficients.prior import FADE
 from motionedit.core.coefficients.projection import project, project_resampled, with_rows
 from motionedit.core.kinematics import Effector
 from motionedit.core.measure import Measure
+from motionedit.core.timeline.warp import make_warp
 
 HAND = 22
 MAP = np.arange(23)
@@ -26,8 +27,9 @@ def model():
 
 def projected(model, motion, hit, *, resampled=False):
     alignment, warp, _, _ = place(motion, TIMELINE, hit=hit)
-    view = project_resampled if resampled else project
-    return view(motion, model, joint_map=MAP, alignment=alignment, warp=warp)
+    if resampled:
+        return project_resampled(motion, model, joint_map=MAP, alignment=alignment, warp=warp)
+    return project(motion, model, joint_map=MAP, alignment=alignment, warp=warp, first=0)
 
 
 def request_of(motion, frame, shift, *, joint=HAND, offset=(0.0, -0.15, 0.0), **changes):
@@ -60,6 +62,24 @@ def test_a_projection_knows_how_long_the_clip_lasts(model):
     motion = stroke(3, frames=71, hit=0.5)
     for resampled in (False, True):
         assert projected(model, motion, 35.0, resampled=resampled).seconds == pytest.approx(70 * motion.frame_time)
+
+
+def test_a_clip_that_goes_on_beyond_the_timeline_comes_to_rest_at_its_ends_without_a_corner(model):
+    motion = stroke(20, frames=160, frame_time=0.01)
+    alignment, whole, _, _ = place(motion, TIMELINE, hit=90.0)
+    part = make_warp(TIMELINE, first=30, last=140, events={"hit": 90.0}, label="stroke")
+    views = [
+        project(motion, model, joint_map=MAP, alignment=alignment, warp=warp, first=0).places for warp in (whole, part)
+    ]
+    frames = np.arange(160.0)
+    np.testing.assert_array_equal(views[0], whole.to_timeline(frames))
+    np.testing.assert_allclose(views[1][55:115], part.to_timeline(frames)[55:115], atol=0.05)
+    assert (views[1] >= 0.0).all()
+    assert (views[1] <= TIMELINE.frames - 1).all()
+    assert (np.diff(views[1]) > 0.0).all()
+    own, stopped = (np.abs(np.diff(places, 2)) for places in (views[1], part.to_timeline(frames)))
+    for end in (slice(10, 50), slice(120, 158)):
+        assert own[end].max() < 0.15 * stopped[end].max()
 
 
 def test_no_shift_touches_nothing(model):
