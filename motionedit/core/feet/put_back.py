@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
 from motionedit.core.feet.goals import Ground
 from motionedit.core.feet.keep import onto_stances
@@ -25,16 +26,29 @@ if TYPE_CHECKING:
 
 Places = Literal["keep", "move"]
 
+# Seconds: a foot with a goal so shortly before it stands, or after, does not stand where it did. Put back there, it
+# would swing far out on its way.
+NEARBY = 0.15
+
 _ROUNDING = 1e-12  # of quaternions: a leg that is turned by no more stays as it is, to the bit
+
+
+@dataclass(frozen=True)
+class Fixed:
+    """A joint that is where the edit put it at a frame, and `turned` as the edit turned it, too."""
+
+    joint: int
+    frame: int
+    turned: bool = False
 
 
 @dataclass(frozen=True, eq=False)
 class StandingFoot:
-    """A foot and when it stands: `intervals` of frames, both ends in; at `fixed` frames it stays as edited."""
+    """A foot and when it stands: `intervals` of frames, both ends in; what of its leg is `fixed` stays as edited."""
 
     foot: Foot
     intervals: tuple[tuple[int, int], ...]
-    fixed: tuple[int, ...] = ()
+    fixed: tuple[Fixed, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,25 +61,35 @@ class PutBack:
 
 
 def standing_feet(
-    motion: Motion, anatomy: Anatomy, plants: Sequence[FootPlant], *, fixed: Collection[tuple[int, int]] = ()
+    motion: Motion, anatomy: Anatomy, plants: Sequence[FootPlant], *, fixed: Collection[Fixed] = ()
 ) -> list[StandingFoot]:
     """Return the feet of a body whose legs can be turned freely, with their plants.
 
     Parameters
     ----------
-    fixed : collection of (joint, frame)
-        Where a joint is meant to be where the edit put it: a plant with such a frame of its foot is left alone.
+    fixed : collection of Fixed
+        A plant goes as a whole to where its foot is fixed; one in which a knee is, or the foot at several frames, is
+        left alone, and so is one that begins or ends within 0.15 s of such a frame.
     """
+    nearby = round(NEARBY / motion.frame_time)
     found = []
     for foot in feet_of(anatomy):
         if not turns_freely(motion.skeleton, foot.leg):
             continue
-        frames = tuple(sorted(f for joint, f in fixed if foot.leg.thigh in motion.skeleton.chain(joint)))
+        own = [each for each in fixed if foot.leg.thigh in motion.skeleton.chain(each.joint)]
         intervals = tuple(
-            (p.start, p.stop) for p in plants if p.foot == foot.side and not any(p.start <= f <= p.stop for f in frames)
+            (p.start, p.stop) for p in plants if p.foot == foot.side and _stands_whole(p, own, foot, nearby=nearby)
         )
-        found.append(StandingFoot(foot, intervals, frames))
+        found.append(StandingFoot(foot, intervals, tuple(sorted(own, key=lambda each: (each.frame, each.joint)))))
     return found
+
+
+def _stands_whole(plant: FootPlant, fixed: Sequence[Fixed], foot: Foot, *, nearby: int) -> bool:
+    inside = [each for each in fixed if plant.start <= each.frame <= plant.stop]
+    bent = any(each.joint in (foot.leg.thigh, foot.leg.knee) for each in inside)
+    several = len({each.frame for each in inside}) > 1
+    near = any(min(abs(each.frame - plant.start), abs(each.frame - plant.stop)) <= nearby for each in fixed)
+    return not (bent or several or near)
 
 
 def put_back(
@@ -114,12 +138,24 @@ def _stance(standing: StandingFoot, theirs: FootPath, now: FootPath, *, up: Floa
     down, whole = np.zeros(len(now.ankle), dtype=np.bool_), np.full(len(now.ankle), -1)
     heel, toe, turn = now.ankle.copy(), now.toe_place.copy(), now.turn.copy()
     for stand, (start, stop) in enumerate(standing.intervals):
-        span, way = slice(start, stop + 1), np.zeros(3)
-        if places == "move":
+        span = slice(start, stop + 1)
+        heel[span], toe[span], turn[span] = theirs.ankle[span], theirs.toe_place[span], theirs.turn[span]
+        inside = [each for each in standing.fixed if start <= each.frame <= stop]
+        if inside:
+            f = inside[0].frame
+            if any(each.turned for each in inside):
+                about, Q = theirs.ankle[f], rot.multiply(now.turn[f], rot.conjugate(theirs.turn[f]))
+                heel[span], toe[span] = (about + rot.rotate(Q, each[span] - about) for each in (heel, toe))
+                turn[span] = rot.multiply(Q, turn[span])
+            at_toe = standing.foot.leg.ankle not in [each.joint for each in inside]
+            way = now.toe_place[f] - toe[f] if at_toe else now.ankle[f] - heel[f]
+        elif places == "move":
             way = (now.ankle[span] - theirs.ankle[span]).mean(axis=0)
             way = way - (way @ up) * up
-        heel[span], toe[span], turn[span] = theirs.ankle[span] + way, theirs.toe_place[span] + way, theirs.turn[span]
+        else:
+            way = np.zeros(3)
+        heel[span], toe[span] = heel[span] + way, toe[span] + way
         down[span], whole[span] = True, stand
-    fixed = list(standing.fixed)
-    down[fixed], whole[fixed] = True, len(standing.intervals) + np.arange(len(fixed))
+    free = sorted({each.frame for each in standing.fixed if not down[each.frame]})
+    down[free], whole[free] = True, len(standing.intervals) + np.arange(len(free))
     return Stance(down, down, heel, toe, turn, whole)

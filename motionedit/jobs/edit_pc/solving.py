@@ -13,7 +13,7 @@ from motionedit.dataclass import dataclass
 from motionedit.jobs.edit_pc.bending import edit_bending
 from motionedit.jobs.edit_pc.holding import Holding, edit_holding
 from motionedit.jobs.edit_pc.solver import chosen_solver
-from motionedit.jobs.edit_pc.standing import edit_standing, plants_without
+from motionedit.jobs.edit_pc.standing import edit_standing, fixed_by, plants_without
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -82,10 +82,11 @@ class Solving:
         self, projection: Projection, poses: kinematics.WorldPoses, *, deviation: float
     ) -> tuple[PlantedFoot, ...]:
         """Return the points of feet that stand; none where they are left alone, or where a goal is about the foot."""
-        if self.spec.feet_in_force == "off":
+        places = self.spec.feet_in_force
+        if places == "off":
             return ()
         points = [point.effector for point in self.facts.anatomy.sole_points]
-        plants = plants_without(self.facts, {(each.effector.joint, each.frame) for each in self.requests})
+        plants = plants_without(self.facts, fixed_by(self.requests, self.facts, places=places))
         return planted_feet(
             projection, self.model.space, poses=poses, plants=plants, points=points, deviation=deviation
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from motionedit.core.body.contacts import foot_plants
-from motionedit.core.feet.put_back import put_back, standing_feet
+from motionedit.core.feet.put_back import NEARBY, Fixed, put_back, standing_feet
 from motionedit.dataclass import replace
 from motionedit.jobs.edit_pc.meeting import NEARLY, asked_again, ways_off
 
@@ -23,9 +23,6 @@ if TYPE_CHECKING:
 _ROUNDS = 10
 # Rounds after which the pelvis helps, too: a straight leg that is to go higher needs the pelvis tilted.
 _WITHOUT_PELVIS = 4
-# Seconds: a foot with a goal so shortly before it stands, or after, does not stand where it did. Put back there, it
-# would swing far out on its way.
-_NEARBY = 0.15
 
 
 def edit_standing(
@@ -47,8 +44,7 @@ def edit_standing(
     if anatomy.legs is None or not (edit.touched.any() or edit.moved.any()):
         return edit
     motion = facts.clip.motion
-    fixed = {(request.effector.joint, request.frame) for request in requests}
-    feet = standing_feet(motion, anatomy, foot_plants(plants_without(facts, fixed)), fixed=fixed)
+    feet = standing_feet(motion, anatomy, foot_plants(facts.plants), fixed=fixed_by(requests, facts, places=places))
     standing, asked = {*still, *_still(motion, feet)}, asked_again(edit, requests)
     found = legs_alone = edit
     for done in range(_ROUNDS):
@@ -81,21 +77,40 @@ def _stood(edit: CoefficientEdit, missed: Collection[int]) -> tuple[Change, ...]
     )
 
 
-def plants_without(facts: ClipFacts, fixed: Collection[tuple[int, int]]) -> list[Plant]:
-    """Return the clip's plants but for those whose foot is meant to be elsewhere: `fixed` (joint, frame) nearby."""
-    skeleton, points = facts.clip.motion.skeleton, facts.anatomy.sole_points
-    thighs = [leg.thigh for leg in facts.anatomy.legs or ()]
-    nearby = round(_NEARBY / facts.clip.motion.frame_time)
+def fixed_by(requests: Sequence[GoalRequest], facts: ClipFacts, *, places: Places) -> list[Fixed]:
+    """Return the joints that goals fix at their frames.
 
-    def free(plant: Plant) -> bool:
-        own = skeleton.chain(points[plant.point].effector.joint)
-        return any(
-            plant.start - nearby <= frame <= plant.stop + nearby
-            and any(thigh in own and thigh in skeleton.chain(joint) for thigh in thighs)
-            for joint, frame in fixed
-        )
+    A foot that stands where its goal has it stands there; it is not free to be elsewhere in other frames.
+    """
+    off = ways_off(facts.clip.motion, requests, leg=facts.anatomy.leg_length)
 
-    return [plant for plant in facts.plants if not free(plant)]
+    def stands(joint: int, frame: int) -> bool:
+        return places == "keep" and any(_moves(plant, joint, frame, facts) for plant in facts.plants)
+
+    return [
+        Fixed(each.effector.joint, each.frame, turned=each.rotation is not None)
+        for i, each in enumerate(requests)
+        if off[i] >= 1.0 or not stands(each.effector.joint, each.frame)
+    ]
+
+
+def plants_without(facts: ClipFacts, fixed: Collection[Fixed]) -> list[Plant]:
+    """Return the clip's plants but for those whose foot is meant to be elsewhere, then or nearby."""
+    nearby = round(NEARBY / facts.clip.motion.frame_time)
+    return [
+        plant
+        for plant in facts.plants
+        if not any(_moves(plant, each.joint, each.frame, facts, nearby=nearby) for each in fixed)
+    ]
+
+
+def _moves(plant: Plant, joint: int, frame: int, facts: ClipFacts, *, nearby: int = 0) -> bool:
+    """Return whether a joint is one of a plant's leg, and it stands at a frame, or nearby."""
+    skeleton = facts.clip.motion.skeleton
+    own = skeleton.chain(facts.anatomy.sole_points[plant.point].effector.joint)
+    return plant.start - nearby <= frame <= plant.stop + nearby and any(
+        leg.thigh in own and leg.thigh in skeleton.chain(joint) for leg in facts.anatomy.legs or ()
+    )
 
 
 def _still(motion: Motion, feet: Sequence[StandingFoot]) -> list[int]:

@@ -12,7 +12,7 @@ from motionedit.core.body.contacts import foot_plants, plants_of, sole_tracks
 from motionedit.core.body.find_anatomy import anatomy_of
 from motionedit.core.bvh import read_clip
 from motionedit.core.feet.knees import knee_of
-from motionedit.core.feet.put_back import put_back, standing_feet
+from motionedit.core.feet.put_back import Fixed, put_back, standing_feet
 from motionedit.core.motion import Motion
 
 WALK = Path(__file__).resolve().parents[4] / "data" / "walk.bvh"
@@ -74,13 +74,49 @@ def test_what_is_in_place_and_a_rest_pose_stay(walk):
     np.testing.assert_array_equal(late.motion.rotations[:20], motion.rotations[:20])
 
 
-def test_a_foot_with_a_goal_is_free_at_that_frame(walk):
+def long_plant(walk, foot):
+    motion, _, plants = walk
+    least = 0.4 / motion.frame_time
+    return next(p for p in plants if p.foot == foot and p.stop - p.start > least)
+
+
+def test_a_plant_is_left_alone_near_whose_ends_its_foot_is_fixed_and_one_of_a_knee_or_of_several_frames(walk):
     motion, anatomy, plants = walk
-    leg = anatomy.legs[0]
-    plant = next(p for p in plants if p.foot == "left")
-    feet = standing_feet(motion, anatomy, plants, fixed={(leg.ankle, plant.start)})
-    assert (plant.start, plant.stop) not in feet[0].intervals
-    assert feet[0].fixed == (plant.start,)
+    leg, plant = anatomy.legs[0], long_plant(walk, "left")
+    middle = (plant.start + plant.stop) // 2
+    for fixed in (
+        [Fixed(leg.ankle, plant.start)],
+        [Fixed(leg.ankle, plant.stop + 2)],
+        [Fixed(leg.knee, middle)],
+        [Fixed(leg.ankle, middle), Fixed(leg.ankle, middle + 1)],
+    ):
+        left, right = standing_feet(motion, anatomy, plants, fixed=fixed)
+        assert (plant.start, plant.stop) not in left.intervals
+        assert left.fixed == tuple(fixed)
+        assert right.fixed == ()
+
+
+def test_a_plant_goes_as_a_whole_to_where_its_foot_is_fixed_and_turns_if_that_is(walk):
+    motion, anatomy, plants = walk
+    leg, plant = anatomy.legs[0], long_plant(walk, "left")
+    middle, span = (plant.start + plant.stop) // 2, slice(plant.start, plant.stop + 1)
+    rotations = motion.rotations.copy()
+    rotations[middle, 0] = rot.multiply(rot.exp(np.array([0.0, 0.1, 0.0])), rotations[middle, 0])
+    translations = motion.translations.copy()
+    translations[middle] += [2.0, 0.0, 1.0]
+    edited = Motion(motion.skeleton, rotations, translations, motion.frame_time)
+    before, there = kinematics.forward(motion), kinematics.forward(edited)
+    for turned in (False, True):
+        fixed = [Fixed(leg.ankle, middle, turned)]
+        feet = standing_feet(motion, anatomy, plants, fixed=fixed)
+        after = kinematics.forward(put_back(edited, motion, feet, anatomy, up=UP, travel=0, places="keep").motion)
+        np.testing.assert_allclose(after.positions[middle, leg.ankle], there.positions[middle, leg.ankle], atol=1e-3)
+        own, now = ((each.positions[span, leg.ankle], each.rotations[span, leg.ankle]) for each in (before, after))
+        turn = rot.multiply(there.rotations[middle, leg.ankle], rot.conjugate(before.rotations[middle, leg.ankle]))
+        turn = turn if turned else rot.IDENTITY
+        at = there.positions[middle, leg.ankle] + rot.rotate(turn, own[0] - before.positions[middle, leg.ankle])
+        np.testing.assert_allclose(now[0], at, atol=0.5)
+        assert np.degrees(rot.angle_between(now[1], rot.multiply(turn, own[1]))).max() < 2.0
 
 
 def test_a_knee_that_a_capture_has_past_straight_for_a_while_bends_forward_all_along(walk):
