@@ -48,6 +48,16 @@ def test_clips_become_a_timeline_a_model_and_edits(run):
     assert run(*one, "--strict").exit_code == 3
     again = run("fit-pca", "normal", "-o", "golf.npz", "--no-overwrite")
     assert (again.exit_code, again.stderr.count("\n")) == (2, 1)
+    Path("report.json").touch()
+    normalize = ("normalize", "golf", "-s", "golf-normalize.yaml", "-o", "new")
+    for one in (("fit-pca", "normal", "-o", "new.npz"), normalize):
+        refused = run(*one, "--report", "report.json", "--no-overwrite")
+        assert refused.stderr == "motionedit: error: report.json: exists, and --no-overwrite is given\n"
+        assert not Path(one[-1]).exists()
+    Path("new").mkdir()
+    shutil.copy("normal/normalization.json", "new")
+    refused = run(*normalize, "--no-overwrite")
+    assert refused.stderr == "motionedit: error: new/normalization.json: exists, and --no-overwrite is given\n"
 
 
 @pytest.fixture
