@@ -54,6 +54,9 @@ def test_clips_become_a_timeline_a_model_and_edits(run):
         refused = run(*one, "--report", "report.json", "--no-overwrite")
         assert refused.stderr == "motionedit: error: report.json: exists, and --no-overwrite is given\n"
         assert not Path(one[-1]).exists()
+    streamed = run("normalize", "-", *normalize[2:])
+    reason = "'-' is not for normalize, which reads each clip twice; give files"
+    assert (streamed.exit_code, streamed.stderr) == (2, f"motionedit: error: {reason}\n")
     Path("new").mkdir()
     shutil.copy("normal/normalization.json", "new")
     refused = run(*normalize, "--no-overwrite")
