@@ -63,6 +63,17 @@ def test_clips_become_a_timeline_a_model_and_edits(run):
     assert refused.stderr == "motionedit: error: new/normalization.json: exists, and --no-overwrite is given\n"
 
 
+@pytest.mark.usefixtures("swings")
+def test_a_leg_of_an_odd_length_questions_the_unit(run):
+    doubt = "m long where the unit is m: is that the clip's unit?"
+    slip = ("--set", "unit=m")
+    assert doubt in run("normalize", "golf", "-s", "golf-normalize.yaml", "-o", "normal", *slip).stderr
+    run("fit-pca", "normal", "-s", "golf-fit.yaml", "-o", "golf.npz")
+    edit = ("edit-pc", f"golf/{NAMES[0]}", "-m", "golf.npz", "-s", "golf-edit.yaml", "-o", "edited")
+    assert doubt in run(*edit, *slip).stderr
+    assert doubt not in run(*edit).stderr
+
+
 @pytest.fixture
 def reads(monkeypatch, tmp_path):
     """Return a file with a line for each clip that is read, by any process."""
