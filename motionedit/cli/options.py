@@ -96,7 +96,7 @@ lenient_option = click.option(
 )
 up_option = click.option(
     "--up",
-    type=click.Choice(["y", "z", "auto"]),
+    type=click.Choice(["y", "z", "x", "-y", "-z", "-x", "auto"]),
     default="auto",
     show_default=True,
     help="The axis of the clips that points up.",
