@@ -42,7 +42,7 @@ def command(folder: Path, output: str, spec_path: Path | None, overrides: tuple[
     from motionedit.spec.load import load_spec
 
     if not options.overwrite:
-        refuse_existing([Path(output)])
+        refuse_existing([Path(output), options.report])
     loaded = None if spec_path is None else load_spec(spec_path, "fit-pca", overrides=overrides)
     fit = job.run(folder, Path(output), loaded, options)
     if options.verbosity >= 0:

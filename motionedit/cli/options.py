@@ -96,7 +96,7 @@ lenient_option = click.option(
 )
 up_option = click.option(
     "--up",
-    type=click.Choice(["y", "z", "auto"]),
+    type=click.Choice(["y", "z", "x", "-y", "-z", "-x", "auto"]),
     default="auto",
     show_default=True,
     help="The axis of the clips that points up.",
@@ -137,7 +137,7 @@ overwrite_option = click.option(
     "overwrite",
     flag_value=False,
     default=True,
-    help="Refuse, before any work, if an output exists.",
+    help="Refuse, before any work, if an output or the report exists.",
 )
 dry_run_option = click.option("--dry-run", is_flag=True, help="Print what would be done; write nothing.")
 

@@ -31,8 +31,8 @@ class Document(SpecModel):
         description="What a length of the clips is: m, cm, mm, in, cmu (1/0.45 inch) or a number of metres. Converts "
         "nothing; serves reports in millimetres and the damped solver.",
     )
-    up: Literal["y", "z", "auto"] = spec_key(
-        kinds.word("y", "z", "auto"),
+    up: Literal["y", "z", "x", "-y", "-z", "-x", "auto"] = spec_key(
+        kinds.word("y", "z", "x", "-y", "-z", "-x", "auto"),
         default="auto",
         description="The axis that points up; auto: by the floor, the OFFSETs and the way the body stands.",
     )

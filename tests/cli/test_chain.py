@@ -48,6 +48,30 @@ def test_clips_become_a_timeline_a_model_and_edits(run):
     assert run(*one, "--strict").exit_code == 3
     again = run("fit-pca", "normal", "-o", "golf.npz", "--no-overwrite")
     assert (again.exit_code, again.stderr.count("\n")) == (2, 1)
+    Path("report.json").touch()
+    normalize = ("normalize", "golf", "-s", "golf-normalize.yaml", "-o", "new")
+    for one in (("fit-pca", "normal", "-o", "new.npz"), normalize):
+        refused = run(*one, "--report", "report.json", "--no-overwrite")
+        assert refused.stderr == "motionedit: error: report.json: exists, and --no-overwrite is given\n"
+        assert not Path(one[-1]).exists()
+    streamed = run("normalize", "-", *normalize[2:])
+    reason = "'-' is not for normalize, which reads each clip twice; give files"
+    assert (streamed.exit_code, streamed.stderr) == (2, f"motionedit: error: {reason}\n")
+    Path("new").mkdir()
+    shutil.copy("normal/normalization.json", "new")
+    refused = run(*normalize, "--no-overwrite")
+    assert refused.stderr == "motionedit: error: new/normalization.json: exists, and --no-overwrite is given\n"
+
+
+@pytest.mark.usefixtures("swings")
+def test_a_leg_of_an_odd_length_questions_the_unit(run):
+    doubt = "m long where the unit is m: is that the clip's unit?"
+    slip = ("--set", "unit=m")
+    assert doubt in run("normalize", "golf", "-s", "golf-normalize.yaml", "-o", "normal", *slip).stderr
+    run("fit-pca", "normal", "-s", "golf-fit.yaml", "-o", "golf.npz")
+    edit = ("edit-pc", f"golf/{NAMES[0]}", "-m", "golf.npz", "-s", "golf-edit.yaml", "-o", "edited")
+    assert doubt in run(*edit, *slip).stderr
+    assert doubt not in run(*edit).stderr
 
 
 @pytest.fixture

@@ -89,6 +89,8 @@ def test_clips_are_measured_by_the_body_and_the_up_that_the_spec_gives(held_agai
     assert done.exit_code == 0
     assert "; z up; legs, head; " in done.stdout
     assert "; y up; " in held_against(command, f"{SPECS[command]}\nup: z", "--up", "y").stdout
+    assert "; -y up; " in held_against(command, f"{SPECS[command]}\nup: -y").stdout
+    assert "; -x up; " in held_against(command, SPECS[command], "--up", "-x").stdout
 
 
 @pytest.mark.parametrize("command", SPECS)

@@ -1,6 +1,7 @@
 """`motionedit edit-prioritized` from the outside: files, streams, reports and exit codes of a run."""
 
 import json
+import os
 from pathlib import Path
 
 import numpy as np
@@ -158,6 +159,17 @@ def test_no_overwrite_refuses_before_any_work(edit, clip):
     assert (result.exit_code, result.stdout) == (2, "")
     assert result.stderr == "motionedit: error: out/b.bvh: exists, and --no-overwrite is given\n"
     assert not Path("out/a.bvh").exists()
+
+
+def test_no_overwrite_keeps_a_report_but_takes_streams(edit, clip, tmp_path):
+    clip("a.bvh")
+    (tmp_path / "r.json").write_text("kept")
+    result = edit("a.bvh", "-o", "out", "--report", "r.json", "--no-overwrite")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr == "motionedit: error: r.json: exists, and --no-overwrite is given\n"
+    assert (tmp_path / "r.json").read_text() == "kept"
+    assert not Path("out").exists()
+    assert edit("a.bvh", "-o", "out", "--report", os.devnull, "--no-overwrite").exit_code == 0
 
 
 def test_update_resumes_a_stopped_batch(edit, clip):

@@ -95,6 +95,12 @@ def test_what_follows_the_reference_rides_its_path(edit):
     assert forward(after.clip.motion).positions[:, ankle] == pytest.approx(truth, abs=1e-3)
 
 
+def test_what_follows_no_reference_is_refused(edit):
+    hand = {"type": "position", "effector": "LeftFoot", "priority": 1, "follow": "reference"}
+    refused = edit([hand], code=2)
+    assert "constraints.0.follow: there is no reference to follow; give reference: or --reference" in refused
+
+
 def test_plants_go_with_the_path_as_a_whole(edit):
     way = {"type": "position", "effector": "Hips", "priority": 5}
     points = [{"during": ["0%", "100%"], "shift": [20, 0, 0]}]

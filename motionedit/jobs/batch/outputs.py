@@ -26,9 +26,13 @@ def is_of_another_kind(output: Path, own: str) -> bool:
     return output.suffix.lower() != own and _KINDS.fullmatch(output.suffix) is not None
 
 
-def refuse_existing(outputs: Sequence[Path]) -> None:
-    """Raise the UsageError of --no-overwrite where any of the outputs exists."""
-    refuse_paths([path for path in outputs if os.path.lexists(path)], "exists, and --no-overwrite is given")
+def refuse_existing(outputs: Iterable[Path | None]) -> None:
+    """Raise the UsageError of --no-overwrite where any of the outputs exists.
+
+    Standard output, which is ``-`` or None, is no file, and devices and pipes lose nothing that they hold.
+    """
+    files = [path for path in outputs if path is not None and str(path) != "-" and os.path.lexists(path)]
+    refuse_paths([path for path in files if not _is_stream(path)], "exists, and --no-overwrite is given")
 
 
 def refuse_clashes(outputs: Iterable[tuple[str, Path | None]], inputs: Iterable[Path | None]) -> None:
@@ -63,6 +67,10 @@ def refuse_clashes(outputs: Iterable[tuple[str, Path | None]], inputs: Iterable[
     folders = {one for folder in {path.parent for _, path, _, _ in files} for one in (folder, *folder.parents)}
     both = [first[one][1] for one in map(places.of, sorted(folders)) if one in first]
     refuse_paths(both, "would be a file and the folder of other outputs; write to another file or folder")
+
+
+def _is_stream(path: Path) -> bool:
+    return path.is_char_device() or path.is_fifo()
 
 
 def refuse_paths(paths: Sequence[Path], reason: str) -> None:

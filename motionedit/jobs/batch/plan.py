@@ -45,7 +45,7 @@ class RunOptions:
     update : bool
         Leave outputs alone that are newer than all they depend on.
     overwrite : bool
-        Outputs that exist are replaced.
+        Outputs and a report that exist are replaced.
     keep_going : bool
         Go on past a clip that fails.
     lenient, verify : bool
@@ -235,7 +235,9 @@ def plan(
     if options.update:
         tasks = [_recalled(task, depends, options, verdicts, clips=len(tasks)) for task in tasks]
     if not options.overwrite:
-        refuse_existing([path for task in tasks if not (task.current or task.elsewhere) for path in task.outputs])
+        made = [task for task in tasks if not (task.current or task.elsewhere)]
+        written = [path for task in made for path in task.outputs] + [path for _, path in writes if made]
+        refuse_existing([*written, options.report])
     return tasks
 
 

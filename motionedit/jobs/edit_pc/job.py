@@ -29,6 +29,7 @@ from motionedit.jobs.clip.facts import facts_of
 from motionedit.jobs.clip.kept_rules import body_said
 from motionedit.jobs.clip.metrics import edit_metrics, feet_of
 from motionedit.jobs.clip.roughness import rough_lines
+from motionedit.jobs.clip.unit import unit_doubts
 from motionedit.jobs.edit_pc.goals import clip_goals, numbers_of
 from motionedit.jobs.edit_pc.model_events import events_for_model, refuse_unknown_events
 from motionedit.jobs.edit_pc.record import Judged, edit_record, goal_line
@@ -204,7 +205,7 @@ class _Edit:
         share = residual_share(spec, self.model) if spec.solver.method == "map" else None
         if share is not None and self.model.components.left_out is None and spec.residual_share == "auto":
             odd.append(f"the model has no left-out error, so residual_share is {share:g}; make it again with fit-pca")
-        verdicts = Judged(bound, share, (*facts.warnings, *odd), rough)
+        verdicts = Judged(bound, share, (*facts.warnings, *unit_doubts(facts, spec.unit), *odd), rough)
         result = edit_record(self.model, projection, edit, goals, poses=after, verdicts=verdicts)
         return Outcome(
             resampled_bytes(facts.clip, edit.motion) if retimed else _edited_bytes(facts.clip, projection, edit),

@@ -17,6 +17,7 @@ from motionedit.dataclass import dataclass, replace
 from motionedit.errors import ClipError
 from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.faults import Faults
+from motionedit.jobs.clip.unit import unit_doubts
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -26,9 +27,6 @@ if TYPE_CHECKING:
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.spec.edit_prioritized import EditPrioritizedSpec
     from motionedit.spec.load import LoadedSpec
-
-# Metres between which a leg is a person's, small or large, or a creature's: else the unit is a slip.
-_SHORTEST_LEG, _LONGEST_LEG = 0.3, 1.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,10 +66,7 @@ def sized_clip(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults
     if anatomy.leg_length <= 0.0 and spec.constraints:
         raise ClipError("its bones have no length; a body without length cannot be edited", file=clip.label)
     scale = STANDARD_LEG / (anatomy.leg_length or STANDARD_LEG)
-    warnings = list(facts.warnings)
-    if spec.unit is not None and not _SHORTEST_LEG <= anatomy.leg_length * spec.unit.metres <= _LONGEST_LEG:
-        leg = anatomy.leg_length * spec.unit.metres
-        warnings.append(f"a leg is {leg:.3g} m long where the unit is {spec.unit.name}: is that the clip's unit?")
+    warnings = [*facts.warnings, *unit_doubts(facts, spec.unit)]
     masses = _masses(loaded, facts, faults)
     motion = scaled(clip.motion, scale)
     sized = scaled_masses(masses, motion.skeleton, scale)

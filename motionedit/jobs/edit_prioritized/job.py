@@ -162,12 +162,25 @@ class EditByPriorities:
         return replace(sized, warnings=(*sized.warnings, *_warnings_of(constraints, sized.masses))), constraints
 
     def _reference(self, clip: Clip, task: ClipTask) -> ClipFacts | None:
-        """Return the facts of the clip's reference, None where there is none."""
+        """Return the facts of the clip's reference, None where there is none.
+
+        Raises
+        ------
+        SpecError
+            There is none, and a constraint follows it.
+        """
         spec = self.loaded.model
         if spec.reference is None:
+            self._refuse_following()
             return None
         given = resolve.body(spec.body, clip.motion.skeleton, resolve.Place(self.loaded, ("body",), task.label))
         return reference_facts(spec.reference, clip, task, up=spec.up, given=given)
+
+    def _refuse_following(self) -> None:
+        for each in self.loaded.model.constraints:
+            if each.follow == "reference":
+                message = "there is no reference to follow; give reference: or --reference, or follow: input"
+                raise self.loaded.error((*each.keys, "follow"), message)
 
     def _constraints(self, sized: SizedClip, task: ClipTask, faults: Faults) -> list[ClipConstraint]:
         spec = self.loaded.model

@@ -63,14 +63,14 @@ def run(loaded: LoadedSpec[NormalizeSpec], clips: Sequence[Path], output: Path, 
     writes = [(NAME, output / NAME)]
     # One clip more or less moves the means.
     found = find_clips(clips, leave_out=output)
+    if any(task.source is None for task in found):
+        raise UsageError("'-' is not for normalize, which reads each clip twice; give files")
     listed = [(task.relative, task.label) for task in found]
     key = run_key("normalize", loaded.data, files=loaded.model.event_files, more=[listed, options.lenient])
     verdicts = verdicts_in(str(output), key, update=options.update, dry_run=options.dry_run)
     tasks = plan(
         clips, str(output), options=options, depends=loaded.files, writes=writes, verdicts=verdicts, found=found
     )
-    if any(task.source is None for task in tasks):
-        raise UsageError("'-' is not for normalize, which reads each clip twice; give files")
     if all(task.current for task in tasks) and (output / NAME).exists():
         return earlier(tasks, options)
     # One clip that changed moves the means: all are made anew.

@@ -14,6 +14,7 @@ from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.crop import cropped
 from motionedit.jobs.clip.events import events_at_edge, explicit_events, found_events
 from motionedit.jobs.clip.facts import facts_of
+from motionedit.jobs.clip.unit import unit_doubts
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -98,7 +99,7 @@ class MeasureClip:
             travel=facts.travel,
             stands=facts.stands(at),
             lines=lines,
-            warnings=(*facts.warnings, *warnings),
+            warnings=(*facts.warnings, *unit_doubts(facts, spec.unit), *warnings),
         )
 
 
