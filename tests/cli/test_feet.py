@@ -218,6 +218,15 @@ def test_feet_stand_on_a_height_and_nothing_of_them_goes_below(edit):
     assert record["metrics"]["after"]["foot_drift_max"] < 1e-5
 
 
+@pytest.mark.parametrize("points", ["RightHand", ["Head", "LeftHand"]])
+def test_a_table_under_the_hands_is_no_ground_of_the_feet(edit, points):
+    ankles = [leg.ankle for leg in facts_of(motionedit.read(WALK)).anatomy.legs]
+    alone, _ = edit([FEET], clip=WALK)
+    after, record = edit([FEET, {"type": "floor", "effector": points, "height": 60, "priority": 9}], clip=WALK)
+    assert np.abs(after.poses.positions[:, ankles] - alone.poses.positions[:, ankles]).max() < 0.01
+    assert record["status"] == "ok"
+
+
 def test_a_body_that_is_far_below_its_floor_is_lifted_as_a_whole(edit):
     after, record = edit([{"type": "floor", "effector": "all", "height": 1000}], clip=WALK)
     assert record["status"] == "ok"
