@@ -96,7 +96,8 @@ def test_hands_at_rest_may_go_a_centimetre_by_themselves(metres, held):
     positions, rotations = poses.positions.copy(), poses.rotations.copy()
     chest = positions[:, anatomy.chest], rotations[:, anatomy.chest]
     sway = np.sin(np.arange(len(positions)) / len(positions) * 6.0 * np.pi)[:, None] * [0.0, 0.0, metres]
-    for arm, place in zip(anatomy.arms, (sway + [0.08, 0.0, 0.3], 0.0 * sway - [0.08, 0.0, -0.3]), strict=True):
+    for arm, own, aside in zip(anatomy.arms, (sway, 0.0 * sway), (0.08, -0.08), strict=True):
+        place = own + np.array([aside, 0.0, 0.3])
         positions[:, arm.wrist] = chest[0] + rot.rotate(chest[1], place / 0.85 * anatomy.leg_length)
         rotations[:, arm.wrist] = chest[1]
     found = find_grips(WorldPoses(positions, rotations), anatomy, frame_time=motion.frame_time, first=0)
