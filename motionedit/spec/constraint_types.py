@@ -129,7 +129,7 @@ class AimConstraint(Recruiting, Placed, EffectorItem, ConstraintItem):
 
 
 class PostureConstraint(ConstraintItem):
-    """Joints keep the local rotations they have in the input."""
+    """Joints keep the local rotations they have in the input, or take those of the reference."""
 
     has_position = False
     has_angle = True

@@ -93,7 +93,8 @@ class ConstraintItem(Item):
     follow: Literal["input", "reference"] = spec_key(
         kinds.word("input", "reference"),
         default="input",
-        description="Whose paths and postures shifts, rides and eases start from: the input's, or the reference's.",
+        description="Whose paths and postures shifts and rides start from: the input's, or the reference's. Eases lead "
+        "to them from the input, and back.",
     )
     points: tuple[Point, ...] = spec_key(
         list_of(mapping(Point)), default=(), description="When and where; none: as in the input, over the whole clip."

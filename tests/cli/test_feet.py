@@ -101,6 +101,34 @@ def test_what_follows_no_reference_is_refused(edit):
     assert "constraints.0.follow: there is no reference to follow; give reference: or --reference" in refused
 
 
+@pytest.mark.parametrize("solver", ["compiled", "numpy"])
+@pytest.mark.parametrize(
+    "keeps",
+    [
+        {"type": "posture", "joints": ["RightArm", "RightForeArm"]},
+        {"type": "orientation", "effector": "RightArm", "recruit": {"joints": ["RightArm"]}},
+        {"type": "position", "effector": "RightForeArm"},
+    ],
+)
+def test_what_follows_the_reference_at_times_is_led_there_and_back(edit, tmp_path, monkeypatch, keeps, solver):
+    monkeypatch.setenv("MOTIONEDIT_SOLVER", solver)
+    walk = motionedit.read(WALK)
+    arm = walk.motion.skeleton.names.index("RightArm")
+    turned = walk.motion.rotations.copy()
+    turned[:, arm] = rot.multiply(turned[:, arm], rot.exp(np.radians([0.0, 0.0, 40.0])))
+    motion = Motion(walk.motion.skeleton, turned, walk.motion.translations, walk.motion.frame_time)
+    (tmp_path / "turned.bvh").write_bytes(new_bytes(motion))
+    points = [{"during": [50, 70]}]
+    after, _ = edit([{**keeps, "follow": "reference", "points": points}], "--reference", "turned.bvh", clip=WALK)
+    place = forward(after.clip.motion).positions[:, arm + 1]
+    there, here = (forward(each).positions[:, arm + 1] for each in (motion, walk.motion))
+    assert place[50:71] == pytest.approx(there[50:71], abs=1e-2)
+    assert place[[0, 25, 95, 144]] == pytest.approx(here[[0, 25, 95, 144]], abs=1e-2)
+    # Over the 19 frames of an ease, not within one of them.
+    away = np.linalg.norm(place - here, axis=1) / np.linalg.norm(there - here, axis=1)
+    assert np.abs(np.diff(away)).max() < 0.15
+
+
 def test_plants_go_with_the_path_as_a_whole(edit):
     way = {"type": "position", "effector": "Hips", "priority": 5}
     points = [{"during": ["0%", "100%"], "shift": [20, 0, 0]}]
@@ -222,6 +250,15 @@ def test_feet_stand_on_a_height_and_nothing_of_them_goes_below(edit):
         if plant.part == "toe":
             assert tracks[plant.start : plant.stop + 1, plant.point] == pytest.approx(5.0, abs=1e-3)
     assert record["metrics"]["after"]["foot_drift_max"] < 1e-5
+
+
+@pytest.mark.parametrize("points", ["RightHand", ["Head", "LeftHand"]])
+def test_a_table_under_the_hands_is_no_ground_of_the_feet(edit, points):
+    ankles = [leg.ankle for leg in facts_of(motionedit.read(WALK)).anatomy.legs]
+    alone, _ = edit([FEET], clip=WALK)
+    after, record = edit([FEET, {"type": "floor", "effector": points, "height": 60, "priority": 9}], clip=WALK)
+    assert np.abs(after.poses.positions[:, ankles] - alone.poses.positions[:, ankles]).max() < 0.01
+    assert record["status"] == "ok"
 
 
 def test_a_body_that_is_far_below_its_floor_is_lifted_as_a_whole(edit):

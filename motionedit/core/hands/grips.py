@@ -11,6 +11,8 @@ from motionedit.core.arrays import median, runs
 from motionedit.core.units import STANDARD_LEG
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from motionedit.core.arrays import FloatArray
     from motionedit.core.body.anatomy import Anatomy
     from motionedit.core.kinematics import WorldPoses
@@ -21,6 +23,10 @@ _TOGETHER = 0.25
 # slip, in a captured swing at 0.27; those that meet in passing, and fists on guard, go at 0.5 and more.
 _SLIPS = 0.4
 _SHORTEST = 0.3  # seconds
+# Of how far hands go as the chest sees them, the part by which the one goes as the other sees it. What both hold takes
+# both along: in a captured swing it is 0.34, of fists on guard, near one another but each by itself, 2.5.
+_OWN_WAY = 0.5
+_RESTS = 0.01  # metres at leg length 0.85 m: hands that go no further by themselves hold a thing that is at rest
 # Metres at leg length 0.85 m by which hands that hold one thing come apart where a viewer sees it.
 SEEN_APART = 0.03
 
@@ -35,7 +41,7 @@ def find_grips(poses: WorldPoses, anatomy: Anatomy, *, frame_time: float, first:
     first : int
         Frames before it are a rest pose.
     """
-    if anatomy.arms is None or anatomy.leg_length <= 0.0 or len(poses.positions) - first < 2:
+    if anatomy.arms is None or anatomy.chest is None or anatomy.leg_length <= 0.0 or len(poses.positions) - first < 2:
         return ()
     left, right = (arm.wrist for arm in anatomy.arms)
     unit = anatomy.leg_length / STANDARD_LEG
@@ -46,13 +52,27 @@ def find_grips(poses: WorldPoses, anatomy: Anatomy, *, frame_time: float, first:
     if not spans:
         return ()
     hands = [(poses.positions[:, j], poses.rotations[:, j]) for j in (left, right)]
-    speeds = np.maximum(*(_speeds(seen_by(a, b), frame_time) for a, b in (hands, hands[::-1])))
-    return tuple((start, stop) for start, stop in spans if median(speeds[start : stop + 1]) <= _SLIPS * unit)
+    seen = [seen_by(a, b) / unit for a, b in (hands, hands[::-1])]
+    chest = poses.positions[:, anatomy.chest], poses.rotations[:, anatomy.chest]
+    middle = seen_by(chest, ((hands[0][0] + hands[1][0]) / 2.0, chest[1])) / unit
+    return tuple(span for span in spans if _go_together(seen, middle, slice(span[0], span[1] + 1), frame_time))
+
+
+def _go_together(seen: Sequence[FloatArray], middle: FloatArray, span: slice, frame_time: float) -> bool:
+    """Return whether hands slip slowly, and go less by themselves than together, in metres at leg length 0.85 m."""
+    speeds = np.maximum(*(_speeds(places, frame_time)[span] for places in seen))
+    own = max(_spread(places[span]) for places in seen)
+    return bool(median(speeds) <= _SLIPS and own <= max(_RESTS, _OWN_WAY * _spread(middle[span])))
 
 
 def seen_by(hand: tuple[FloatArray, FloatArray], other: tuple[FloatArray, FloatArray]) -> FloatArray:
     """Return where one hand has the other, shape (F, 3), of positions (F, 3) and rotations (F, 4) in the world."""
     return rot.unrotate(hand[1], other[0] - hand[0])
+
+
+def _spread(places: FloatArray) -> float:
+    """Return the root mean square distance of places, shape (F, 3), from their mean."""
+    return float(np.sqrt(np.square(places - places.mean(axis=0)).sum(axis=1).mean()))
 
 
 def _speeds(places: FloatArray, frame_time: float) -> FloatArray:

@@ -54,5 +54,5 @@ def parts_of(asked: Asked) -> Iterator[tuple[tuple[Targets, ...], BoolArray]]:
             frames[whole.span] |= far
             back = np.where(far, part / count - 1.0, 0.0)[:, None] * arc
             turned = rot.multiply(whole.rotations, rot.exp(back))
-            targets[i] = Targets(whole.first, whole.last, whole.positions, turned, whole.lengths)
+            targets[i] = Targets(whole.first, whole.last, whole.positions, turned, whole.lengths, whole.postures)
         yield tuple(targets), frames

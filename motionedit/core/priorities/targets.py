@@ -54,7 +54,7 @@ def with_targets(
     free = [i for i, each in enumerate(constraints) if not each.waits_for_others]
     # Most follow the same motion.
     scenes = {id(each): Scene(each, settings.curve, dict, lambda: before) for each in (before, theirs)}
-    found = {i: constraints[i].targets(scenes[id(seen[i])]) for i in free}
+    found = {i: _ramped(constraints[i], constraints[i].targets(scenes[id(seen[i])]), before) for i in free}
 
     def others() -> Sight:
         """Return what is seen of the motion that those which do not wait ask for, solved once."""
@@ -66,7 +66,7 @@ def with_targets(
 
     goals, made = once(lambda: _goals(constraints, found, len(motion))), once(others)
     targets = tuple(
-        found[i] if i in found else each.targets(Scene(seen[i], settings.curve, goals, made))
+        found[i] if i in found else _ramped(each, each.targets(Scene(seen[i], settings.curve, goals, made)), before)
         for i, each in enumerate(constraints)
     )
     arcs = tuple(
@@ -74,6 +74,14 @@ def with_targets(
         for each, there in zip(constraints, targets, strict=True)
     )
     return replace(Asked.of(motion, constraints, recruits, targets, body, settings), arcs=arcs)
+
+
+def _ramped(constraint: Constraint, targets: Targets, before: Sight) -> Targets:
+    """Return targets that lead from the input to the reference and back, of a constraint that follows that at times."""
+    if constraint.follow != "reference" or not constraint.points or constraint.one_sided:
+        return targets
+    share = constraint.share(len(before.motion))[targets.span]
+    return between(constraint.reached(targets, before), targets, share)
 
 
 def errors_of(asked: Asked, motion: Motion, *, poses: WorldPoses | None = None) -> tuple[ConstraintErrors, ...]:

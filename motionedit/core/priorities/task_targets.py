@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 class Targets:
     """Where a constraint's task shall be: frames `first` to `last`.
 
-    Positions (n, 3), rotations (n, 4), lengths (n,), None of what it has none of.
+    Positions (n, 3), rotations (n, 4), lengths (n,), postures (n, k, 4) of k joints, None of what it has none of.
     """
 
     first: int
@@ -23,6 +23,7 @@ class Targets:
     positions: FloatArray | None = None
     rotations: FloatArray | None = None
     lengths: FloatArray | None = None
+    postures: FloatArray | None = None
 
     @property
     def span(self) -> slice:
@@ -44,9 +45,9 @@ class Targets:
         return self.lengths
 
     @property
-    def parts(self) -> tuple[FloatArray | None, FloatArray | None, FloatArray | None]:
-        """Positions, rotations and lengths."""
-        return self.positions, self.rotations, self.lengths
+    def parts(self) -> tuple[FloatArray | None, ...]:
+        """Positions, rotations, lengths and postures."""
+        return self.positions, self.rotations, self.lengths, self.postures
 
     def within(self, frames: slice) -> Targets:
         """Return the targets at some of their frames."""
@@ -94,7 +95,7 @@ def _at(values: FloatArray | None, frames: IntArray, first: int, name: str) -> F
 
 def between(one: Targets, other: Targets, share: FloatArray) -> Targets:
     """Return targets on the way from one to another of the same frames, so much of it each, shape (n,)."""
-    positions, rotations, lengths = one.positions, one.rotations, one.lengths
+    positions, rotations, lengths, postures = one.parts
     if positions is not None:
         positions = positions + share[:, None] * (other.all_positions - positions)
     if rotations is not None and other.rotations is not None:
@@ -102,12 +103,15 @@ def between(one: Targets, other: Targets, share: FloatArray) -> Targets:
         rotations = rot.multiply(rotations, rot.exp(share[:, None] * arc))
     if lengths is not None:
         lengths = lengths + share * (other.all_lengths - lengths)
-    return Targets(one.first, one.last, positions, rotations, lengths)
+    if postures is not None and other.postures is not None:
+        arc = rot.log(rot.between(postures, other.postures))
+        postures = rot.multiply(postures, rot.exp(share[:, None, None] * arc))
+    return Targets(one.first, one.last, positions, rotations, lengths, postures)
 
 
 def moved(targets: Targets, before: Targets, after: Targets, share: FloatArray) -> Targets:
     """Return targets moved along from where one motion has a task to where another has it, so much each, shape (n,)."""
-    positions, rotations, lengths = targets.positions, targets.rotations, targets.lengths
+    positions, rotations, lengths, postures = targets.parts
     if positions is not None:
         positions = positions + share[:, None] * (after.all_positions - before.all_positions)
     if rotations is not None and before.rotations is not None and after.rotations is not None:
@@ -115,4 +119,7 @@ def moved(targets: Targets, before: Targets, after: Targets, share: FloatArray) 
         rotations = rot.multiply(rotations, rot.exp(share[:, None] * turn))
     if lengths is not None:
         lengths = lengths + share * (after.all_lengths - before.all_lengths)
-    return Targets(targets.first, targets.last, positions, rotations, lengths)
+    if postures is not None and before.postures is not None and after.postures is not None:
+        turn = rot.log(rot.between(before.postures, after.postures))
+        postures = rot.multiply(postures, rot.exp(share[:, None, None] * turn))
+    return Targets(targets.first, targets.last, positions, rotations, lengths, postures)

@@ -66,14 +66,13 @@ def on_feet(
         sized = replace(sized, warnings=(*sized.warnings, _no_path(facts)))
     lowered = LOWERED if path is None else LOWERED_ON_PATH
     motion, poses, placed = _placed(facts, stances, path, lowered)
-    floors = [each.constraint.least.height / scale for each in constraints if each.constraint.least is not None]
     held = within_legs(placed, poses, facts.anatomy, up=facts.up, lowered=lowered)
     kept = onto_stances(
         motion,
         poses,
         held,
         facts.anatomy,
-        ground_under(facts.anatomy, facts.up, floor=max(floors, default=None)),
+        ground_under(facts.anatomy, facts.up, floor=_floor_of_feet(sized, constraints)),
         travel=facts.travel,
         first=facts.first,
         calms=CALMS_OWN if reference.clip is facts.clip else CALMS_ANOTHER,
@@ -117,6 +116,18 @@ def _placed(
         for (ask, _, _), (foot, stance) in zip(stances, placed, strict=True)
     ]
     return motion, poses, within
+
+
+def _floor_of_feet(sized: SizedClip, constraints: Sequence[ClipConstraint]) -> float | None:
+    """Return the height of the highest floor that is under a foot; one of hands alone, as a table, is none of feet."""
+    skeleton, ankles = sized.motion.skeleton, {foot.leg.ankle for foot in feet_of(sized.facts.anatomy)}
+    heights = [
+        each.constraint.least.height / sized.scale
+        for each in constraints
+        if each.constraint.least is not None
+        and any(ankles.intersection(skeleton.chain(joint)) for joint in each.constraint.looked_at())
+    ]
+    return max(heights, default=None)
 
 
 def _no_path(facts: ClipFacts) -> str:

@@ -193,7 +193,7 @@ class Constraint(ABC):
 
     @property
     def least(self) -> Level | None:
-        """The height below which it wants no foot; None where it says nothing of it."""
+        """The height below which it wants none of its points; None where it says nothing of it."""
         return None
 
     def active(self, frames: int) -> tuple[int, int]:

@@ -1,4 +1,4 @@
-"""Joints keep the local rotations that they have in the input."""
+"""Joints keep the local rotations that they have in the input, or in the reference."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from motionedit.core.priorities.solver.points import Point, Recruited, turn_to_l
 from motionedit.core.priorities.solver.problem import CompiledTask
 from motionedit.core.priorities.task_targets import Targets
 from motionedit.core.units import METRES_PER_RADIAN
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray, IntArray
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Posture(Constraint):
-    """The listed `joints` keep their local rotations."""
+    """The listed `joints` keep their local rotations, or have those of the reference where they follow it."""
 
     type: ClassVar[str] = "posture"
     symbol: ClassVar[Symbol] = "arc"
@@ -44,21 +44,33 @@ class Posture(Constraint):
         return self.recruits(movable)
 
     def targets(self, scene: Scene) -> Targets:
-        """Return the interval: what is kept is the input's own."""
-        return Targets(*self.active(len(scene.before.motion)))
+        """Return the interval, and the rotations of the reference where it follows that; else the input's are kept."""
+        targets = Targets(*self.active(len(scene.before.motion)))
+        return targets if self.follow == "input" else self._seen(targets, scene.before)
+
+    def reached(self, targets: Targets, after: Sight) -> Targets:
+        """Return the rotations that joints have; where the input's are kept, they are no place to go back to."""
+        return targets if targets.postures is None else self._seen(targets, after)
+
+    def _seen(self, targets: Targets, sight: Sight) -> Targets:
+        return replace(targets, postures=sight.motion.rotations[targets.span, list(self.joints)])
 
     def task(self, targets: Targets, stage: Stage) -> PostureTask:
         """Return the task of those of the joints that can turn."""
-        del targets
         here = set(map(int, stage.columns.joints))
         joints = [j for j in self.joints if j in here]
-        rotations = stage.reference.rotations[stage.frames[:, None], np.array(joints, dtype=np.intp)]
+        if targets.postures is None:
+            rotations = stage.reference.rotations[stage.frames[:, None], np.array(joints, dtype=np.intp)]
+        else:
+            places = np.array([k for k, j in enumerate(self.joints) if j in here], dtype=np.intp)
+            rotations = targets.postures[(stage.frames - targets.first)[:, None], places]
         return PostureTask(stage.columns, np.searchsorted(stage.columns.joints, joints), rotations)
 
     def errors(self, targets: Targets, after: Sight, *, reference: Motion) -> ConstraintErrors:
-        """Return the largest angle of any of the joints from the input's."""
+        """Return the largest angle of any of the joints from what they keep."""
         joints = list(self.joints)
-        mine, theirs = (each.rotations[targets.span, joints] for each in (after.motion, reference))
+        mine = after.motion.rotations[targets.span, joints]
+        theirs = reference.rotations[targets.span, joints] if targets.postures is None else targets.postures
         return ConstraintErrors(targets.first, None, rot.angle_between(mine, theirs).max(axis=1, initial=0.0))
 
     def words(self, names: tuple[str, ...]) -> str:

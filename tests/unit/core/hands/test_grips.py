@@ -79,7 +79,32 @@ def test_hands_that_pass_by_hold_nothing(speed, held):
     assert bool(grips("golf/swing04.bvh", moved=sway[:, None] * [0.0, 1.0, 0.0])) == held
 
 
-@pytest.mark.parametrize("lacking", [{"arms": None}, {"leg_length": 0.0}])
+def test_fists_on_guard_are_near_and_hold_nothing():
+    # For a second before the kick they are within a quarter of a metre, and slow; each goes by itself.
+    _, anatomy, poses = body("kick.bvh")
+    left, right = (arm.wrist for arm in anatomy.arms)
+    near = rot.length(poses.positions[:, left] - poses.positions[:, right]) < 0.25 / 0.85 * anatomy.leg_length
+    assert near[:20].all()
+    assert near[55:80].all()
+    assert grips("kick.bvh") == ()
+
+
+@pytest.mark.parametrize(("metres", "held"), [(0.013, True), (0.016, False)])
+def test_hands_at_rest_may_go_a_centimetre_by_themselves(metres, held):
+    # Both hands rest before the chest, which walks on; one sways slowly: a sine's spread is 0.71 of its height.
+    motion, anatomy, poses = body("walk.bvh")
+    positions, rotations = poses.positions.copy(), poses.rotations.copy()
+    chest = positions[:, anatomy.chest], rotations[:, anatomy.chest]
+    sway = np.sin(np.arange(len(positions)) / len(positions) * 6.0 * np.pi)[:, None] * [0.0, 0.0, metres]
+    for arm, own, aside in zip(anatomy.arms, (sway, 0.0 * sway), (0.08, -0.08), strict=True):
+        place = own + np.array([aside, 0.0, 0.3])
+        positions[:, arm.wrist] = chest[0] + rot.rotate(chest[1], place / 0.85 * anatomy.leg_length)
+        rotations[:, arm.wrist] = chest[1]
+    found = find_grips(WorldPoses(positions, rotations), anatomy, frame_time=motion.frame_time, first=0)
+    assert bool(found) == held
+
+
+@pytest.mark.parametrize("lacking", [{"arms": None}, {"chest": None}, {"leg_length": 0.0}])
 def test_a_body_without_arms_or_without_size_holds_nothing(lacking):
     motion, anatomy, poses = body("golf/swing04.bvh")
     assert find_grips(poses, replace(anatomy, **lacking), frame_time=motion.frame_time, first=0) == ()

@@ -43,6 +43,16 @@ def test_targets_are_moved_by_so_much_of_the_way_as_their_share(wanted, one, oth
     assert rot.angle_between(rides.rotations, after.rotations).max() < 1e-7
 
 
+def test_postures_go_the_way_of_rotations_joint_by_joint():
+    one, other = (random_targets(seed).rotations for seed in (1, 2))
+    a, b = (Targets(3, 11, postures=np.stack(pair, axis=1)) for pair in ((one, other), (other, one)))
+    half = between(a, b, np.full(9, 0.5)).postures
+    middle = slerp(one, other, np.full(9, 0.5))
+    assert rot.angle_between(half, np.stack((middle, middle), axis=1)).max() < 1e-7
+    assert rot.angle_between(moved(a, a, b, np.ones(9)).postures, b.postures).max() < 1e-7
+    assert a.within(slice(4, 6)).postures.shape == (2, 2, 4)
+
+
 def test_targets_say_what_they_do_not_have():
     empty = Targets(0, 3)
     with pytest.raises(ValueError, match="no positions"):
