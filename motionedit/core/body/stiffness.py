@@ -22,6 +22,8 @@ SPINE = 0.35
 NECK = 0.35
 CLAVICLE = 0.4
 WRIST_AND_ANKLE = 0.7
+# Of a joint that a rig has between the pelvis and one hip: a body has none there, so it turns where nothing else can.
+HIP_GIRDLE = 0.05
 # Of the root's shift.
 TRAVEL = 0.25
 
@@ -50,6 +52,18 @@ def _parts(skeleton: Skeleton, anatomy: Anatomy, travel: int) -> Iterator[tuple[
         yield arm.wrist, WRIST_AND_ANKLE
     for leg in anatomy.legs or ():
         yield leg.ankle, WRIST_AND_ANKLE
+    for thigh, other in _hips(anatomy):
+        shared = skeleton.chain(other)
+        for joint in skeleton.between(travel, thigh)[:-1]:
+            if joint not in shared:
+                yield joint, HIP_GIRDLE
     for joint in skeleton.between(travel, chest):
         yield joint, SPINE
     yield travel, PELVIS
+
+
+def _hips(anatomy: Anatomy) -> Iterator[tuple[int, int]]:
+    """Yield each hip, and that of the other leg."""
+    if anatomy.legs is not None:
+        left, right = (leg.thigh for leg in anatomy.legs)
+        yield from ((left, right), (right, left))

@@ -4,7 +4,7 @@ import numpy as np
 from human import BONES, skeleton_of
 
 from motionedit.core.body.find_anatomy import find_anatomy
-from motionedit.core.body.stiffness import CLAVICLE, NECK, PELVIS, SPINE, WRIST_AND_ANKLE, human_mobility
+from motionedit.core.body.stiffness import CLAVICLE, HIP_GIRDLE, NECK, PELVIS, SPINE, WRIST_AND_ANKLE, human_mobility
 
 SKELETON = skeleton_of()
 
@@ -22,12 +22,21 @@ def test_every_joint_has_the_mobility_of_its_part_of_the_body():
         "Spine1": SPINE,
         "Neck": NECK,
         "Head": NECK,
+        "LHipJoint": HIP_GIRDLE,
+        "RHipJoint": HIP_GIRDLE,
         "LeftShoulder": CLAVICLE,
         "RightShoulder": CLAVICLE,
         **dict.fromkeys(("LeftHand", "RightHand", "LeftFoot", "RightFoot"), WRIST_AND_ANKLE),
     }
     assert found == expected
     assert max(PELVIS, SPINE, NECK, CLAVICLE) < WRIST_AND_ANKLE < 1.0
+
+
+def test_a_pelvis_on_which_both_legs_hang_is_none_of_the_joints_before_a_hip():
+    bones = [("Hips", None, (0.0, 0.0, 0.0)), ("Pelvis", "Hips", (0.0, 0.0, 0.0))]
+    bones += [(name, "Pelvis" if name.endswith("HipJoint") else parent, at) for name, parent, at in BONES[1:]]
+    found = mobility_of(skeleton_of(bones))
+    assert (found["Pelvis"], found["LHipJoint"], found["RHipJoint"]) == (1.0, HIP_GIRDLE, HIP_GIRDLE)
 
 
 def test_names_do_not_matter():
