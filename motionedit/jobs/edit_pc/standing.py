@@ -80,17 +80,18 @@ def _stood(edit: CoefficientEdit, missed: Collection[int]) -> tuple[Change, ...]
 def fixed_by(requests: Sequence[GoalRequest], facts: ClipFacts, *, places: Places) -> list[Fixed]:
     """Return the joints that goals fix at their frames.
 
-    A foot that stands where its goal has it stands there; it is not free to be elsewhere in other frames.
+    A foot that stands where its goal has it in the room stands there; it is not free to be elsewhere in other frames.
     """
     off = ways_off(facts.clip.motion, requests, leg=facts.anatomy.leg_length)
 
-    def stands(joint: int, frame: int) -> bool:
-        return places == "keep" and any(_moves(plant, joint, frame, facts) for plant in facts.plants)
+    def stands(request: GoalRequest) -> bool:
+        joint, frame, in_room = request.effector.joint, request.frame, request.measure.base is None
+        return places == "keep" and in_room and any(_moves(plant, joint, frame, facts) for plant in facts.plants)
 
     return [
         Fixed(each.effector.joint, each.frame, turned=each.rotation is not None)
         for i, each in enumerate(requests)
-        if off[i] >= 1.0 or not stands(each.effector.joint, each.frame)
+        if off[i] >= 1.0 or not stands(each)
     ]
 
 

@@ -9,6 +9,7 @@ from motionedit.core.bvh import read_clip
 from motionedit.core.coefficients.goal_chains import GoalRequest
 from motionedit.core.feet.put_back import Fixed
 from motionedit.core.kinematics import Effector
+from motionedit.core.measure import WORLD, Measure
 from motionedit.jobs.clip.facts import facts_of
 from motionedit.jobs.edit_pc.standing import fixed_by, plants_without
 
@@ -41,8 +42,9 @@ def test_a_foot_that_stands_where_its_goal_has_it_is_not_free_elsewhere():
     plant = next(p for p in facts.plants if p.foot == "left")
     places = kinematics.effector_positions(facts.poses, foot)
 
-    def fixed(frame, shift, kept="keep"):
-        request = GoalRequest(frame, foot, places[frame] + [0.0, 0.0, shift], None)
+    def fixed(frame, shift, kept="keep", measure=WORLD):
+        place = measure.positions(places[None, frame], facts.poses.at([frame]))[0] + np.array([0.0, 0.0, shift])
+        request = GoalRequest(frame, foot, place, None, measure=measure)
         return fixed_by([request], facts, places=kept)
 
     middle = (plant.start + plant.stop) // 2
@@ -50,6 +52,7 @@ def test_a_foot_that_stands_where_its_goal_has_it_is_not_free_elsewhere():
     assert fixed(middle, 0.0) == []
     assert fixed(middle, 1.0) == own
     assert fixed(middle, 0.0, "move") == own
+    assert fixed(middle, 0.0, measure=Measure(base=facts.travel)) == own
     stood = {f for p in facts.plants if p.foot == "left" for f in range(p.start, p.stop + 1)}
     in_air = min(set(range(len(places))) - stood)
     assert fixed(in_air, 0.0) == [Fixed(foot.joint, in_air)]
