@@ -34,7 +34,7 @@ class HeldBends:
     joints: tuple[int, ...]
 
 
-def hold_bends(before: Motion, after: Motion, bends: Sequence[Bend], *, first: int) -> HeldBends:
+def hold_bends(motion: Motion, bends: Sequence[Bend], *, first: int) -> HeldBends:
     """Return an edited motion whose knees and elbows bend within their limits.
 
     b' = b + (c(b) - b) (1 - exp(-(b - b0)^2 / s^2)) about the axis of the bend, b the edit's and b0 the input's, c(b) =
@@ -44,27 +44,26 @@ def hold_bends(before: Motion, after: Motion, bends: Sequence[Bend], *, first: i
     Parameters
     ----------
     bends : sequence of Bend
-        The input's.
+        The input's, of the same `first`.
     first : int
         Frames before it are a rest pose, and stay.
     """
-    rotations, turned = after.rotations.copy(), []
+    rotations, turned = motion.rotations.copy(), []
     for bend in bends:
-        own, now = (_angles(motion, bend)[first:] for motion in (before, after))
+        now = _bent(turns_about(bend.axis, bend.upper, rot.rotate(rotations[first:, bend.joint], bend.lower)))
         least, most = bend.bent
         low, high = min(0.0, least), max(_SHUT, most)
         if ((low - _ROUNDING <= now) & (now <= high + _ROUNDING)).all():
             continue
-        more = (_held(now, low, high) - now) * -np.expm1(-(((now - own) / _SOFT) ** 2))
+        more = (_held(now, low, high) - now) * -np.expm1(-(((now - _bent(bend.angles)) / _SOFT) ** 2))
         turn = rot.exp(more[:, None] * bend.axis)
         rotations[first:, bend.joint] = rot.multiply(turn, rotations[first:, bend.joint])
         turned.append(bend.joint)
-    return HeldBends(Motion(after.skeleton, frozen(rotations), after.translations, after.frame_time), tuple(turned))
+    return HeldBends(Motion(motion.skeleton, frozen(rotations), motion.translations, motion.frame_time), tuple(turned))
 
 
-def _angles(motion: Motion, bend: Bend) -> FloatArray:
+def _bent(angles: FloatArray) -> FloatArray:
     """Return how far a limb is bent, shape (F,), rad: from a quarter turn back to three forward."""
-    angles = turns_about(bend.axis, bend.upper, rot.rotate(motion.rotations[:, bend.joint], bend.lower))
     bent: FloatArray = np.where(angles < -0.5 * np.pi, angles + 2.0 * np.pi, angles)
     return bent
 

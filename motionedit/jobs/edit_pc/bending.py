@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from motionedit.core.body.overbent import hold_bends
+from motionedit.core.kinematics import forward
 from motionedit.dataclass import replace
 from motionedit.jobs.edit_pc.meeting import NEARLY, asked_again, ways_off
 
@@ -35,13 +36,13 @@ def edit_bending(
     found = first = stand(edit, ())
     asked, still = asked_again(first, requests), frozenset[int]()
     for _ in range(_ROUNDS):
-        held = hold_bends(facts.clip.motion, found.motion, facts.bends, first=facts.first)
+        held = hold_bends(found.motion, facts.bends, first=facts.first)
         if not held.joints:
             return found
         still |= set(held.joints)
         touched = found.touched.copy()
         touched[facts.first :, list(held.joints)] = True
         found = stand(replace(found, motion=again(held.motion, asked, still), touched=touched), still)
-        if max(ways_off(found.motion, asked, leg=facts.anatomy.leg_length), default=0.0) >= NEARLY:
+        if max(ways_off(forward(found.motion), asked, leg=facts.anatomy.leg_length), default=0.0) >= NEARLY:
             break
     return first

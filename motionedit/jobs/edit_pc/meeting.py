@@ -55,9 +55,9 @@ def _reached(request: GoalRequest, poses: WorldPoses) -> GoalRequest:
     )
 
 
-def ways_off(motion: Motion, requests: Sequence[GoalRequest], *, leg: float) -> list[float]:
-    """Return how far each goal is off in a motion, over what settles it; `leg` is the leg's length, clip units."""
-    poses, tolerance = kinematics.forward(motion), _SETTLED * leg / STANDARD_LEG
+def ways_off(poses: WorldPoses, requests: Sequence[GoalRequest], *, leg: float) -> list[float]:
+    """Return how far each goal is off in some poses, over what settles it; `leg` is the leg's length, clip units."""
+    tolerance = _SETTLED * leg / STANDARD_LEG
     return [_off(request, poses, tolerance) for request in requests]
 
 

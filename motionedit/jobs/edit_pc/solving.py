@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from motionedit.core import kinematics
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from motionedit.core.coefficients.goal_chains import GoalRequest
     from motionedit.core.coefficients.planted_feet import PlantedFoot
     from motionedit.core.coefficients.projection import Projection
+    from motionedit.core.feet.put_back import Fixed
     from motionedit.core.motion import Motion
     from motionedit.core.pca.model import MotionModel
     from motionedit.jobs.clip.facts import ClipFacts
@@ -76,17 +78,22 @@ class Solving:
         places = self.spec.feet_in_force
         if places == "off":
             return edit
-        return edit_standing(edit, self._again, self.requests, self.facts, places=places, still=still)
+        return edit_standing(
+            edit, self._again, self.requests, self.facts, fixed=self._fixed, places=places, still=still
+        )
+
+    @cached_property
+    def _fixed(self) -> list[Fixed]:
+        return fixed_by(self.requests, self.facts, kept=self.spec.feet_in_force == "keep")
 
     def _feet(
         self, projection: Projection, poses: kinematics.WorldPoses, *, deviation: float
     ) -> tuple[PlantedFoot, ...]:
         """Return the points of feet that stand; none where they are left alone, or where a goal is about the foot."""
-        places = self.spec.feet_in_force
-        if places == "off":
+        if self.spec.feet_in_force == "off":
             return ()
         points = [point.effector for point in self.facts.anatomy.sole_points]
-        plants = plants_without(self.facts, fixed_by(self.requests, self.facts, places=places))
+        plants = plants_without(self.facts, self._fixed)
         return planted_feet(
             projection, self.model.space, poses=poses, plants=plants, points=points, deviation=deviation
         )

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from motionedit.core.body.contacts import foot_plants
 from motionedit.core.feet.put_back import NEARBY, Fixed, put_back, standing_feet
+from motionedit.core.kinematics import forward
 from motionedit.dataclass import replace
 from motionedit.jobs.edit_pc.meeting import NEARLY, asked_again, ways_off
 
@@ -31,6 +32,7 @@ def edit_standing(
     requests: Sequence[GoalRequest],
     facts: ClipFacts,
     *,
+    fixed: Collection[Fixed],
     places: Places,
     still: Collection[int] = (),
 ) -> CoefficientEdit:
@@ -44,7 +46,7 @@ def edit_standing(
     if anatomy.legs is None or not (edit.touched.any() or edit.moved.any()):
         return edit
     motion = facts.clip.motion
-    feet = standing_feet(motion, anatomy, foot_plants(facts.plants), fixed=fixed_by(requests, facts, places=places))
+    feet = standing_feet(motion, anatomy, foot_plants(facts.plants), fixed=fixed)
     standing, asked = {*still, *_still(motion, feet)}, asked_again(edit, requests)
     found = legs_alone = edit
     for done in range(_ROUNDS):
@@ -55,7 +57,7 @@ def edit_standing(
             found.motion, motion, feet, anatomy, up=facts.up, travel=facts.travel, places=places, first=facts.first
         )
         found = replace(found, motion=kept.motion, touched=found.touched | kept.touched, moved=found.moved | kept.moved)
-        off = ways_off(found.motion, asked, leg=anatomy.leg_length)
+        off = ways_off(forward(found.motion), asked, leg=anatomy.leg_length)
         if max(off, default=0.0) < 1.0:
             return found
         if done == _WITHOUT_PELVIS:
@@ -77,16 +79,17 @@ def _stood(edit: CoefficientEdit, missed: Collection[int]) -> tuple[Change, ...]
     )
 
 
-def fixed_by(requests: Sequence[GoalRequest], facts: ClipFacts, *, places: Places) -> list[Fixed]:
+def fixed_by(requests: Sequence[GoalRequest], facts: ClipFacts, *, kept: bool) -> list[Fixed]:
     """Return the joints that goals fix at their frames.
 
-    A foot that stands where its goal has it in the room stands there; it is not free to be elsewhere in other frames.
+    Where feet are kept, one that stands where its goal has it in the room stands there; it is not free to be elsewhere
+    in other frames.
     """
-    off = ways_off(facts.clip.motion, requests, leg=facts.anatomy.leg_length)
+    off = ways_off(facts.poses, requests, leg=facts.anatomy.leg_length)
 
     def stands(request: GoalRequest) -> bool:
         joint, frame, in_room = request.effector.joint, request.frame, request.measure.base is None
-        return places == "keep" and in_room and any(_moves(plant, joint, frame, facts) for plant in facts.plants)
+        return kept and in_room and any(_moves(plant, joint, frame, facts) for plant in facts.plants)
 
     return [
         Fixed(each.effector.joint, each.frame, turned=each.rotation is not None)

@@ -42,16 +42,16 @@ def test_a_foot_that_stands_where_its_goal_has_it_is_not_free_elsewhere():
     plant = next(p for p in facts.plants if p.foot == "left")
     places = kinematics.effector_positions(facts.poses, foot)
 
-    def fixed(frame, shift, kept="keep", measure=WORLD):
+    def fixed(frame, shift, *, kept=True, measure=WORLD):
         place = measure.positions(places[None, frame], facts.poses.at([frame]))[0] + np.array([0.0, 0.0, shift])
         request = GoalRequest(frame, foot, place, None, measure=measure)
-        return fixed_by([request], facts, places=kept)
+        return fixed_by([request], facts, kept=kept)
 
     middle = (plant.start + plant.stop) // 2
     own = [Fixed(foot.joint, middle)]
     assert fixed(middle, 0.0) == []
     assert fixed(middle, 1.0) == own
-    assert fixed(middle, 0.0, "move") == own
+    assert fixed(middle, 0.0, kept=False) == own
     assert fixed(middle, 0.0, measure=Measure(base=facts.travel)) == own
     stood = {f for p in facts.plants if p.foot == "left" for f in range(p.start, p.stop + 1)}
     in_air = min(set(range(len(places))) - stood)
