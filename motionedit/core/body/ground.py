@@ -22,9 +22,6 @@ if TYPE_CHECKING:
 _STANCE_SHARE = 0.15  # of the leg: feet nearer together give no line
 _LEVEL_SHARE = 0.1  # of the hips' width that must remain when it is laid on the ground
 
-# The names of the signed axes.
-AXES = ("y", "z", "x", "-y", "-z", "-x")
-
 
 @dataclass(frozen=True, eq=False)
 class Frame:

@@ -52,18 +52,9 @@ def _parts(skeleton: Skeleton, anatomy: Anatomy, travel: int) -> Iterator[tuple[
         yield arm.wrist, WRIST_AND_ANKLE
     for leg in anatomy.legs or ():
         yield leg.ankle, WRIST_AND_ANKLE
-    for thigh, other in _hips(anatomy):
-        shared = skeleton.chain(other)
-        for joint in skeleton.between(travel, thigh)[:-1]:
-            if joint not in shared:
-                yield joint, HIP_GIRDLE
+    if anatomy.legs is not None:
+        left, right = (set(skeleton.between(travel, leg.thigh)[:-1]) for leg in anatomy.legs)
+        yield from ((joint, HIP_GIRDLE) for joint in sorted(left ^ right))
     for joint in skeleton.between(travel, chest):
         yield joint, SPINE
     yield travel, PELVIS
-
-
-def _hips(anatomy: Anatomy) -> Iterator[tuple[int, int]]:
-    """Yield each hip, and that of the other leg."""
-    if anatomy.legs is not None:
-        left, right = (leg.thigh for leg in anatomy.legs)
-        yield from ((left, right), (right, left))

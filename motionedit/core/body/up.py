@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 # than the stance (it stands where a body may lie), and most programs write y up, some z, hardly any another axis.
 _OFFSETS_WEIGHT = 1.2
 _PRIOR = {"y": 0.0, "z": 0.1, "x": 0.4, "-y": 0.5, "-z": 0.5, "-x": 0.5}
-_SIGNED = ("x", "y", "z", "-x", "-y", "-z")
+SIGNED_AXES = ("x", "y", "z", "-x", "-y", "-z")
 # Legs by which the lowest points rise and fall: as arms of a lying body do, and where no floor is.
 _FLOOR, _NO_FLOOR = 0.1, 0.4
 _MOST = 0.7  # of the frames
@@ -119,12 +119,12 @@ def _floors(positions: FloatArray, *, size: float) -> dict[str, float]:
     most = int(_MOST * (len(ordered) - 1))
     spread = (ordered[most:] - ordered[: len(ordered) - most]).min(axis=0) / size
     floors = np.clip((spread - _FLOOR) / (_NO_FLOOR - _FLOOR), 0.0, 1.0)
-    return dict(zip(_SIGNED, floors.tolist(), strict=True))
+    return dict(zip(SIGNED_AXES, floors.tolist(), strict=True))
 
 
 def _along(way: FloatArray) -> dict[str, float]:
     """Return how much of a vector, shape (3,), is along each signed axis."""
-    return dict(zip(_SIGNED, [*way.tolist(), *(-way).tolist()], strict=True))
+    return dict(zip(SIGNED_AXES, [*way.tolist(), *(-way).tolist()], strict=True))
 
 
 def _stance(anatomy: Anatomy, positions: FloatArray) -> FloatArray | None:

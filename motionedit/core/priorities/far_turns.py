@@ -12,14 +12,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.priorities.task_targets import Targets
 from motionedit.core.rotation_vectors import least_turned
+from motionedit.dataclass import replace
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from motionedit.core.arrays import BoolArray, FloatArray
     from motionedit.core.priorities.groups import Asked
+    from motionedit.core.priorities.task_targets import Targets
 
 # Radians: what turns by no more goes there in one.
 _FAR = 2.0
@@ -53,6 +54,5 @@ def parts_of(asked: Asked) -> Iterator[tuple[tuple[Targets, ...], BoolArray]]:
             far = np.linalg.norm(arc, axis=1) > _FAR
             frames[whole.span] |= far
             back = np.where(far, part / count - 1.0, 0.0)[:, None] * arc
-            turned = rot.multiply(whole.rotations, rot.exp(back))
-            targets[i] = Targets(whole.first, whole.last, whole.positions, turned, whole.lengths, whole.postures)
+            targets[i] = replace(whole, rotations=rot.multiply(whole.rotations, rot.exp(back)))
         yield tuple(targets), frames

@@ -95,31 +95,25 @@ def _at(values: FloatArray | None, frames: IntArray, first: int, name: str) -> F
 
 def between(one: Targets, other: Targets, share: FloatArray) -> Targets:
     """Return targets on the way from one to another of the same frames, so much of it each, shape (n,)."""
-    positions, rotations, lengths, postures = one.parts
-    if positions is not None:
-        positions = positions + share[:, None] * (other.all_positions - positions)
-    if rotations is not None and other.rotations is not None:
-        arc = rot.log(rot.between(rotations, other.rotations))
-        rotations = rot.multiply(rotations, rot.exp(share[:, None] * arc))
-    if lengths is not None:
-        lengths = lengths + share * (other.all_lengths - lengths)
-    if postures is not None and other.postures is not None:
-        arc = rot.log(rot.between(postures, other.postures))
-        postures = rot.multiply(postures, rot.exp(share[:, None, None] * arc))
-    return Targets(one.first, one.last, positions, rotations, lengths, postures)
+    return moved(one, one, other, share)
 
 
 def moved(targets: Targets, before: Targets, after: Targets, share: FloatArray) -> Targets:
     """Return targets moved along from where one motion has a task to where another has it, so much each, shape (n,)."""
-    positions, rotations, lengths, postures = targets.parts
+    positions, lengths = targets.positions, targets.lengths
     if positions is not None:
         positions = positions + share[:, None] * (after.all_positions - before.all_positions)
-    if rotations is not None and before.rotations is not None and after.rotations is not None:
-        turn = rot.log(rot.between(before.rotations, after.rotations))
-        rotations = rot.multiply(rotations, rot.exp(share[:, None] * turn))
     if lengths is not None:
         lengths = lengths + share * (after.all_lengths - before.all_lengths)
-    if postures is not None and before.postures is not None and after.postures is not None:
-        turn = rot.log(rot.between(before.postures, after.postures))
-        postures = rot.multiply(postures, rot.exp(share[:, None, None] * turn))
+    rotations = _turned(targets.rotations, before.rotations, after.rotations, share[:, None])
+    postures = _turned(targets.postures, before.postures, after.postures, share[:, None, None])
     return Targets(targets.first, targets.last, positions, rotations, lengths, postures)
+
+
+def _turned(
+    rotations: FloatArray | None, before: FloatArray | None, after: FloatArray | None, share: FloatArray
+) -> FloatArray | None:
+    """Return rotations turned by so much of the way from one to another; as they are where one of these is None."""
+    if rotations is None or before is None or after is None:
+        return rotations
+    return rot.multiply(rotations, rot.exp(share * rot.log(rot.between(before, after))))

@@ -144,13 +144,13 @@ def _clips(tasks: Sequence[ClipTask], *, lenient: bool) -> list[Clip]:
 
 def _figures(clips: Sequence[Clip], labels: Sequence[str], spec: Mapping[str, Any]) -> list[Figure]:
     """Return the clips with their bodies, all at the size of the first; up and body as the spec of an edit says."""
-    from motionedit.core.body.ground import AXES
+    from motionedit.core.body.up import SIGNED_AXES
     from motionedit.jobs.clip.facts import facts_of
     from motionedit.jobs.preview.bodies import body_of
     from motionedit.jobs.preview.marks import Figure
 
     up = spec.get("up")
-    found = [facts_of(clip, up=up if up in AXES else "auto", given=_body(clip, spec)) for clip in clips]
+    found = [facts_of(clip, up=up if up in SIGNED_AXES else "auto", given=_body(clip, spec)) for clip in clips]
     bodies = [body_of(facts, label=label) for facts, label in zip(found, labels, strict=True)]
     return [Figure(facts, _like(bodies[0], body)) for facts, body in zip(found, bodies, strict=True)]
 
