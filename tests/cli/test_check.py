@@ -1,13 +1,17 @@
-"""Clips held against a spec by check: what the spec's own command would miss in them is said, and nothing else."""
+"""Clips that check holds against limits, and a spec: what its own command would miss in them is said, nothing else."""
 
 import json
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from motionedit.core.bvh import new_bytes, read_clip
+from motionedit.core.motion import Motion
+
 DATA = Path(__file__).parents[2] / "data"
-WALK, SWING = DATA / "walk.bvh", DATA / "golf" / "swing04.bvh"
+WALK, SKATING, SWING = DATA / "walk.bvh", DATA / "walk-skating.bvh", DATA / "golf" / "swing04.bvh"
 
 
 @pytest.fixture
@@ -138,3 +142,55 @@ def test_a_command_without_junit_refuses_its_name(run, tmp_path, arguments):
     assert done.exit_code == 2
     assert "b.XML would be JSON; check and diff alone write JUnit: name it b.json" in done.stderr
     assert not (tmp_path / "o.bvh").exists()
+
+
+def test_check_tells_of_each_clip_and_of_limits_that_are_passed(run, tmp_path):
+    done = run("check", WALK, SKATING, "--limit", "foot_sliding_share=0.5", "--report", "r.json")
+    assert done.exit_code == 3
+    first, second = done.stdout.splitlines()
+    assert first.startswith(f"{WALK}: ok (24 Hz; 145 frames; cm; y up; legs, arms, head;")
+    assert second.startswith(f"{SKATING}: unfit: foot_sliding_share 1 above 0.5 (")
+    clips = json.loads((tmp_path / "r.json").read_text())["clips"]
+    assert [each["status"] for each in clips] == ["ok", "unfit"]
+    assert run("check", WALK, SKATING).exit_code == 0
+    assert run("check", WALK, SKATING, "-j", "2", "--limit", "foot_sliding_share=0.5").stdout == done.stdout
+
+
+@pytest.mark.parametrize("height", [-40.0, -8.0, 0.0, 8.0, 40.0])
+def test_check_says_where_feet_stand_that_do_not_stand_on_the_floor(run, tmp_path, height):
+    motion = read_clip(WALK).motion
+    shifted = Motion(
+        motion.skeleton, motion.rotations, motion.translations + np.array([0.0, height, 0.0]), motion.frame_time
+    )
+    (tmp_path / "w.bvh").write_bytes(new_bytes(shifted))
+    done = run("check", "w.bvh", "--report", "r.json")
+    (clip,) = json.loads((tmp_path / "r.json").read_text())["clips"]
+    said = [line for line in clip["warnings"] if line.startswith("feet stand at y = ")]
+    assert ("feet stand at y = " in done.stdout) == bool(said) == (abs(height) > 10.0)
+    if said:
+        assert abs(float(said[0].split(" = ")[1].split(":")[0]) - height) < 3.0
+
+
+def test_check_takes_limits_of_a_file_and_refuses_what_is_no_limit(run, tmp_path):
+    (tmp_path / "l.yaml").write_text("# CI\njumps: 0\nfoot_sliding_share: 0.5  # of held frames\n")
+    assert run("check", SKATING, "--limits", "l.yaml").exit_code == 3
+    assert run("check", SKATING, "--limits", "l.yaml", "--limit", "foot_sliding_share=1").exit_code == 0
+    for given, message in (
+        ("skate=1", "no measure 'skate'"),
+        ("jumps", "must be MEASURE=NUMBER"),
+        ("jumps=a", "a number"),
+    ):
+        done = run("check", WALK, "--limit", given)
+        assert done.exit_code == 2
+        assert message in done.stderr
+
+
+def test_check_holds_clips_against_a_spec(run, tmp_path):
+    (tmp_path / "s.yaml").write_text(
+        "schema: motionedit/edit-prioritized/v1\nconstraints: [{type: position, effector: Nose, points: [{at: 3}]}]\n"
+    )
+    done = run("check", WALK, "-s", "s.yaml")
+    assert done.exit_code == 3
+    assert "s.yaml:2: constraints.0.effector" in done.stdout
+    (tmp_path / "bad.bvh").write_text("HIERARCHY\n")
+    assert run("check", WALK, "bad.bvh").exit_code == 1

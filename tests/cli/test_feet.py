@@ -1,4 +1,4 @@
-"""Feet from the command line: held, followed, re-placed, put on a floor; and folders that are checked."""
+"""Feet from the command line: held, re-placed, put on a floor."""
 
 import json
 from itertools import pairwise
@@ -10,9 +10,7 @@ import pytest
 import motionedit
 from motionedit.core import rotations as rot
 from motionedit.core.body.contacts import sole_tracks
-from motionedit.core.bvh import new_bytes, read_clip
 from motionedit.core.kinematics import forward
-from motionedit.core.motion import Motion
 from motionedit.jobs.clip.facts import facts_of
 
 DATA = Path(__file__).parents[2] / "data"
@@ -85,48 +83,6 @@ def test_a_reference_that_is_none_is_refused(edit, tmp_path):
     assert "its reference" in edit([FEET], "--reference", DATA / "kick.bvh", code=1)
     (tmp_path / "empty").mkdir()
     assert "has no reference" in edit([FEET], "--reference", tmp_path / "empty", code=1)
-
-
-def test_what_follows_the_reference_rides_its_path(edit):
-    hand = {"type": "position", "effector": "LeftFoot", "priority": 1, "follow": "reference"}
-    after, _ = edit([hand], "--reference", WALK)
-    ankle = after.clip.motion.skeleton.names.index("LeftFoot")
-    truth = forward(motionedit.read(WALK).motion).positions[:, ankle]
-    assert forward(after.clip.motion).positions[:, ankle] == pytest.approx(truth, abs=1e-3)
-
-
-def test_what_follows_no_reference_is_refused(edit):
-    hand = {"type": "position", "effector": "LeftFoot", "priority": 1, "follow": "reference"}
-    refused = edit([hand], code=2)
-    assert "constraints.0.follow: there is no reference to follow; give reference: or --reference" in refused
-
-
-@pytest.mark.parametrize("solver", ["compiled", "numpy"])
-@pytest.mark.parametrize(
-    "keeps",
-    [
-        {"type": "posture", "joints": ["RightArm", "RightForeArm"]},
-        {"type": "orientation", "effector": "RightArm", "recruit": {"joints": ["RightArm"]}},
-        {"type": "position", "effector": "RightForeArm"},
-    ],
-)
-def test_what_follows_the_reference_at_times_is_led_there_and_back(edit, tmp_path, monkeypatch, keeps, solver):
-    monkeypatch.setenv("MOTIONEDIT_SOLVER", solver)
-    walk = motionedit.read(WALK)
-    arm = walk.motion.skeleton.names.index("RightArm")
-    turned = walk.motion.rotations.copy()
-    turned[:, arm] = rot.multiply(turned[:, arm], rot.exp(np.radians([0.0, 0.0, 40.0])))
-    motion = Motion(walk.motion.skeleton, turned, walk.motion.translations, walk.motion.frame_time)
-    (tmp_path / "turned.bvh").write_bytes(new_bytes(motion))
-    points = [{"during": [50, 70]}]
-    after, _ = edit([{**keeps, "follow": "reference", "points": points}], "--reference", "turned.bvh", clip=WALK)
-    place = forward(after.clip.motion).positions[:, arm + 1]
-    there, here = (forward(each).positions[:, arm + 1] for each in (motion, walk.motion))
-    assert place[50:71] == pytest.approx(there[50:71], abs=1e-2)
-    assert place[[0, 25, 95, 144]] == pytest.approx(here[[0, 25, 95, 144]], abs=1e-2)
-    # Over the 19 frames of an ease, not within one of them.
-    away = np.linalg.norm(place - here, axis=1) / np.linalg.norm(there - here, axis=1)
-    assert np.abs(np.diff(away)).max() < 0.15
 
 
 def test_plants_go_with_the_path_as_a_whole(edit):
@@ -318,58 +274,6 @@ def test_a_body_without_legs_has_no_feet(edit, clip):
     path = clip("stick.bvh")
     message = edit([FEET], clip=path, code=2)
     assert "no feet found" in message
-
-
-def test_check_tells_of_each_clip_and_of_limits_that_are_passed(run, tmp_path):
-    done = run("check", WALK, SKATING, "--limit", "foot_sliding_share=0.5", "--report", "r.json")
-    assert done.exit_code == 3
-    first, second = done.stdout.splitlines()
-    assert first.startswith(f"{WALK}: ok (24 Hz; 145 frames; cm; y up; legs, arms, head;")
-    assert second.startswith(f"{SKATING}: unfit: foot_sliding_share 1 above 0.5 (")
-    clips = json.loads((tmp_path / "r.json").read_text())["clips"]
-    assert [each["status"] for each in clips] == ["ok", "unfit"]
-    assert run("check", WALK, SKATING).exit_code == 0
-    assert run("check", WALK, SKATING, "-j", "2", "--limit", "foot_sliding_share=0.5").stdout == done.stdout
-
-
-@pytest.mark.parametrize("height", [-40.0, -8.0, 0.0, 8.0, 40.0])
-def test_check_says_where_feet_stand_that_do_not_stand_on_the_floor(run, tmp_path, height):
-    motion = read_clip(WALK).motion
-    shifted = Motion(
-        motion.skeleton, motion.rotations, motion.translations + np.array([0.0, height, 0.0]), motion.frame_time
-    )
-    (tmp_path / "w.bvh").write_bytes(new_bytes(shifted))
-    done = run("check", "w.bvh", "--report", "r.json")
-    (clip,) = json.loads((tmp_path / "r.json").read_text())["clips"]
-    said = [line for line in clip["warnings"] if line.startswith("feet stand at y = ")]
-    assert ("feet stand at y = " in done.stdout) == bool(said) == (abs(height) > 10.0)
-    if said:
-        assert abs(float(said[0].split(" = ")[1].split(":")[0]) - height) < 3.0
-
-
-def test_check_takes_limits_of_a_file_and_refuses_what_is_no_limit(run, tmp_path):
-    (tmp_path / "l.yaml").write_text("# CI\njumps: 0\nfoot_sliding_share: 0.5  # of held frames\n")
-    assert run("check", SKATING, "--limits", "l.yaml").exit_code == 3
-    assert run("check", SKATING, "--limits", "l.yaml", "--limit", "foot_sliding_share=1").exit_code == 0
-    for given, message in (
-        ("skate=1", "no measure 'skate'"),
-        ("jumps", "must be MEASURE=NUMBER"),
-        ("jumps=a", "a number"),
-    ):
-        done = run("check", WALK, "--limit", given)
-        assert done.exit_code == 2
-        assert message in done.stderr
-
-
-def test_check_holds_clips_against_a_spec(run, tmp_path):
-    (tmp_path / "s.yaml").write_text(
-        "schema: motionedit/edit-prioritized/v1\nconstraints: [{type: position, effector: Nose, points: [{at: 3}]}]\n"
-    )
-    done = run("check", WALK, "-s", "s.yaml")
-    assert done.exit_code == 3
-    assert "s.yaml:2: constraints.0.effector" in done.stdout
-    (tmp_path / "bad.bvh").write_text("HIERARCHY\n")
-    assert run("check", WALK, "bad.bvh").exit_code == 1
 
 
 def test_more_plants_than_frames_are_refused_at_once(run, tmp_path):
