@@ -12,7 +12,7 @@ from motionedit.core.priorities.far_turns import arcs_of
 from motionedit.core.priorities.frames import run_of, solve_from_input
 from motionedit.core.priorities.groups import Asked, seen_by
 from motionedit.core.priorities.kinds.constraint import ConstraintErrors, Scene
-from motionedit.core.priorities.task_targets import Targets, between
+from motionedit.core.priorities.task_targets import Targets, between, moved
 from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
@@ -48,13 +48,14 @@ def with_targets(
     follows: Follows = NOBODY,
 ) -> Asked:
     """Return all that is asked of a motion, with the targets of every constraint, which `follows` others' paths."""
-    before = seen_by(constraints, follows.input or motion, body)
+    here = seen_by(constraints, motion, body)
+    before = here if follows.input is None else seen_by(constraints, follows.input, body)
     theirs = before if follows.reference is None else seen_by(constraints, follows.reference, body)
     seen = [theirs if each.follow == "reference" else before for each in constraints]
     free = [i for i, each in enumerate(constraints) if not each.waits_for_others]
     # Most follow the same motion.
     scenes = {id(each): Scene(each, settings.curve, dict, lambda: before) for each in (before, theirs)}
-    found = {i: _ramped(constraints[i], constraints[i].targets(scenes[id(seen[i])]), before) for i in free}
+    found = {i: _ramped(constraints[i], scenes[id(seen[i])], here) for i in free}
 
     def others() -> Sight:
         """Return what is seen of the motion that those which do not wait ask for, solved once."""
@@ -66,22 +67,23 @@ def with_targets(
 
     goals, made = once(lambda: _goals(constraints, found, len(motion))), once(others)
     targets = tuple(
-        found[i] if i in found else _ramped(each, each.targets(Scene(seen[i], settings.curve, goals, made)), before)
+        found[i] if i in found else _ramped(each, Scene(seen[i], settings.curve, goals, made), here)
         for i, each in enumerate(constraints)
     )
     arcs = tuple(
-        None if there.rotations is None else arcs_of(there, each.reached(there, before))
+        None if there.rotations is None else arcs_of(there, each.reached(there, here))
         for each, there in zip(constraints, targets, strict=True)
     )
     return replace(Asked.of(motion, constraints, recruits, targets, body, settings), arcs=arcs)
 
 
-def _ramped(constraint: Constraint, targets: Targets, before: Sight) -> Targets:
-    """Return targets that lead from the input to the reference and back, of a constraint that follows that at times."""
-    if constraint.follow != "reference" or not constraint.points or constraint.one_sided:
+def _ramped(constraint: Constraint, scene: Scene, here: Sight) -> Targets:
+    """Return a constraint's targets, its ramps led from and to the motion that is edited, seen `here`."""
+    targets = constraint.targets(scene)
+    if not constraint.points or (scene.before is here and not constraint.waits_for_others):
         return targets
-    share = constraint.share(len(before.motion))[targets.span]
-    return between(constraint.reached(targets, before), targets, share)
+    left = 1.0 - constraint.share(len(here.motion))[targets.span]
+    return moved(targets, constraint.unasked(targets, scene), constraint.reached(targets, here), left)
 
 
 def errors_of(asked: Asked, motion: Motion, *, poses: WorldPoses | None = None) -> tuple[ConstraintErrors, ...]:

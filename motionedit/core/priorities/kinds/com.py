@@ -76,21 +76,33 @@ class CenterOfMass(Constraint):
         A' is where goals put the support, and where there are none, where the other constraints alone put it. Were
         that where this very edit puts it, a center of mass would chase feet that it moves itself.
         """
-        before, span = scene.before, self.active(len(scene.before.motion))
-        path = before.center
-        if self.members:
-            goals = scene.goals()
-            now = before if self._has_goals(goals, span) else scene.others()
-            path = self._mean(now.poses, goals) + path - self._mean(before.poses, {})
         _, positions = position_targets(
-            path @ self.measure.axes.T,
+            self._path(scene),
             self.points,
             ease_in=self.ease_in,
             ease_out=self.ease_out,
             curve=scene.curve,
             since=self.since,
         )
-        return Targets(*span, positions)
+        return Targets(*self._span(scene), positions)
+
+    def unasked(self, targets: Targets, scene: Scene) -> Targets:
+        """Return its path, carried along by its support."""
+        return Targets(targets.first, targets.last, self._path(scene)[targets.span])
+
+    def _span(self, scene: Scene) -> tuple[int, int]:
+        return self.active(len(scene.before.motion))
+
+    def _path(self, scene: Scene) -> FloatArray:
+        """Return P' along the axes of its measure, shape (F, 3)."""
+        before = scene.before
+        path = before.center
+        if self.members:
+            goals = scene.goals()
+            now = before if self._has_goals(goals, self._span(scene)) else scene.others()
+            path = self._mean(now.poses, goals) + path - self._mean(before.poses, {})
+        along: FloatArray = path @ self.measure.axes.T
+        return along
 
     def _has_goals(self, goals: Mapping[int, FloatArray], span: tuple[int, int]) -> bool:
         """Return whether every member of the support has a goal wherever the constraint is active."""

@@ -235,6 +235,10 @@ class Constraint(ABC):
         del after
         return targets
 
+    def unasked(self, targets: Targets, scene: Scene) -> Targets:
+        """Return where its targets would be if its points asked for nothing, as targets are."""
+        return self.reached(targets, scene.before)
+
     def goal(self, targets: Targets) -> tuple[int, FloatArray] | None:
         """Return the joint that it puts in a place, and where, world positions (n, 3); None where it does not."""
         del targets
