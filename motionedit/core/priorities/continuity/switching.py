@@ -21,37 +21,61 @@ if TYPE_CHECKING:
     from motionedit.core.priorities.groups import Asked, Ramp
     from motionedit.core.priorities.settings import Passes
 
+    Members = tuple[int, ...]
+    Ramps = tuple[tuple[Ramp, ...], ...]
+
 
 def eased_from_others(asked: Asked, smoothing: Passes) -> Run:
     """Return what is asked, with ramps from and to where the other constraints alone have each one's task.
 
     In a ramp the motion that a constraint takes over is what the others make of it, not the input.
     """
-    motion = asked.motion
-    alone: dict[tuple[int, ...], Motion] = {}
-    wanted: dict[tuple[int, ...], BoolArray] = {}
-    targets, ramps = list(asked.targets), []
-    for i in range(len(targets)):
-        own = list(ramps_of(asked, i))
+    ramps = tuple(ramps_of(asked, i) for i in range(len(asked.targets)))
+    return run_of(_eased(asked, ramps, tuple(range(len(ramps))), _Alone(asked, ramps, smoothing)))
+
+
+class _Alone:
+    """What constraints alone make of the motion, solved once."""
+
+    def __init__(self, asked: Asked, ramps: Ramps, smoothing: Passes) -> None:
+        self._asked, self._ramps, self._smoothing = asked, ramps, smoothing
+        self._wanted: dict[Members, BoolArray] = {}
+        self._found: dict[Members, Motion] = {}
+
+    def within(self, ramp: Ramp, members: Members) -> Motion | None:
+        """Return what they make of it within a ramp; None where that is the motion itself."""
+        if not members:
+            return None
+        if members not in self._wanted:
+            self._wanted[members] = _wanted(self._asked.only(members), self._asked.motion)
+        if not self._wanted[members][ramp.left > 0.0].any():
+            return None
+        if members not in self._found:
+            own = _eased(self._asked, self._ramps, members, self)
+            self._found[members] = solve_in_passes(run_of(own), self._smoothing).state.motion
+        return self._found[members]
+
+
+def _eased(asked: Asked, ramps: Ramps, members: Members, alone: _Alone) -> Asked:
+    """Return what some constraints ask for, with ramps from and to where the others of them alone have each one's."""
+    targets, led = list(asked.targets), list(ramps)
+    for i in members:
+        own = list(ramps[i])
         for k, ramp in enumerate(own):
-            others = _others(asked, i, ramp)
-            if others and others not in wanted:
-                wanted[others] = _wanted(asked.only(others), motion)
-            if not others or not wanted[others][ramp.left > 0.0].any():
+            there = alone.within(ramp, _others(asked, i, ramp, members))
+            if there is None:
                 continue
-            if others not in alone:
-                alone[others] = solve_in_passes(run_of(asked.only(others)), smoothing).state.motion
-            there = alone[others]
             left = ramp.left[targets[i].span]
-            targets[i] = moved(targets[i], reached(asked, i, motion), reached(asked, i, there), left)
+            targets[i] = moved(targets[i], reached(asked, i, asked.motion), reached(asked, i, there), left)
             own[k] = replace(ramp, end=task_at(asked, i, there, ramp.outside))
-        ramps.append(tuple(own))
-    return run_of(replace(asked, targets=tuple(targets), ramps=tuple(ramps)))
+        led[i] = tuple(own)
+    return replace(asked, targets=tuple(targets), ramps=tuple(led)).only(members)
 
 
-def _others(asked: Asked, i: int, ramp: Ramp) -> tuple[int, ...]:
-    """Return the constraints that are active where a ramp of constraint `i` ends."""
-    return tuple(k for k, span in enumerate(asked.targets) if k != i and span.first <= ramp.outside <= span.last)
+def _others(asked: Asked, i: int, ramp: Ramp, members: Members) -> Members:
+    """Return which of some constraints beside one are active where a ramp of it ends."""
+    spans = asked.targets
+    return tuple(k for k in members if k != i and spans[k].first <= ramp.outside <= spans[k].last)
 
 
 def _wanted(asked: Asked, motion: Motion) -> BoolArray:
