@@ -13,7 +13,7 @@ from motionedit.core.body.bones import below
 from motionedit.core.compiled import compiled
 from motionedit.core.priorities.continuity.passes import solve
 from motionedit.core.priorities.continuity.switching import eased_from_others
-from motionedit.core.priorities.frames import run_of
+from motionedit.core.priorities.frames import run_of, solve_from_input
 from motionedit.core.priorities.kinds.constraint import Movable
 from motionedit.core.priorities.ramps import led_to
 from motionedit.core.priorities.recruiting import Breach, Reach, Recruits, breaches, expanded
@@ -156,10 +156,15 @@ def prepare(
 ) -> tuple[Run, list[Breach]]:
     """Return an edit that is ready to be solved, and the breaches of the recruiting rule; raises as `recruit`."""
     recruits, found = recruit(constraints, motion, body, rule=settings.recruiting_rule)
-    asked = with_targets(motion, constraints, recruits, body, settings, follows=follows)
-    smoothing = settings.smoothing
-    run = eased_from_others(asked, smoothing) if isinstance(smoothing, Passes) else run_of(asked)
-    return run, found
+
+    def ready(asked: Asked) -> Run:
+        smoothing = settings.smoothing
+        return eased_from_others(asked, smoothing) if isinstance(smoothing, Passes) else run_of(asked)
+
+    def solved(asked: Asked) -> Motion:
+        return solve_from_input(ready(asked)).motion
+
+    return ready(with_targets(motion, constraints, recruits, body, settings, solve=solved, follows=follows)), found
 
 
 def edit_by_priorities(

@@ -9,14 +9,13 @@ import numpy as np
 from motionedit.core.again import once
 from motionedit.core.blocks import frame_blocks
 from motionedit.core.priorities.far_turns import arcs_of
-from motionedit.core.priorities.frames import run_of, solve_from_input
 from motionedit.core.priorities.groups import Asked, seen_by
 from motionedit.core.priorities.kinds.constraint import ConstraintErrors, Scene
 from motionedit.core.priorities.task_targets import Targets, between, moved
 from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from motionedit.core.arrays import FloatArray
     from motionedit.core.kinematics import WorldPoses
@@ -45,9 +44,13 @@ def with_targets(
     body: Body,
     settings: LayeredSettings,
     *,
+    solve: Callable[[Asked], Motion],
     follows: Follows = NOBODY,
 ) -> Asked:
-    """Return all that is asked of a motion, with the targets of every constraint, which `follows` others' paths."""
+    """Return all that is asked of a motion, with the targets of every constraint, which `follows` others' paths.
+
+    `solve` returns what constraints make of the motion.
+    """
     here = seen_by(constraints, motion, body)
     before = here if follows.input is None else seen_by(constraints, follows.input, body)
     theirs = before if follows.reference is None else seen_by(constraints, follows.reference, body)
@@ -62,8 +65,7 @@ def with_targets(
         if not free:
             return before
         own = [constraints[i] for i in free], [recruits[i] for i in free], [found[i] for i in free]
-        solved = solve_from_input(run_of(Asked.of(motion, *own, body, settings)))
-        return seen_by(constraints, solved.motion, body)
+        return seen_by(constraints, solve(Asked.of(motion, *own, body, settings)), body)
 
     goals, made = once(lambda: _goals(constraints, found, len(motion))), once(others)
     targets = tuple(
