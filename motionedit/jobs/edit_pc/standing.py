@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from motionedit.core.body.contacts import foot_plants
-from motionedit.core.feet.put_back import NEARBY, Fixed, put_back, standing_feet
+from motionedit.core.feet.put_back import NEARBY, Fixed, put_back
 from motionedit.core.kinematics import forward
 from motionedit.dataclass import replace
 from motionedit.jobs.edit_pc.meeting import NEARLY, asked_again, ways_off
@@ -16,7 +15,7 @@ if TYPE_CHECKING:
     from motionedit.core.body.contacts import Plant
     from motionedit.core.coefficients.edit import Change, CoefficientEdit
     from motionedit.core.coefficients.goal_chains import GoalRequest
-    from motionedit.core.feet.put_back import Places, StandingFoot
+    from motionedit.core.feet.put_back import StandingFoot
     from motionedit.core.motion import Motion
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.jobs.edit_pc.meeting import Again
@@ -32,11 +31,10 @@ def edit_standing(
     requests: Sequence[GoalRequest],
     facts: ClipFacts,
     *,
-    fixed: Collection[Fixed],
-    places: Places,
+    feet: Sequence[StandingFoot],
     still: Collection[int] = (),
 ) -> CoefficientEdit:
-    """Return an edit with planted feet put back.
+    """Return an edit whose feet are put back where they stand.
 
     A lower pelvis takes goals along, and so may the leg of a foot with a goal. They are met again by what is not
     part of a standing leg: `again` changes a motion so that goals are met while some joints are still. Where that does
@@ -46,16 +44,13 @@ def edit_standing(
     if anatomy.legs is None or not (edit.touched.any() or edit.moved.any()):
         return edit
     motion = facts.clip.motion
-    feet = standing_feet(motion, anatomy, foot_plants(facts.plants), fixed=fixed)
     standing, asked = {*still, *_still(motion, feet)}, asked_again(edit, requests)
     found = legs_alone = edit
     for done in range(_ROUNDS):
         if done:
             whole = done > _WITHOUT_PELVIS
             found = replace(found, motion=again(found.motion, asked, still if whole else standing, firm=whole))
-        kept = put_back(
-            found.motion, motion, feet, anatomy, up=facts.up, travel=facts.travel, places=places, first=facts.first
-        )
+        kept = put_back(found.motion, motion, feet, anatomy, up=facts.up, travel=facts.travel, first=facts.first)
         found = replace(found, motion=kept.motion, touched=found.touched | kept.touched, moved=found.moved | kept.moved)
         off = ways_off(forward(found.motion), asked, leg=anatomy.leg_length)
         if max(off, default=0.0) < 1.0:
