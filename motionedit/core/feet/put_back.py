@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.arrays import frozen
+from motionedit.core.arrays import frozen, runs
 from motionedit.core.feet.goals import Ground
 from motionedit.core.feet.keep import onto_stances
 from motionedit.core.feet.legs import turns_freely
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 # Seconds: a foot with a goal so shortly before it stands, or after, does not stand where it did. Put back there, it
 # would swing far out on its way.
 NEARBY = 0.15
+# Seconds before a foot is lifted, and after, in which it does not stand: a walker's is in the air for half a second.
+LIFTS = 0.25
 
 # T and D of plants that go alike: seconds between them, and metres at leg length 0.85 m. Feet side by side are about so
 # far apart, the steps of a walk more than twice as far.
@@ -38,11 +40,15 @@ _ROUNDING = 1e-12  # of quaternions: a leg that is turned by no more stays as it
 
 @dataclass(frozen=True)
 class Fixed:
-    """A joint that is where the edit put it at a frame, and `turned` as the edit turned it, too."""
+    """A joint that is where the edit put it at a frame, and `turned` as the edit turned it, too.
+
+    One that is `lifted` takes its foot off the ground there, and no plant along.
+    """
 
     joint: int
     frame: int
     turned: bool = False
+    lifted: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,28 +87,36 @@ def standing_feet(
     ----------
     fixed : collection of Fixed
         A plant goes as a whole to where its foot is fixed; one in which a knee is, or the foot at several frames, is
-        left alone, and so is one that begins or ends within 0.15 s of such a frame.
+        left alone, and so is one that begins or ends within 0.15 s of such a frame. One in which the foot is lifted
+        stands where it does, but for 0.25 s before and after.
     left_alone : collection of int
         Joints that stay as they are; a leg with one of them is not turned.
     """
-    nearby = round(NEARBY / motion.frame_time)
+    nearby, away = round(NEARBY / motion.frame_time), round(LIFTS / motion.frame_time)
     found = []
     for foot in feet_of(anatomy):
         if not turns_freely(motion.skeleton, foot.leg, left_alone=left_alone):
             continue
         own = [each for each in fixed if foot.leg.thigh in motion.skeleton.chain(each.joint)]
-        intervals = tuple(
-            (p.start, p.stop) for p in plants if p.foot == foot.side and _stands_whole(p, own, foot, nearby=nearby)
-        )
+        parts = [part for p in plants if p.foot == foot.side for part in _parts(p, own, away=away)]
+        intervals = tuple(part for part in parts if _stands_whole(*part, own, foot, nearby=nearby))
         found.append(StandingFoot(foot, intervals, tuple(sorted(own, key=lambda each: (each.frame, each.joint)))))
     return found
 
 
-def _stands_whole(plant: FootPlant, fixed: Sequence[Fixed], foot: Foot, *, nearby: int) -> bool:
-    inside = [each for each in fixed if plant.start <= each.frame <= plant.stop]
+def _parts(plant: FootPlant, fixed: Sequence[Fixed], *, away: int) -> list[tuple[int, int]]:
+    """Return the parts of a plant, both ends in, that are farther away from the frames at which its foot is lifted."""
+    frames = np.arange(plant.start, plant.stop + 1)
+    lifts = np.array([each.frame for each in fixed if each.lifted], dtype=np.intp)
+    down = (np.abs(frames[:, None] - lifts) > away).all(axis=1)
+    return [(plant.start + first, plant.start + last) for first, last in runs(down)]
+
+
+def _stands_whole(start: int, stop: int, fixed: Sequence[Fixed], foot: Foot, *, nearby: int) -> bool:
+    inside = [each for each in fixed if start <= each.frame <= stop]
     bent = any(each.joint in (foot.leg.thigh, foot.leg.knee) for each in inside)
     several = len({each.frame for each in inside}) > 1
-    near = any(min(abs(each.frame - plant.start), abs(each.frame - plant.stop)) <= nearby for each in fixed)
+    near = any(min(abs(each.frame - start), abs(each.frame - stop)) <= nearby for each in fixed)
     return not (bent or several or near)
 
 

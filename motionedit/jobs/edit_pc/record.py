@@ -60,7 +60,7 @@ def edit_record(
     skeleton = edit.motion.skeleton
     records = [
         goal_record(goal, poses)
-        | {"effector": effector_record(goal.request.effector, skeleton), "target": goal_place(goal, poses)}
+        | {"effector": effector_record(goal.request.effector, skeleton), "target": goal_place(goal.request, poses)}
         for goal in goals
     ]
     before = float(model.mahalanobis(projection.coefficients))

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from motionedit.core import rotations as rot
 from motionedit.core.feet.put_back import NEARBY, Fixed, put_back
-from motionedit.core.kinematics import forward
+from motionedit.core.kinematics import effector_positions, forward
+from motionedit.core.units import STANDARD_LEG
 from motionedit.dataclass import replace
+from motionedit.jobs.edit_pc.goals import goal_place
 from motionedit.jobs.edit_pc.meeting import NEARLY, asked_again, ways_off
 
 if TYPE_CHECKING:
@@ -23,6 +26,8 @@ if TYPE_CHECKING:
 _ROUNDS = 10
 # Rounds after which the pelvis helps, too: a straight leg that is to go higher needs the pelvis tilted.
 _WITHOUT_PELVIS = 4
+# Metres at leg length 0.85 m: a goal that takes a foot that stands up by no more moves its plant, one higher lifts it.
+_LIFTED = 0.03
 
 
 def edit_standing(
@@ -87,10 +92,20 @@ def fixed_by(requests: Sequence[GoalRequest], facts: ClipFacts, *, kept: bool) -
         return kept and in_room and any(_moves(plant, joint, frame, facts) for plant in facts.plants)
 
     return [
-        Fixed(each.effector.joint, each.frame, turned=each.rotation is not None)
+        Fixed(each.effector.joint, each.frame, each.rotation is not None, _lifts(each, facts))
         for i, each in enumerate(requests)
         if off[i] >= 1.0 or not stands(each)
     ]
+
+
+def _lifts(request: GoalRequest, facts: ClipFacts) -> bool:
+    """Return whether a goal takes its effector up, more than along the ground, and as far as feet that lift do."""
+    place = goal_place(request, facts.poses)
+    if place is None:
+        return False
+    way = place - effector_positions(facts.poses.at(slice(request.frame, request.frame + 1)), request.effector)[0]
+    up = float(way @ facts.up)
+    return up > max(_LIFTED * facts.anatomy.leg_length / STANDARD_LEG, float(rot.length(way - up * facts.up)))
 
 
 def plants_without(facts: ClipFacts, fixed: Collection[Fixed]) -> list[Plant]:

@@ -124,6 +124,26 @@ def test_a_plant_is_left_alone_near_whose_ends_its_foot_is_fixed_and_one_of_a_kn
         assert right.fixed == ()
 
 
+def test_a_foot_that_is_lifted_stands_before_and_after_and_not_then(walk):
+    motion, anatomy, plants = walk
+    leg, plant = anatomy.legs[0], long_plant(walk, "left")
+    at, away = (plant.start + plant.stop) // 2, round(0.25 / motion.frame_time)
+    (lifted, _), (whole, _) = (
+        standing_feet(motion, anatomy, plants, fixed=[Fixed(leg.ankle, at, lifted=each)]) for each in (True, False)
+    )
+    parts = {(plant.start, at - away - 1), (at + away + 1, plant.stop)}
+    assert set(whole.intervals) - set(lifted.intervals) == {(plant.start, plant.stop)}
+    assert set(lifted.intervals) - set(whole.intervals) == parts
+    translations = motion.translations.copy()
+    translations[at, 0] += [0.0, 4.0, 0.0]
+    edited = Motion(motion.skeleton, motion.rotations, translations, motion.frame_time)
+    after = kinematics.forward(put_back(edited, motion, [lifted], anatomy, up=UP, travel=0).motion)
+    up = (after.positions - kinematics.forward(motion).positions)[:, leg.ankle, 1]
+    assert up[at] == pytest.approx(4.0, abs=1e-6)
+    for start, stop in parts:
+        assert np.abs(up[start : stop + 1]).max() < 0.5
+
+
 def test_a_leg_with_a_joint_that_is_left_alone_is_not_put_back(walk):
     motion, anatomy, plants = walk
     left, right = anatomy.legs
