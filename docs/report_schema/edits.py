@@ -48,7 +48,7 @@ _ASKED = {
     "tolerance": number_or_null("up to which distance it counts as met; null for none"),
     "tolerance_angle": number_or_null("up to which angle it counts as met; null for none"),
     "status": part("goal_status"),
-    "gave_way_to": list_of(STRING, "names of those of higher priority for which it is missed"),
+    "gave_way_to": list_of(STRING, "names of those of the same or a higher priority for which it is missed"),
 }
 
 _PC_CLIP = {

@@ -37,5 +37,8 @@ class FitPcaSpec(Document):
         description="Weight of the root's position against rotations (metres against radians).",
     )
     exclude_joints: tuple[str, ...] = spec_key(
-        kinds.JOINTS_OR_NONE, default=(), description="Joints left out of the model; they are copied through."
+        kinds.JOINTS_OR_NONE,
+        default=(),
+        description="Joints left out of the model; edits copy them through, and turn no leg or arm with one of them "
+        "for feet that stand and hands that hold.",
     )

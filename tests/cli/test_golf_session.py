@@ -92,6 +92,33 @@ def test_a_far_goal_is_unreachable_and_strict_says_so(run, golf, data, tmp_path)
     assert json.loads((tmp_path / "r.json").read_text())["clips"][0]["goals"][0]["status"] == "ok"
 
 
+@pytest.mark.parametrize(
+    ("priorities", "gave_way", "words"),
+    [
+        ((3, 2, 1), {"back": ["ahead"]}, "it gave way to ahead"),
+        ((1, 1, 1), {"ahead": ["back"], "back": ["ahead"]}, "shared by weight with ahead"),
+    ],
+)
+def test_a_missed_goal_names_what_it_gave_way_to_and_nothing_else(
+    run, golf, data, tmp_path, priorities, gave_way, words
+):
+    asked = (
+        ("ahead", "hit", "RightHand", [5, 0, 0]),
+        ("down", 40, "Head", [0, -1, 0]),
+        ("back", "hit", "RightHand", [-5, 0, 0]),
+    )
+    goals = [
+        {"name": name, "at": at, "effector": joint, "shift": shift, "priority": priority}
+        for (name, at, joint, shift), priority in zip(asked, priorities, strict=True)
+    ]
+    spec = edit_spec(tmp_path / "e.yaml", goals=goals)
+    result = run("edit-pc", data / "swing01.bvh", "-m", golf.model, "-s", spec, "-o", "e.bvh", "--report", "r.json")
+    record = json.loads((tmp_path / "r.json").read_text())["clips"][0]
+    assert {goal["name"]: goal["gave_way_to"] for goal in record["goals"] if goal["gave_way_to"]} == gave_way
+    assert {goal["status"] for goal in record["goals"]} == {"ok", "out_of_tolerance"}
+    assert words in result.stderr
+
+
 def test_the_report_has_the_fixed_keys(run, golf, data, tmp_path):
     spec = edit_spec(tmp_path / "e.yaml")
     run("edit-pc", data / "swing01.bvh", "-m", golf.model, "-s", spec, "-o", "e.bvh", "--report", "r.json")

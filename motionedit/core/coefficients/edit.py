@@ -18,6 +18,7 @@ import numpy as np
 from motionedit.core.arrays import frozen
 from motionedit.core.coefficients.about_goals import components_about
 from motionedit.core.coefficients.algorithm_1 import solve_damped
+from motionedit.core.coefficients.blame import rivals_of
 from motionedit.core.coefficients.evidence import likeliest_share
 from motionedit.core.coefficients.goal_chains import columns_behind, columns_of, goal_of
 from motionedit.core.coefficients.goals import stacked_errors
@@ -30,7 +31,7 @@ from motionedit.core.timeline.interpolation import low_pass, monotone_cubic, nat
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.coefficients.goal_chains import GoalRequest
@@ -97,6 +98,11 @@ class CoefficientEdit:
         """Why the solver stopped, for each request by its place among them."""
         return {i: reason for change in self.changes for i, reason in change.reasons.items()}
 
+    @property
+    def rivals(self) -> dict[int, tuple[int, ...]]:
+        """Of each request that gave way, by its place, those that it gave way to."""
+        return {i: rivals for change in self.changes for i, rivals in (change.rivals or {}).items()}
+
 
 @dataclass(frozen=True, eq=False)
 class Change:
@@ -116,6 +122,8 @@ class Change:
         What leaves the components at those frames, columns of Theta.
     share : float or None
         g of the prior.
+    rivals : mapping of int to tuple of int, or None
+        Of each request that gave way, by its place, those that it gave way to.
     """
 
     solution: CoefficientSolution
@@ -124,6 +132,7 @@ class Change:
     norm: float | None = None
     residual: FloatArray | None = None
     share: float | None = None
+    rivals: Mapping[int, tuple[int, ...]] | None = None
 
 
 def edit_by_coefficients(
@@ -282,13 +291,19 @@ def _likeliest(
         [i for i in group if requests[i].priority == priority]
         for priority in sorted({requests[i].priority for i in group}, reverse=True)
     ]
-    found = likeliest_change([goals_of(layer, prior) for layer in layers], size=prior.size, bound=solver.bound)
+    goals = [goals_of(layer, prior) for layer in layers]
+    found = likeliest_change(goals, size=prior.size, bound=solver.bound)
+    reasons = {i: reason for layer, reason in zip(layers, found.reasons, strict=True) for i in layer}
+    places = [i for layer in layers for i in layer]
+    blamed = rivals_of(goals, found, size=prior.size, bound=solver.bound)
+    rivals = {places[k]: tuple(sorted(places[other] for other in others)) for k, others in blamed.items()}
     beta = prior.coefficients(found.change)
     return Change(
         CoefficientSolution(beta, found.iterations, found.history, found.reason),
-        {i: reason for layer, reason in zip(layers, found.reasons, strict=True) for i in layer},
+        reasons | dict.fromkeys(rivals, "gave way"),
         frames,
         float(np.linalg.norm(found.change)),
         prior.residual(found.change),
         share,
+        rivals,
     )

@@ -101,7 +101,8 @@ def eased_ways(
 ) -> tuple[FloatArray, BoolArray]:
     """Return how far ankles shall be from hips, shape (F,), and whether the knee is bent back then, shape (F,).
 
-    A bent leg's as they are; one that is nearly straight has its knee's angle eased from where it is `known`.
+    A bent leg's as they are; one that is nearly straight then has its knee's angle eased from where it is `known`. One
+    that was straight and is bent now has not: angles that it bent by are long ways for it, and would throw its foot.
 
     Parameters
     ----------
@@ -116,7 +117,7 @@ def eased_ways(
     change = _unfolded(now - own, slack)
     change = _folded(eased(change[:, None], known, frame_time, bends=_BENDS, order=_ORDER)[:, 0], slack)
     angle = own + change
-    straight = 1.0 - (1.0 - straightness(own)) * (1.0 - straightness(now))
+    straight = 1.0 - (1.0 - straightness(angle)) * (1.0 - straightness(now))
     share = np.where(known, 0.0, smooth_cover(straight, frame_time, ease=_TURNS))
     return ways + share * (knee.way(angle) - ways), (share > 0.5) & (angle < 0.0)
 

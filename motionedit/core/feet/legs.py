@@ -11,7 +11,7 @@ from motionedit.core.motion import Motion
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
     from motionedit.core.arrays import BoolArray, FloatArray
     from motionedit.core.body.anatomy import Leg
@@ -34,9 +34,15 @@ class LegGoal:
     back: BoolArray | None = None
 
 
-def turns_freely(skeleton: Skeleton, leg: Leg) -> bool:
-    """Return whether hip, knee and ankle have three rotation channels each, so that a leg is solved exactly."""
-    return all(len(set(skeleton.rotation_axes[joint])) == 3 for joint in (leg.thigh, leg.knee, leg.ankle))
+def turns_freely(skeleton: Skeleton, leg: Leg, *, left_alone: Collection[int] = ()) -> bool:
+    """Return whether hip, knee and ankle can be turned about three axes each, so that a leg is solved exactly.
+
+    They cannot without three rotation channels, or where they are among the joints that are `left_alone`.
+    """
+    return all(
+        len(set(skeleton.rotation_axes[joint])) == 3 and joint not in left_alone
+        for joint in (leg.thigh, leg.knee, leg.ankle)
+    )
 
 
 def legs_onto(

@@ -26,8 +26,9 @@ LOWERED_ON_PATH = 0.04  # where a path is longer than the old one, and steps wit
 CALMS_OWN, CALMS_ANOTHER = 0.01, 1.0
 _LEAST = float(np.radians(5.0))  # rad
 ROUNDING = 1e-9  # of a reach
-# Rad/s, and times how fast it was about then: a knee that would bend faster beside a heel that stands is bent more.
-_CALM, _FASTER = float(np.radians(300.0)), 1.5
+# Rad/s, rad/s^2, and times what it did about then: a knee that would bend faster beside a heel that stands, or that
+# would turn round more sharply, is bent more.
+_CALM, _SHARP, _FASTER = float(np.radians(300.0)), float(np.radians(9000.0)), 1.5
 _ABOUT_THEN = 0.05  # s before and after
 _MOST = float(np.radians(60.0))  # rad: a knee that is bent so far is calm
 
@@ -62,8 +63,10 @@ def reach_calm(
 ) -> FloatArray:
     """Return how far from its hip a heel that stands may be, shape (F,): as `reach_bent`, but no knee shakes.
 
-    w^2 = fixed + turning cos x, so that w w' = -turning sin(x) x' / 2: the straighter a knee, the faster it bends as
-    its hip comes nearer. A leg that sets its heel down all but straight kicks; this is how bent it is to be.
+    w^2 = fixed + turning cos x, so that w w' = -turning sin(x) x' / 2, and w w'' = -turning sin(x) x'' / 2 at x' = 0:
+    the straighter a knee, the faster it bends as its hip comes nearer, and the more sharply it turns round where the
+    hip comes no farther. A leg that sets its heel down all but straight kicks, and one over which the hip rises and
+    sinks snaps straight and open again; this is how bent it is to be.
 
     Parameters
     ----------
@@ -75,15 +78,25 @@ def reach_calm(
     off = rot.length(stance.heel_place - poses.positions[:, foot.leg.ankle])
     stands = stance.heel[1:] & stance.heel[:-1] & (stance.whole[1:] == stance.whole[:-1])
     closing = _of_both_sides(np.abs(np.diff(far)), stands)
+    curving = np.pad(np.where(stands[1:] & stands[:-1], np.maximum(-np.diff(far, n=2), 0.0), 0.0), 1)
     own = _of_both_sides(np.abs(np.diff(knee.angle)), np.ones(len(far) - 1, dtype=np.bool_))
-    around = round(_ABOUT_THEN / frame_time)
-    own = np.lib.stride_tricks.sliding_window_view(np.pad(own, around, mode="edge"), 2 * around + 1).max(axis=1)
-    fastest = np.maximum(_FASTER * own, _CALM * frame_time)
-    sine = 2.0 * far * closing / np.maximum(knee.turning * fastest, np.finfo(float).tiny)
+    own_curving = np.pad(np.abs(np.diff(knee.angle, n=2)), 1)
+    fastest = np.maximum(_FASTER * _about_then(own, frame_time), _CALM * frame_time)
+    sharpest = np.maximum(_FASTER * _about_then(own_curving, frame_time), _SHARP * frame_time**2)
+    most = np.maximum(closing / fastest, curving / sharpest)
+    sine = 2.0 * far * most / np.maximum(knee.turning, np.finfo(float).tiny)
     calm = knee.way(np.arcsin(np.minimum(sine, np.sin(_MOST))))
     calm = np.maximum(calm, np.maximum(far - calms * length, way - off))
     reach: FloatArray = np.minimum(reach_bent(poses, foot, knee, stance.heel_place), calm)
     return reach
+
+
+def _about_then(values: FloatArray, frame_time: float) -> FloatArray:
+    """Return the largest of the values (F,) about each frame, shape (F,)."""
+    around = round(_ABOUT_THEN / frame_time)
+    windows = np.lib.stride_tricks.sliding_window_view(np.pad(values, around, mode="edge"), 2 * around + 1)
+    largest: FloatArray = windows.max(axis=1)
+    return largest
 
 
 def _of_both_sides(steps: FloatArray, there: BoolArray) -> FloatArray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -77,12 +78,14 @@ def close_grips(
     bends: Sequence[Bend],
     *,
     goals: tuple[Collection[int], Collection[int]],
-) -> Closed | None:
+    left_alone: Collection[int] = (),
+) -> Closed:
     """Return an edited motion whose hands are as far apart, and turned so, as the input's, wherever they grip.
 
     The arm that the input has bent further gives way the more, for a straight one leads a swing and has no choice;
-    near a frame with a goal for one hand the other one does. Of an arm that is too short the hand stays behind, and the
-    arm nearly straight; hands that an edit takes far apart stay so. None where arms cannot be turned freely.
+    near a frame with a goal for one hand the other one does, and everywhere where one arm cannot be turned freely.
+    Of an arm that is too short the hand stays behind, and the arm nearly straight; hands that an edit takes far
+    apart stay so.
 
     Parameters
     ----------
@@ -94,25 +97,28 @@ def close_grips(
         Those of the elbows among them.
     goals : (frames, frames)
         Where the left hand, and the right one, is meant to be where the edit put it.
+    left_alone : collection of int
+        Joints that stay as the edit has them; an arm with one of them is not turned.
     """
     axes = {bend.joint: bend for bend in bends}
     arms = [arm.as_leg for arm in anatomy.arms or ()]
-    if not arms or not all(arm.knee in axes and turns_freely(edited.skeleton, arm) for arm in arms):
-        return None
+    turned = [arm.knee in axes and turns_freely(edited.skeleton, arm, left_alone=left_alone) for arm in arms]
     now = forward(edited)
     theirs = [_pose_of(before, arm.ankle) for arm in arms]
     mine = [_pose_of(now, arm.ankle) for arm in arms]
     seen = theirs[1].of(theirs[0])
-    free = [1.0 - _nearness(frames, len(edited), edited.frame_time) for frames in goals]
+    free = [
+        (1.0 - _nearness(frames, len(edited), edited.frame_time)) * float(each)
+        for frames, each in zip(goals, turned, strict=True)
+    ]
     left, right = (each * _slack(before, arm) for each, arm in zip(free, arms, strict=True))
     together = mine[0].towards(mine[1].to(seen), left / np.maximum(left + right, _TINY))
     wanted = [together, together.to(theirs[0].of(theirs[1]))]
     gap = rot.length(mine[1].of(mine[0]).place - seen.place) * (STANDARD_LEG / anatomy.leg_length)
     share = _brought(grips, gap, edited.frame_time) * (1.0 - (1.0 - free[0]) * (1.0 - free[1]))
-    knees = [knee_of(edited.skeleton, now, arm, axes[arm.knee]) for arm in arms]
     onto = []
-    for arm, knee, own, other in zip(arms, knees, mine, wanted, strict=True):
-        pose = own.towards(other, share)
+    for arm, own, other in itertools.compress(zip(arms, mine, wanted, strict=True), turned):
+        knee, pose = knee_of(edited.skeleton, now, arm, axes[arm.knee]), own.towards(other, share)
         shoulder = now.positions[:, arm.thigh]
         onto.append(LegGoal(arm, knee, _within_reach(knee, shoulder, own.place, pose.place), pose.turn))
     closed = legs_onto(edited, now, onto)

@@ -9,6 +9,7 @@ import numpy as np
 from motionedit.core.body.bent_back import bent_back
 from motionedit.core.body.quality import STILL
 from motionedit.core.body.ranges import beyond_range, regions_of
+from motionedit.core.body.snaps import snaps
 from motionedit.core.units import STANDARD_LEG
 
 if TYPE_CHECKING:
@@ -54,6 +55,21 @@ def rough_lines(
     """
     lines = [_stepping(facts, steps), _jerk(facts, *traces), *_beyond(facts, after, bends, touched)]
     return [line for line in lines if line is not None]
+
+
+def snap_line(facts: ClipFacts, after: Motion, *, touched: BoolArray) -> str | None:
+    """Return the knee or elbow that an edit snaps the most, as a multiple of what would be seen; None where none does.
+
+    Of edits by goals at single frames: where a constraint holds a limb, or lets it go, its user says how suddenly.
+    """
+    found = snaps(after, facts.bends, first=facts.first, touched=touched)
+    if not found:
+        return None
+    worst = max(found, key=lambda one: one.degrees / one.most)
+    return (
+        f"{facts.clip.motion.skeleton.names[worst.joint]}: snaps at frame {worst.frame}: within a sixtieth of a second "
+        f"its bending changes by {worst.degrees:.3g} degrees ({worst.most:.3g} would be seen){_others(len(found))}"
+    )
 
 
 def _stepping(facts: ClipFacts, steps: Steps) -> str | None:

@@ -27,16 +27,19 @@ def edit_bending(
     stand: Callable[[CoefficientEdit, Collection[int]], CoefficientEdit],
     requests: Sequence[GoalRequest],
     facts: ClipFacts,
+    *,
+    left_alone: Collection[int] = (),
 ) -> CoefficientEdit:
     """Return an edit on its feet, by `stand`, whose knees and elbows bend within their limits.
 
     Those that do not are turned, and stay as they are where goals are met again; where the rest of the body does not
-    reach these, the edit stays as it was.
+    reach these, the edit stays as it was. So do joints that are `left_alone`.
     """
     found = first = stand(edit, ())
     asked, still = asked_again(first, requests), frozenset[int]()
+    bends = [bend for bend in facts.bends if bend.joint not in left_alone]
     for _ in range(_ROUNDS):
-        held = hold_bends(found.motion, facts.bends, first=facts.first)
+        held = hold_bends(found.motion, bends, first=facts.first)
         if not held.joints:
             return found
         still |= set(held.joints)

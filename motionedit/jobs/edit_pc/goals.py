@@ -158,12 +158,11 @@ def goal_record(goal: ClipGoal, poses: WorldPoses) -> dict[str, Any]:
     }
 
 
-def goal_place(goal: ClipGoal, poses: WorldPoses) -> FloatArray | None:
+def goal_place(request: GoalRequest, poses: WorldPoses) -> FloatArray | None:
     """Return where a goal wants its effector in the world, shape (3,); None where it asks for no position.
 
     Along axes that the goal leaves free it is where the effector is in `poses`.
     """
-    request = goal.request
     if request.position is None:
         return None
     frame, measure = request.frame, request.measure

@@ -12,7 +12,7 @@ from motionedit.core.units import STANDARD_LEG
 from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
     from motionedit.core.coefficients.edit import CoefficientEdit
     from motionedit.core.coefficients.goal_chains import GoalRequest
@@ -37,16 +37,20 @@ class Holding:
     rough: tuple[str, ...] = ()
 
 
-def edit_holding(edit: CoefficientEdit, requests: Sequence[GoalRequest], facts: ClipFacts) -> Holding:
-    """Return an edit whose hands are together where the clip's hold one thing."""
+def edit_holding(
+    edit: CoefficientEdit, requests: Sequence[GoalRequest], facts: ClipFacts, *, left_alone: Collection[int] = ()
+) -> Holding:
+    """Return an edit whose hands are together where the clip's hold one thing, by arms without joints `left_alone`."""
     motion, anatomy = facts.clip.motion, facts.anatomy
     if anatomy.arms is None or not (edit.touched.any() or edit.moved.any()):
         return Holding(edit)
     grips = find_grips(facts.poses, anatomy, frame_time=motion.frame_time, first=facts.first)
     left, right = ({each.frame for each in requests if _is_about(each, arm.shoulder, facts)} for arm in anatomy.arms)
-    closed = close_grips(edit.motion, facts.poses, grips, anatomy, facts.bends, goals=(left, right)) if grips else None
-    if closed is None:
+    if not grips:
         return Holding(edit, {"grips": [], "apart_max": None})
+    closed = close_grips(
+        edit.motion, facts.poses, grips, anatomy, facts.bends, goals=(left, right), left_alone=left_alone
+    )
     worst = int(np.argmax(closed.off))
     apart, seen = float(closed.off[worst]), SEEN_APART * anatomy.leg_length / STANDARD_LEG
     line = (

@@ -28,7 +28,7 @@ from motionedit.jobs.clip.crop import cropped
 from motionedit.jobs.clip.facts import facts_of
 from motionedit.jobs.clip.kept_rules import body_said
 from motionedit.jobs.clip.metrics import edit_metrics, feet_of
-from motionedit.jobs.clip.roughness import rough_lines
+from motionedit.jobs.clip.roughness import rough_lines, snap_line
 from motionedit.jobs.clip.unit import unit_doubts
 from motionedit.jobs.edit_pc.goals import clip_goals, numbers_of
 from motionedit.jobs.edit_pc.model_events import events_for_model, refuse_unknown_events
@@ -190,14 +190,17 @@ class _Edit:
         odd, strange = unexplained(projection, self.model, seconds=projection.seconds)
         rough = [*strange, *held.rough]
         if traces[1] is not None and steps is not None and changed:
+            turned = np.asarray(edit.touched.any(axis=0))
             rough += rough_lines(
                 facts,
                 edit.motion,
-                touched=np.asarray(edit.touched.any(axis=0)),
+                touched=turned,
                 steps=steps,
                 traces=(traces[0], traces[1]),
                 bends=facts.bends,
             )
+            snap = snap_line(facts, edit.motion, touched=turned)
+            rough += [] if snap is None else [snap]
         about = {
             "unit": None if spec.unit is None else spec.unit.name,
             "metrics": edit_metrics(facts, *traces, steps=steps),

@@ -13,7 +13,7 @@ from motionedit.jobs.edit_pc.goals import ClipGoal, goal_place, goal_record, is_
 from motionedit.jobs.edit_pc.solver import largest_norm, usual_change
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from motionedit.core.arrays import FloatArray
     from motionedit.core.coefficients.edit import CoefficientEdit
@@ -60,13 +60,13 @@ def edit_record(
     skeleton = edit.motion.skeleton
     records = [
         goal_record(goal, poses)
-        | {"effector": effector_record(goal.request.effector, skeleton), "target": goal_place(goal, poses)}
+        | {"effector": effector_record(goal.request.effector, skeleton), "target": goal_place(goal.request, poses)}
         for goal in goals
     ]
     before = float(model.mahalanobis(projection.coefficients))
     after = float(model.mahalanobis(edit.coefficients))
     largest = largest_norm(model)
-    is_far, met = _is_far(model, edit, goals, after), _mark(records, edit.reasons)
+    is_far, met = _is_far(model, edit, goals, after), _mark(records, edit)
     status = worst_status(met, "far" if records and is_far else "ok", "rough" if rough else "ok")
     solutions = [change.solution for change in edit.changes]
     record = {
@@ -91,7 +91,7 @@ def edit_record(
             "after": _nearest(model, edit.coefficients),
         },
     }
-    missed = [_missed(each, edit.reasons[i]) for i, each in enumerate(records) if each["status"] != "ok"]
+    missed = [_missed(each, edit.reasons[i], records) for i, each in enumerate(records) if each["status"] != "ok"]
     far = [_FAR] if met == "ok" and records and is_far else []
     message = "; ".join(missed or (*rough, *far)) or None
     return EditRecord(status, message, (*missed, *far, *rough, *odd, *_crowding(model, goals, edit)), record)
@@ -109,14 +109,14 @@ def _is_far(model: MotionModel, edit: CoefficientEdit, goals: Sequence[ClipGoal]
     return edit.norm > FAR * usual_change(model, asked=asked)
 
 
-def _mark(records: Sequence[dict[str, Any]], reasons: Mapping[int, str]) -> str:
+def _mark(records: Sequence[dict[str, Any]], edit: CoefficientEdit) -> str:
     """Set each goal's status and whom it gave way to, and return the worst."""
+    reasons, rivals = edit.reasons, edit.rivals
     for i, record in enumerate(records):
         if is_met(record):
             continue
         record["status"] = "unreachable" if reasons[i] in {"bound", "stalled", "stood"} else "out_of_tolerance"
-        if reasons[i] == "gave way":
-            record["gave_way_to"] = [r["name"] for r in records if r["priority"] > record["priority"]]
+        record["gave_way_to"] = [records[k]["name"] for k in rivals.get(i, ())]
     return worst_status(*(record["status"] for record in records))
 
 
@@ -142,14 +142,13 @@ _FAR = "met, but far from what the database does: look at it before you use it"
 _WHY = {
     "bound": "out of reach of the database's motions",
     "stalled": "out of reach of the database's motions",
-    "gave way": "it gave way to goals of higher priority",
     "iterations": "the iterations ran out",
     "stood": "out of reach with feet that stand; feet: off lets them go",
     "converged": "the solver's own tolerance is wider",
 }
 
 
-def _missed(record: dict[str, Any], reason: str) -> str:
+def _missed(record: dict[str, Any], reason: str, records: Sequence[dict[str, Any]]) -> str:
     parts = []
     if record["error_max"] is not None:
         parts.append(f"{record['error_max']:.4g} from its goal at frame {record['frame']}")
@@ -159,7 +158,19 @@ def _missed(record: dict[str, Any], reason: str) -> str:
         f"{record['tolerance']:.3g}" if record["tolerance"] is not None else "",
         f"{record['tolerance_angle']:.3g} degrees" if record["tolerance_angle"] is not None else "",
     ]
-    return f"{record['name']}: {' and '.join(parts)} (tolerance {', '.join(filter(None, limits))}): {_WHY[reason]}"
+    missed = f"{record['name']}: {' and '.join(parts)} (tolerance {', '.join(filter(None, limits))})"
+    return f"{missed}: {_gave_way(record, records) if record['gave_way_to'] else _WHY[reason]}"
+
+
+def _gave_way(record: dict[str, Any], records: Sequence[dict[str, Any]]) -> str:
+    """Return what a goal gave way to: what goes before it, and what asks for something else with the same right."""
+    rivals = [each for each in records if each["name"] in record["gave_way_to"]]
+    above, beside = (
+        ", ".join(each["name"] for each in rivals if (each["priority"] > record["priority"]) is higher)
+        for higher in (True, False)
+    )
+    parts = [f"it gave way to {above}" if above else "", f"shared by weight with {beside}" if beside else ""]
+    return "; ".join(filter(None, parts))
 
 
 def goal_line(goal: ClipGoal, poses: WorldPoses) -> str:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 from motionedit.core import kinematics
+from motionedit.core.body.contacts import foot_plants
 from motionedit.core.coefficients.edit import edit_by_coefficients
 from motionedit.core.coefficients.methods import Likeliest
 from motionedit.core.coefficients.planted_feet import FIRM, LOOSE, planted_feet
 from motionedit.core.coefficients.projection import of_another
+from motionedit.core.feet.put_back import carried, standing_feet
 from motionedit.dataclass import dataclass
 from motionedit.jobs.edit_pc.bending import edit_bending
 from motionedit.jobs.edit_pc.holding import Holding, edit_holding
@@ -23,7 +25,7 @@ if TYPE_CHECKING:
     from motionedit.core.coefficients.goal_chains import GoalRequest
     from motionedit.core.coefficients.planted_feet import PlantedFoot
     from motionedit.core.coefficients.projection import Projection
-    from motionedit.core.feet.put_back import Fixed
+    from motionedit.core.feet.put_back import Fixed, StandingFoot
     from motionedit.core.motion import Motion
     from motionedit.core.pca.model import MotionModel
     from motionedit.jobs.clip.facts import ClipFacts
@@ -45,11 +47,14 @@ class Solving:
         """Return the edit as the spec wants it."""
         spec, facts, requests = self.spec, self.facts, self.requests
         edit = self._solved()
+        stand = partial(self._stand, feet=self._feet_of(edit))
         if spec.hinges_in_force == "off":
-            edit = self._stand(edit, ())
+            edit = stand(edit, ())
         else:
-            edit = edit_bending(edit, self._again, self._stand, requests, facts)
-        return Holding(edit) if spec.hands_in_force == "off" else edit_holding(edit, requests, facts)
+            edit = edit_bending(edit, self._again, stand, requests, facts, left_alone=self._left_alone)
+        if spec.hands_in_force == "off":
+            return Holding(edit)
+        return edit_holding(edit, requests, facts, left_alone=self._left_alone)
 
     def _solved(self) -> CoefficientEdit:
         spec, feet = self.spec, self._feet(self.projection, self.facts.poses, deviation=LOOSE)
@@ -74,13 +79,22 @@ class Solving:
             now, self.model, requests, solver=solver, residual="keep", first=self.facts.first
         ).motion
 
-    def _stand(self, edit: CoefficientEdit, still: Collection[int]) -> CoefficientEdit:
-        places = self.spec.feet_in_force
-        if places == "off":
+    def _stand(self, edit: CoefficientEdit, still: Collection[int], *, feet: Sequence[StandingFoot]) -> CoefficientEdit:
+        if self.spec.feet_in_force == "off":
             return edit
-        return edit_standing(
-            edit, self._again, self.requests, self.facts, fixed=self._fixed, places=places, still=still
-        )
+        return edit_standing(edit, self._again, self.requests, self.facts, feet=feet, still=still)
+
+    def _feet_of(self, edit: CoefficientEdit) -> list[StandingFoot]:
+        """Return the feet that stand in an edit, and where."""
+        facts = self.facts
+        motion, anatomy, plants = facts.clip.motion, facts.anatomy, foot_plants(facts.plants)
+        feet = standing_feet(motion, anatomy, plants, fixed=self._fixed, left_alone=self._left_alone)
+        return carried(feet, edit.motion, motion, anatomy, up=facts.up) if self.spec.feet_in_force == "move" else feet
+
+    @cached_property
+    def _left_alone(self) -> frozenset[int]:
+        """The joints that the model leaves out: they stay as they are."""
+        return frozenset(range(len(self.projection.motion.skeleton))) - {int(j) for j in self.projection.joints}
 
     @cached_property
     def _fixed(self) -> list[Fixed]:

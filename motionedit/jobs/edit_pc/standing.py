@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from motionedit.core.body.contacts import foot_plants
-from motionedit.core.feet.put_back import NEARBY, Fixed, put_back, standing_feet
-from motionedit.core.kinematics import forward
+from motionedit.core import rotations as rot
+from motionedit.core.feet.put_back import NEARBY, Fixed, put_back
+from motionedit.core.kinematics import effector_positions, forward
+from motionedit.core.units import STANDARD_LEG
 from motionedit.dataclass import replace
+from motionedit.jobs.edit_pc.goals import goal_place
 from motionedit.jobs.edit_pc.meeting import NEARLY, asked_again, ways_off
 
 if TYPE_CHECKING:
@@ -16,7 +18,7 @@ if TYPE_CHECKING:
     from motionedit.core.body.contacts import Plant
     from motionedit.core.coefficients.edit import Change, CoefficientEdit
     from motionedit.core.coefficients.goal_chains import GoalRequest
-    from motionedit.core.feet.put_back import Places, StandingFoot
+    from motionedit.core.feet.put_back import StandingFoot
     from motionedit.core.motion import Motion
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.jobs.edit_pc.meeting import Again
@@ -24,6 +26,8 @@ if TYPE_CHECKING:
 _ROUNDS = 10
 # Rounds after which the pelvis helps, too: a straight leg that is to go higher needs the pelvis tilted.
 _WITHOUT_PELVIS = 4
+# Metres at leg length 0.85 m: a goal that takes a foot that stands up by no more moves its plant, one higher lifts it.
+_LIFTED = 0.03
 
 
 def edit_standing(
@@ -32,11 +36,10 @@ def edit_standing(
     requests: Sequence[GoalRequest],
     facts: ClipFacts,
     *,
-    fixed: Collection[Fixed],
-    places: Places,
+    feet: Sequence[StandingFoot],
     still: Collection[int] = (),
 ) -> CoefficientEdit:
-    """Return an edit with planted feet put back.
+    """Return an edit whose feet are put back where they stand.
 
     A lower pelvis takes goals along, and so may the leg of a foot with a goal. They are met again by what is not
     part of a standing leg: `again` changes a motion so that goals are met while some joints are still. Where that does
@@ -46,16 +49,13 @@ def edit_standing(
     if anatomy.legs is None or not (edit.touched.any() or edit.moved.any()):
         return edit
     motion = facts.clip.motion
-    feet = standing_feet(motion, anatomy, foot_plants(facts.plants), fixed=fixed)
     standing, asked = {*still, *_still(motion, feet)}, asked_again(edit, requests)
     found = legs_alone = edit
     for done in range(_ROUNDS):
         if done:
             whole = done > _WITHOUT_PELVIS
             found = replace(found, motion=again(found.motion, asked, still if whole else standing, firm=whole))
-        kept = put_back(
-            found.motion, motion, feet, anatomy, up=facts.up, travel=facts.travel, places=places, first=facts.first
-        )
+        kept = put_back(found.motion, motion, feet, anatomy, up=facts.up, travel=facts.travel, first=facts.first)
         found = replace(found, motion=kept.motion, touched=found.touched | kept.touched, moved=found.moved | kept.moved)
         off = ways_off(forward(found.motion), asked, leg=anatomy.leg_length)
         if max(off, default=0.0) < 1.0:
@@ -92,10 +92,20 @@ def fixed_by(requests: Sequence[GoalRequest], facts: ClipFacts, *, kept: bool) -
         return kept and in_room and any(_moves(plant, joint, frame, facts) for plant in facts.plants)
 
     return [
-        Fixed(each.effector.joint, each.frame, turned=each.rotation is not None)
+        Fixed(each.effector.joint, each.frame, each.rotation is not None, _lifts(each, facts))
         for i, each in enumerate(requests)
         if off[i] >= 1.0 or not stands(each)
     ]
+
+
+def _lifts(request: GoalRequest, facts: ClipFacts) -> bool:
+    """Return whether a goal takes its effector up, more than along the ground, and as far as feet that lift do."""
+    place = goal_place(request, facts.poses)
+    if place is None:
+        return False
+    way = place - effector_positions(facts.poses.at(slice(request.frame, request.frame + 1)), request.effector)[0]
+    up = float(way @ facts.up)
+    return up > max(_LIFTED * facts.anatomy.leg_length / STANDARD_LEG, float(rot.length(way - up * facts.up)))
 
 
 def plants_without(facts: ClipFacts, fixed: Collection[Fixed]) -> list[Plant]:

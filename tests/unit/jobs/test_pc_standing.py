@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from motionedit.core import kinematics
 from motionedit.core.bvh import read_clip
@@ -56,3 +57,15 @@ def test_a_foot_that_stands_where_its_goal_has_it_is_not_free_elsewhere():
     stood = {f for p in facts.plants if p.foot == "left" for f in range(p.start, p.stop + 1)}
     in_air = min(set(range(len(places))) - stood)
     assert fixed(in_air, 0.0) == [Fixed(foot.joint, in_air)]
+
+
+@pytest.mark.parametrize(
+    ("shift", "lifted"),
+    [((0, 10, 0), True), ((5, 10, 0), True), ((15, 10, 0), False), ((0, 2, 0), False), ((0, -10, 0), False)],
+)
+def test_a_goal_that_takes_a_foot_up_lifts_it(shift, lifted):
+    facts = facts_of(read_clip(WALK))
+    foot, frame = Effector(facts.anatomy.legs[0].ankle, np.zeros(3)), 20
+    place = facts.poses.positions[frame, foot.joint] + np.array(shift)
+    (fixed,) = fixed_by([GoalRequest(frame, foot, place, None)], facts, kept=True)
+    assert fixed.lifted == lifted

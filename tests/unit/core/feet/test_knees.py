@@ -60,3 +60,17 @@ def test_a_foot_that_its_leg_is_too_short_for_leaves_the_frames_before_it_smooth
     assert np.array_equal(ways[known], np.linalg.norm(ankle[known], axis=1))
     assert angles[~known].min() >= 0.0
     assert angles[~known].max() < 60.0
+
+
+def test_a_foot_that_leaves_its_plant_by_a_bent_leg_is_not_thrown_up_where_the_leg_was_straight():
+    # Straight to the end of its plant, the leg bends by 20 degrees in a frame: 17 mm nearer to the hip.
+    own = np.concatenate((np.full(30, 4.0), np.minimum(24.0 + 12.0 * np.arange(30), 70.0)))
+    knee, known = knee_at(own), np.arange(60) < 30
+    hip, before, ankle = np.zeros((60, 3)), np.zeros((60, 3)), np.zeros((60, 3))
+    before[:, 1] = -knee.way(knee.angle)
+    ankle[:, 1] = before[:, 1] + 0.04 * np.where(known, 1.0, np.exp(-0.1 * np.maximum(np.arange(60) - 29.0, 0.0)))
+    back = np.zeros(60, dtype=bool)
+    ways, _ = eased_ways(knee, hip, before, ankle, known=known, back=back, frame_time=1.0 / 60.0)
+    steps = np.diff(ways)[29:], np.diff(knee.way(knee.angle))[29:]
+    assert np.degrees(knee.bent(ways)[29]) == pytest.approx(36.0, abs=2.0)
+    assert abs(steps[0][0]) < 2.0 * abs(steps[1][0])

@@ -12,7 +12,7 @@ from motionedit.core.body.contacts import foot_plants, plants_of, sole_tracks
 from motionedit.core.body.find_anatomy import anatomy_of
 from motionedit.core.bvh import read_clip
 from motionedit.core.feet.knees import knee_of
-from motionedit.core.feet.put_back import Fixed, put_back, standing_feet
+from motionedit.core.feet.put_back import Fixed, StandingFoot, carried, put_back, standing_feet
 from motionedit.core.motion import Motion
 
 WALK = Path(__file__).resolve().parents[4] / "data" / "walk.bvh"
@@ -40,7 +40,7 @@ def jerk(motion):
 def test_planted_feet_stand_where_they_stood_and_the_rest_keeps_its_turns(walk, shift):
     motion, anatomy, plants = walk
     feet = standing_feet(motion, anatomy, plants)
-    kept = put_back(moved(motion, np.array(shift)), motion, feet, anatomy, up=UP, travel=0, places="keep")
+    kept = put_back(moved(motion, np.array(shift)), motion, feet, anatomy, up=UP, travel=0)
     before, after = kinematics.forward(motion), kinematics.forward(kept.motion)
     for foot in feet:
         ankle = foot.foot.leg.ankle
@@ -57,20 +57,48 @@ def test_planted_feet_stand_where_they_stood_and_the_rest_keeps_its_turns(walk, 
 def test_plants_that_move_as_wholes_go_where_the_edit_takes_them(walk):
     motion, anatomy, plants = walk
     shift = np.array([4.0, 0.0, -3.0])
-    kept = put_back(
-        moved(motion, shift), motion, standing_feet(motion, anatomy, plants), anatomy, up=UP, travel=0, places="move"
-    )
+    edited = moved(motion, shift)
+    feet = carried(standing_feet(motion, anatomy, plants), edited, motion, anatomy, up=UP)
+    kept = put_back(edited, motion, feet, anatomy, up=UP, travel=0)
     before, after = kinematics.forward(motion), kinematics.forward(kept.motion)
     np.testing.assert_allclose(after.positions, before.positions + shift, atol=1e-6)
+
+
+def test_plants_that_are_near_in_time_and_place_move_alike_and_steps_by_themselves(walk):
+    motion, anatomy, _ = walk
+    still = Motion(
+        motion.skeleton,
+        np.repeat(motion.rotations[:1], len(motion), axis=0),
+        np.repeat(motion.translations[:1], len(motion), axis=0),
+        motion.frame_time,
+    )
+    # The body sways away in the second half of a clip in which it stands.
+    aside = np.zeros((len(motion), 1, 3))
+    aside[len(motion) // 2 :, :, 0] = 6.0
+    left, right = (each.foot for each in standing_feet(motion, anatomy, ()))
+    early, late, both = (0, 60), (64, 120), (0, 120)
+
+    def ways(reference, *feet):
+        found = carried(feet, moved(reference, aside), reference, anatomy, up=UP)
+        return [way[0] for each in found for way in each.ways]
+
+    again = ways(still, StandingFoot(left, (early, late)))
+    assert abs(again[1] - again[0]) < 0.5
+    beside = ways(still, StandingFoot(left, (both,)), StandingFoot(right, (late,)))
+    assert 0.0 < beside[1] - beside[0] < 0.75 * 3.0
+    fixed = ways(still, StandingFoot(left, (early, late), (Fixed(left.leg.ankle, 30),)))
+    assert fixed[1] == pytest.approx(aside[64:121, 0, 0].mean())
+    steps = ways(motion, *standing_feet(motion, anatomy, walk[2]))
+    assert max(steps) - min(steps) > 5.0
 
 
 def test_what_is_in_place_and_a_rest_pose_stay(walk):
     motion, anatomy, plants = walk
     feet = standing_feet(motion, anatomy, plants)
-    same = put_back(motion, motion, feet, anatomy, up=UP, travel=0, places="keep")
+    same = put_back(motion, motion, feet, anatomy, up=UP, travel=0)
     assert not same.moved.any()
     np.testing.assert_allclose(same.motion.rotations, motion.rotations, atol=1e-9)
-    late = put_back(moved(motion, [3.0, 0.0, 0.0]), motion, feet, anatomy, up=UP, travel=0, places="keep", first=20)
+    late = put_back(moved(motion, [3.0, 0.0, 0.0]), motion, feet, anatomy, up=UP, travel=0, first=20)
     np.testing.assert_array_equal(late.motion.rotations[:20], motion.rotations[:20])
 
 
@@ -96,6 +124,34 @@ def test_a_plant_is_left_alone_near_whose_ends_its_foot_is_fixed_and_one_of_a_kn
         assert right.fixed == ()
 
 
+def test_a_foot_that_is_lifted_stands_before_and_after_and_not_then(walk):
+    motion, anatomy, plants = walk
+    leg, plant = anatomy.legs[0], long_plant(walk, "left")
+    at, away = (plant.start + plant.stop) // 2, round(0.25 / motion.frame_time)
+    (lifted, _), (whole, _) = (
+        standing_feet(motion, anatomy, plants, fixed=[Fixed(leg.ankle, at, lifted=each)]) for each in (True, False)
+    )
+    parts = {(plant.start, at - away - 1), (at + away + 1, plant.stop)}
+    assert set(whole.intervals) - set(lifted.intervals) == {(plant.start, plant.stop)}
+    assert set(lifted.intervals) - set(whole.intervals) == parts
+    translations = motion.translations.copy()
+    translations[at, 0] += [0.0, 4.0, 0.0]
+    edited = Motion(motion.skeleton, motion.rotations, translations, motion.frame_time)
+    after = kinematics.forward(put_back(edited, motion, [lifted], anatomy, up=UP, travel=0).motion)
+    up = (after.positions - kinematics.forward(motion).positions)[:, leg.ankle, 1]
+    assert up[at] == pytest.approx(4.0, abs=1e-6)
+    for start, stop in parts:
+        assert np.abs(up[start : stop + 1]).max() < 0.5
+
+
+def test_a_leg_with_a_joint_that_is_left_alone_is_not_put_back(walk):
+    motion, anatomy, plants = walk
+    left, right = anatomy.legs
+    for joint in (left.thigh, left.knee, left.ankle):
+        (only,) = standing_feet(motion, anatomy, plants, left_alone=[joint])
+        assert only.foot.leg == right
+
+
 def test_a_plant_goes_as_a_whole_to_where_its_foot_is_fixed_and_turns_if_that_is(walk):
     motion, anatomy, plants = walk
     leg, plant = anatomy.legs[0], long_plant(walk, "left")
@@ -109,7 +165,7 @@ def test_a_plant_goes_as_a_whole_to_where_its_foot_is_fixed_and_turns_if_that_is
     for turned in (False, True):
         fixed = [Fixed(leg.ankle, middle, turned)]
         feet = standing_feet(motion, anatomy, plants, fixed=fixed)
-        after = kinematics.forward(put_back(edited, motion, feet, anatomy, up=UP, travel=0, places="keep").motion)
+        after = kinematics.forward(put_back(edited, motion, feet, anatomy, up=UP, travel=0).motion)
         np.testing.assert_allclose(after.positions[middle, leg.ankle], there.positions[middle, leg.ankle], atol=1e-3)
         own, now = ((each.positions[span, leg.ankle], each.rotations[span, leg.ankle]) for each in (before, after))
         turn = rot.multiply(there.rotations[middle, leg.ankle], rot.conjugate(before.rotations[middle, leg.ankle]))
@@ -140,7 +196,6 @@ def test_a_knee_that_a_capture_has_past_straight_for_a_while_bends_forward_all_a
         anatomy,
         up=UP,
         travel=0,
-        places="keep",
     )
     after = np.degrees(knee_of(motion.skeleton, kinematics.forward(kept.motion), leg, bend).angle)
     assert after[plant.start : plant.stop + 1].min() > 0.0

@@ -57,6 +57,29 @@ def test_a_pelvis_calms_a_knee_by_so_much_and_no_more():
     assert (calm >= far - 0.002 - 1e-12)[LANDS:].all()
 
 
+def test_a_knee_that_would_snap_straight_and_open_again_is_bent_more():
+    # The hip rises by 6 cm and sinks again within 0.2 s, over a heel that was put 20 cm lower.
+    rises = 0.06 * np.sin(np.pi * np.clip((np.arange(40) - 10.0) / 20.0, 0.0, 1.0)) ** 2
+    way, place = 1.8 + rises, -0.2 * UP
+    hip = way[:, None] * UP
+    knee = 0.5 * hip + np.sqrt(1.0 - 0.25 * way**2)[:, None] * np.array([0.0, 0.0, 1.0])
+    poses = WorldPoses(np.stack((hip, knee, np.zeros((40, 3))), axis=1), np.zeros((40, 3, 4)))
+    bends = Knee(np.tile([1.0, 0.0, 0.0], (40, 1)), 2.0 * np.arccos(0.5 * way), np.full(40, 2.0), np.full(40, 2.0))
+    heel = np.ones(40, dtype=np.bool_)
+    places, foot = np.tile(place, (40, 1)), Foot("left", SimpleNamespace(thigh=0, knee=1, ankle=2), None)
+    stance = Stance(heel, ~heel, places, places, np.zeros((40, 4)), np.zeros(40, dtype=np.intp))
+    far = np.linalg.norm(hip - place, axis=1)
+    turns = []
+    for reach in (
+        reach_bent(poses, foot, bends, places),
+        reach_calm(poses, foot, bends, stance, FRAME_TIME, calms=1.0),
+    ):
+        lowered = far - max(float((far - reach).max()), 0.0)
+        turns.append(np.degrees(np.abs(np.diff(bends.bent(lowered), n=2)).max()) / FRAME_TIME**2)
+    assert turns[0] > 11000.0
+    assert turns[1] < 9500.0
+
+
 def test_a_foot_comes_from_heel_to_toe_by_both():
     heel, toe = np.array([1, 1, 1, 1, 0, 0]) > 0, np.array([0, 0, 1, 1, 1, 1]) > 0
     places = np.zeros((6, 3))

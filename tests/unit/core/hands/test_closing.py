@@ -34,8 +34,9 @@ class Swing:
         rotations[frames, joint] = rot.multiply(rotations[frames, joint], turn)
         return Motion(self.motion.skeleton, rotations, self.motion.translations, self.motion.frame_time)
 
-    def close(self, edited, *, grips=((0, 120),), goals=((), ())):
-        return close_grips(edited, self.poses, grips, self.anatomy, self.bends, goals=goals)
+    def close(self, edited, *, grips=((0, 120),), goals=((), ()), left_alone=()):
+        given = self.poses, grips, self.anatomy, self.bends
+        return close_grips(edited, *given, goals=goals, left_alone=left_alone)
 
     def seen(self, motion):
         """Return where the right hand is in the left hand's frame, and how it is turned."""
@@ -162,13 +163,29 @@ def test_a_smooth_edit_stays_smooth(swing):
     assert jerk(closed.motion) < 1.2 * jerk(swing.motion)
 
 
-def test_arms_whose_joints_do_not_turn_freely_are_left_alone(swing):
-    motion = swing.motion
-    channels = list(motion.skeleton.channels)
+def test_of_arms_one_of_which_does_not_turn_freely_the_other_goes_all_the_way(swing):
+    edited = swing.turned(6.0)
+    channels = list(edited.skeleton.channels)
     channels[swing.right.elbow] = channels[swing.right.elbow][:1]
-    skeleton = replace(motion.skeleton, channels=tuple(channels))
-    bound = Motion(skeleton, motion.rotations, motion.translations, motion.frame_time)
-    assert close_grips(bound, swing.poses, ((0, 120),), swing.anatomy, swing.bends, goals=((), ())) is None
+    bound = Motion(
+        replace(edited.skeleton, channels=tuple(channels)), edited.rotations, edited.translations, edited.frame_time
+    )
+    closed = close_grips(bound, swing.poses, ((0, 120),), swing.anatomy, swing.bends, goals=((), ()))
+    assert set(np.flatnonzero(closed.touched.any(axis=0)).tolist()) == joints_of(swing.left)
+    assert closed.off.max() < 0.5
+
+
+def test_arms_with_joints_that_are_left_alone_are_not_turned_and_how_far_hands_are_apart_is_told(swing):
+    edited = swing.turned(6.0)
+    for joint in joints_of(swing.left):
+        alone = swing.close(edited, left_alone=[joint])
+        assert set(np.flatnonzero(alone.touched.any(axis=0)).tolist()) <= joints_of(swing.right)
+        assert alone.off.max() < 0.5
+    both = swing.close(edited, left_alone=[swing.left.wrist, swing.right.shoulder])
+    assert both.motion.rotations.tobytes() == edited.rotations.tobytes()
+    place, own = swing.seen(edited)[0], swing.seen(swing.motion)[0]
+    np.testing.assert_allclose(both.off.max(), np.linalg.norm(place - own, axis=1).max(), rtol=0.2)
+    assert both.off.max() > 3.0
 
 
 def test_arms_without_length_stay_where_they_are(swing):
