@@ -142,6 +142,7 @@ _FAR = "met, but far from what the database does: look at it before you use it"
 _WHY = {
     "bound": "out of reach of the database's motions",
     "stalled": "out of reach of the database's motions",
+    "gave way": "it gave way to goals of higher priority",
     "iterations": "the iterations ran out",
     "stood": "out of reach with feet that stand; feet: off lets them go",
     "converged": "the solver's own tolerance is wider",
