@@ -232,6 +232,11 @@ class FootplantsConstraint(_Timeless):
         "of the root take it, along the axes that count, and the body turns with the path.",
     )
 
+    @property
+    def uses_reference(self) -> bool:
+        """Whether anything is taken from the reference: plants and places, where there is one."""
+        return True
+
 
 def _constraint(value: object, context: Context) -> ConstraintItem:
     if not isinstance(value, dict):

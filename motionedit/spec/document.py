@@ -1,4 +1,4 @@
-"""What stands at the top of every spec: events, the unit, which way is up."""
+"""What stands at the top of specs: the unit, which way is up, the body; and events, where times may name them."""
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -19,12 +19,6 @@ class Document(SpecModel):
     # Whether times may name events that the spec does not list.
     knows_other_events: ClassVar[bool] = False
 
-    events: Mapping[str, EventSpec] = spec_key(
-        by_name(event(EventSpec)),
-        default={},
-        description="Names for instants, used wherever a time stands.",
-        more={"propertyNames": dict(kinds.EVENT_NAME.json)},
-    )
     unit: Unit | None = spec_key(
         kinds.UNIT,
         default=None,
@@ -34,7 +28,8 @@ class Document(SpecModel):
     up: Literal["y", "z", "x", "-y", "-z", "-x", "auto"] = spec_key(
         kinds.word("y", "z", "x", "-y", "-z", "-x", "auto"),
         default="auto",
-        description="The axis that points up; auto: by the floor, the OFFSETs and the way the body stands.",
+        description="The axis that points up; auto: by the floor, the OFFSETs and the way the body stands; "
+        "of a model the one that its clips were normalized with.",
     )
     body: BodySpec = spec_key(
         mapping(BodySpec),
@@ -45,15 +40,31 @@ class Document(SpecModel):
     @property
     def event_files(self) -> tuple[Path, ...]:
         """Files that frames of events were read from."""
-        frames = [event.frames for event in self.events.values()]
-        return tuple(found.file for found in frames if found is not None and found.file is not None)
+        return ()
 
     @classmethod
     def key_names(cls) -> tuple[str, ...]:
         """Return the keys of the spec, its own before those that all specs share."""
         names = super().key_names()
-        shared = Document.model_keys
+        shared = EventDocument.model_keys
         return tuple(sorted(names, key=lambda name: name in shared))
+
+
+class EventDocument(Document):
+    """The same, and names for instants."""
+
+    events: Mapping[str, EventSpec] = spec_key(
+        by_name(event(EventSpec)),
+        default={},
+        description="Names for instants, used wherever a time stands.",
+        more={"propertyNames": dict(kinds.EVENT_NAME.json)},
+    )
+
+    @property
+    def event_files(self) -> tuple[Path, ...]:
+        """Files that frames of events were read from."""
+        frames = [event.frames for event in self.events.values()]
+        return tuple(found.file for found in frames if found is not None and found.file is not None)
 
     @classmethod
     def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:

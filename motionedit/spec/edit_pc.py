@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, Literal
 
 from motionedit.spec import kinds
-from motionedit.spec.document import Document
+from motionedit.spec.document import EventDocument
 from motionedit.spec.faults import Fault
 from motionedit.spec.items import NOT_TWO_FRAMES, EffectorItem, measured_in_itself, repeated_names, taken_apart, without
 from motionedit.spec.model import SpecModel, mappings_in, spec_key
@@ -156,7 +156,7 @@ def _goals_apart(goals: tuple[PcGoal, ...], _others: Mapping[str, Any]) -> tuple
     return taken_apart(goals, "goals")
 
 
-class EditPcSpec(Document):
+class EditPcSpec(EventDocument):
     """Everything edit-pc is told."""
 
     at_most_one = (("components", "explained_variance"),)

@@ -8,7 +8,7 @@ from typing import Any, Literal, NamedTuple
 from motionedit.spec import kinds, scalars, values
 from motionedit.spec.constraint_types import CONSTRAINT
 from motionedit.spec.constraints import ConstraintItem, Defaults
-from motionedit.spec.document import Document
+from motionedit.spec.document import EventDocument
 from motionedit.spec.faults import Fault, faulty, show
 from motionedit.spec.items import repeated_names, taken_apart
 from motionedit.spec.model import Context, Kind, SpecModel, spec_key
@@ -180,7 +180,7 @@ def _reference(value: object, context: Context) -> Path:
 REFERENCE = Kind(_reference, "a clip or a folder", {"type": "string", "minLength": 1})
 
 
-class EditPrioritizedSpec(Document):
+class EditPrioritizedSpec(EventDocument):
     """Everything edit-prioritized is told."""
 
     schema_id: str = spec_key(

@@ -1,6 +1,7 @@
 """The spec of fit-pca: how the motion PCA model is made, [PC] 4.1."""
 
-from typing import Literal
+from collections.abc import Mapping
+from typing import ClassVar, Literal
 
 from motionedit.spec import kinds
 from motionedit.spec.document import Document
@@ -11,6 +12,9 @@ class FitPcaSpec(Document):
     """Everything fit-pca is told."""
 
     at_most_one = (("components", "explained_variance"),)
+    foreign_keys: ClassVar[Mapping[str, str]] = {
+        "events": "belongs to normalize: a model has the events of its normalized clips; give it in that spec"
+    }
 
     schema_id: str = spec_key(
         kinds.schema_id("fit-pca"), default="motionedit/fit-pca/v1", name="schema", description="Which spec this is."
@@ -37,5 +41,7 @@ class FitPcaSpec(Document):
         description="Weight of the root's position against rotations (metres against radians).",
     )
     exclude_joints: tuple[str, ...] = spec_key(
-        kinds.JOINTS_OR_NONE, default=(), description="Joints left out of the model; they are copied through."
+        kinds.JOINTS_OR_NONE,
+        default=(),
+        description="Joints left out of the model; they are copied through. The one that carries the travel stays in.",
     )

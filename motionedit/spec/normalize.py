@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, Literal
 
 from motionedit.spec import kinds, times
-from motionedit.spec.document import Document
+from motionedit.spec.document import EventDocument
 from motionedit.spec.events import EventSpec, event
 from motionedit.spec.faults import Fault, faulty
 from motionedit.spec.model import Context, Kind, SpecModel, spec_key
@@ -62,7 +62,7 @@ class TimelineEvent(EventSpec):
     )
 
 
-class NormalizeSpec(Document):
+class NormalizeSpec(EventDocument):
     """Everything normalize is told."""
 
     schema_id: str = spec_key(

@@ -60,8 +60,9 @@ class SpecCheck:
         MeasureClip(self.loaded, lenient=False, others=self.others)(replace(task, clip=clip))
 
     def _exclude(self, clip: Clip, task: ClipTask) -> None:
-        place = resolve.Place(self.loaded, ("exclude_joints",), task.label)
-        resolve.joints(self.loaded.model.exclude_joints, clip.motion.skeleton, place)
+        from motionedit.jobs.fit_pca.excluded import excluded_joints
+
+        excluded_joints(self.loaded, clip.motion, task.label)
 
     def _place_goals(self, facts: ClipFacts, task: ClipTask) -> None:
         from motionedit.jobs.edit_pc.without_model import refuse_lacking

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from motionedit.core.skeleton import Skeleton
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.jobs.clip.resolve import Place
-    from motionedit.spec.document import Document
+    from motionedit.spec.document import EventDocument
     from motionedit.spec.events import DetectRule, EventSpec
     from motionedit.spec.load import LoadedSpec
     from motionedit.spec.times import Time
@@ -38,7 +38,7 @@ _EFFECTORS: LastFew[Effector] = LastFew(16)
 
 
 def explicit_events(
-    loaded: LoadedSpec[Document], clip: Clip, *, relative: str, others: Collection[str] = ()
+    loaded: LoadedSpec[EventDocument], clip: Clip, *, relative: str, others: Collection[str] = ()
 ) -> dict[str, float]:
     """Return the frames that the spec itself gives for a clip's events, or the times.
 

@@ -26,7 +26,7 @@ from motionedit.jobs.batch.verdicts import run_key, verdicts_in
 from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.crop import cropped
 from motionedit.jobs.clip.facts import facts_of
-from motionedit.jobs.clip.kept_rules import body_said
+from motionedit.jobs.clip.kept_rules import body_said, refuse_another_up
 from motionedit.jobs.clip.metrics import edit_metrics, feet_of
 from motionedit.jobs.clip.roughness import rough_lines
 from motionedit.jobs.clip.unit import unit_doubts
@@ -97,6 +97,7 @@ def edit(
         As `run`.
     """
     _refuse_damaged_rules(model, label)
+    refuse_another_up(loaded, axis_name(model.up), by=label)
     refuse_unknown_events(loaded, model)
     cut = model.truncated(_component_count(loaded, model))
     work = _Edit(loaded, cut, label, tuple(task.relative for task in tasks))
@@ -205,7 +206,9 @@ class _Edit:
         share = residual_share(spec, self.model) if spec.solver.method == "map" else None
         if share is not None and self.model.components.left_out is None and spec.residual_share == "auto":
             odd.append(f"the model has no left-out error, so residual_share is {share:g}; make it again with fit-pca")
-        verdicts = Judged(bound, share, (*facts.warnings, *unit_doubts(facts, spec.unit), *odd), rough)
+        verdicts = Judged(
+            bound, share, (*facts.warnings, *unit_doubts(facts.anatomy.leg_length, spec.unit), *odd), rough
+        )
         result = edit_record(self.model, projection, edit, goals, poses=after, verdicts=verdicts)
         return Outcome(
             resampled_bytes(facts.clip, edit.motion) if retimed else _edited_bytes(facts.clip, projection, edit),

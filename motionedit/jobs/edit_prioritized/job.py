@@ -30,7 +30,7 @@ from motionedit.jobs.edit_prioritized.constraints import clip_constraints
 from motionedit.jobs.edit_prioritized.floors import refuse_floors_out_of_reach
 from motionedit.jobs.edit_prioritized.record import edit_record
 from motionedit.jobs.edit_prioritized.recruits import breach_error, breach_warnings, immovable_warnings, layer_lines
-from motionedit.jobs.edit_prioritized.reference import reference_facts, reference_files, refuse_missing_reference
+from motionedit.jobs.edit_prioritized.reference import reference_facts, reference_files, refuse_unfit_reference
 from motionedit.jobs.edit_prioritized.rest_pose import moved_rest_pose
 from motionedit.jobs.edit_prioritized.standing import on_feet
 from motionedit.jobs.edit_prioritized.unheld import grips_in, loose_feet, loose_hands
@@ -63,10 +63,10 @@ def run(
 
     Raises
     ------
-    UsageError
-        As `plan`.
+    SpecError, UsageError
+        As `plan` and `edit`.
     """
-    refuse_missing_reference(loaded.model.reference)
+    refuse_unfit_reference(loaded)
     references = reference_files(loaded.model.reference)
     files = [*loaded.model.event_files, *references]
     key = run_key("edit-prioritized", loaded.data, files=files, more=options.lenient)
@@ -82,7 +82,14 @@ def edit(
     options: RunOptions,
     verdicts: Verdicts | None = None,
 ) -> BatchResult:
-    """Edit the clips of tasks, and write those that have an output; what becomes of them `verdicts` are told."""
+    """Edit the clips of tasks, and write those that have an output; what becomes of them `verdicts` are told.
+
+    Raises
+    ------
+    SpecError, UsageError
+        The reference is not there, or nothing is taken from it, or it is followed and not given.
+    """
+    refuse_unfit_reference(loaded)
     others = tuple(task.relative for task in tasks)
     threads = threads_within(sum(not task.elsewhere for task in tasks), options)
     work = EditByPriorities(loaded, others, threads, verify=options.verify, tells_plan=options.dry_run)
@@ -162,25 +169,12 @@ class EditByPriorities:
         return replace(sized, warnings=(*sized.warnings, *_warnings_of(constraints, sized.masses))), constraints
 
     def _reference(self, clip: Clip, task: ClipTask) -> ClipFacts | None:
-        """Return the facts of the clip's reference, None where there is none.
-
-        Raises
-        ------
-        SpecError
-            There is none, and a constraint follows it.
-        """
+        """Return the facts of the clip's reference, None where there is none."""
         spec = self.loaded.model
         if spec.reference is None:
-            self._refuse_following()
             return None
         given = resolve.body(spec.body, clip.motion.skeleton, resolve.Place(self.loaded, ("body",), task.label))
         return reference_facts(spec.reference, clip, task, up=spec.up, given=given)
-
-    def _refuse_following(self) -> None:
-        for each in self.loaded.model.constraints:
-            if each.follow == "reference":
-                message = "there is no reference to follow; give reference: or --reference, or follow: input"
-                raise self.loaded.error((*each.keys, "follow"), message)
 
     def _constraints(self, sized: SizedClip, task: ClipTask, faults: Faults) -> list[ClipConstraint]:
         spec = self.loaded.model

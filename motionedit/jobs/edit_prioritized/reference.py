@@ -17,14 +17,33 @@ if TYPE_CHECKING:
     from motionedit.core.body.anatomy import GivenBody
     from motionedit.core.bvh import Clip
     from motionedit.jobs.clip.facts import ClipFacts
+    from motionedit.spec.edit_prioritized import EditPrioritizedSpec
+    from motionedit.spec.load import LoadedSpec
 
 _SAME_TIME = 1e-6  # s
 
 
-def refuse_missing_reference(reference: Path | None) -> None:
-    """Raise a UsageError where what is given is not there."""
-    if reference is not None and not reference.exists():
+def refuse_unfit_reference(loaded: LoadedSpec[EditPrioritizedSpec]) -> None:
+    """Refuse a reference that is not there, one that nothing is taken from, and one that is lacking.
+
+    Raises
+    ------
+    SpecError
+        A constraint follows a reference, and none is given; or none does, and none is of footplants.
+    UsageError
+        There is no such file or folder.
+    """
+    reference, constraints = loaded.model.reference, loaded.model.constraints
+    if reference is None:
+        for each in constraints:
+            if each.follow == "reference":
+                message = "there is no reference to follow; give reference: or --reference, or follow: input"
+                raise loaded.error((*each.keys, "follow"), message)
+    elif not reference.exists():
         raise UsageError("no such clip or folder to be the reference", file=str(reference))
+    elif not any(each.uses_reference for each in constraints):
+        message = "nothing is taken from it: no constraint says follow: reference or is of type footplants"
+        raise loaded.error(("reference",), f"{message}; say so in one, or leave it out")
 
 
 def reference_files(reference: Path | None) -> list[Path]:

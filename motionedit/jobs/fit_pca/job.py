@@ -17,9 +17,10 @@ from motionedit.jobs.batch.files import clean_leftovers
 from motionedit.jobs.batch.one_clip import write_file
 from motionedit.jobs.batch.outputs import is_of_another_kind, refuse_clashes
 from motionedit.jobs.batch.pool import threads_within
-from motionedit.jobs.clip import resolve
-from motionedit.jobs.clip.kept_rules import body_said, kept_body, with_body
+from motionedit.jobs.clip.kept_rules import body_said, kept_body, refuse_another_up, with_body
+from motionedit.jobs.clip.unit import unit_doubts
 from motionedit.jobs.fit_pca.database import Motions, database_in
+from motionedit.jobs.fit_pca.excluded import excluded_joints
 from motionedit.jobs.fit_pca.report import fit_report
 from motionedit.jobs.normalize.normalization_file import NAME
 from motionedit.spec.fit_pca import FitPcaSpec
@@ -84,10 +85,12 @@ def fit(database: Database, loaded: LoadedSpec[FitPcaSpec] | None, *, options: R
         raise ModelError(f"lists {count} clip; a PCA needs two or more", file=database.list_label)
     motions = Motions(database, options)
     first = motions.first
+    if loaded is not None:
+        refuse_another_up(loaded, normalization.up, by=database.list_label)
     settings = FitSettings(
         representation="centred" if spec.rotation == "centred" else "exponential",
         root_weight=spec.root_weight,
-        excluded=_excluded(loaded, first.skeleton, database.label),
+        excluded=excluded_joints(loaded, first, database.label),
         components=ComponentCount(spec.components, spec.explained_variance),
         threads=threads_within(1, options),
     )
@@ -107,7 +110,8 @@ def fit(database: Database, loaded: LoadedSpec[FitPcaSpec] | None, *, options: R
         raise _too_few(loaded, spec, count, error.available) from None
     except AllTheSameError as error:
         raise ModelError(f"{error}: there is nothing to learn; give clips that differ", file=database.label) from error
-    return Fit(fitted.model, fit_report(fitted, spec, verbosity=options.verbosity))
+    doubts = unit_doubts(leg_length, spec.unit)
+    return Fit(fitted.model, fit_report(fitted, spec, doubts=doubts, verbosity=options.verbosity))
 
 
 def _body(loaded: LoadedSpec[FitPcaSpec] | None, database: Database, skeleton: Skeleton) -> GivenBody:
@@ -116,13 +120,6 @@ def _body(loaded: LoadedSpec[FitPcaSpec] | None, database: Database, skeleton: S
     if loaded is None:
         return kept_body(rules, skeleton, **where)
     return body_said(loaded, rules, skeleton, **where)
-
-
-def _excluded(loaded: LoadedSpec[FitPcaSpec] | None, skeleton: Skeleton, folder: str) -> frozenset[int]:
-    if loaded is None:
-        return frozenset()
-    place = resolve.Place(loaded, ("exclude_joints",), folder)
-    return frozenset(resolve.joints(loaded.model.exclude_joints, skeleton, place))
 
 
 def _too_few(loaded: LoadedSpec[FitPcaSpec] | None, spec: FitPcaSpec, clips: int, available: int) -> MotionEditError:
