@@ -16,7 +16,6 @@ from motionedit.core.pca.fit import components_for
 from motionedit.core.pca.model_file import read_model
 from motionedit.core.pca.rules import checked_rules
 from motionedit.core.skeleton_match import match_joints
-from motionedit.core.timeline.warp import make_warp
 from motionedit.dataclass import dataclass
 from motionedit.errors import ModelError
 from motionedit.jobs.batch.one_clip import Outcome
@@ -25,6 +24,7 @@ from motionedit.jobs.batch.run import run_batch
 from motionedit.jobs.batch.verdicts import run_key, verdicts_in
 from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.crop import cropped
+from motionedit.jobs.clip.events import clip_warp
 from motionedit.jobs.clip.facts import facts_of
 from motionedit.jobs.clip.kept_rules import body_said, refuse_another_up
 from motionedit.jobs.clip.metrics import edit_metrics, feet_of
@@ -160,7 +160,7 @@ class _Edit:
         events = events_for_model(self.loaded, model, facts, task, model_label=self.model_label, others=self.others)
         crop = model.rules.get("crop", {})
         first, last = cropped(crop, facts, resolve.Place(self.loaded, (), task.label), events=events)
-        warp = make_warp(model.timeline, first=first, last=last, events=events, label=task.label)
+        warp = clip_warp(self.loaded, model.timeline, first=first, last=last, events=events, label=task.label)
         align = model.rules["align"]
         begins = None if first == facts.first else float(first)
         alignment = facts.alignment(

@@ -63,7 +63,7 @@ def run(
 
     Raises
     ------
-    SpecError, UsageError
+    UsageError, SpecError
         As `plan` and `edit`.
     """
     refuse_unfit_reference(loaded)
@@ -86,7 +86,7 @@ def edit(
 
     Raises
     ------
-    SpecError, UsageError
+    SpecError
         The reference is not there, or nothing is taken from it, or it is followed and not given.
     """
     refuse_unfit_reference(loaded)
@@ -179,15 +179,21 @@ class EditByPriorities:
     def _constraints(self, sized: SizedClip, task: ClipTask, faults: Faults) -> list[ClipConstraint]:
         spec = self.loaded.model
         place = resolve.Place(self.loaded, ("events",), task.label)
-        none: dict[str, float] = {}
 
         def frames() -> dict[str, float]:
             known = explicit_events(self.loaded, sized.facts.clip, relative=task.relative, others=self.others)
             return event_frames(spec.events, sized.facts, place, known=known)
 
-        events = faults.get(frames, otherwise=none)
-        scale, relative = sized.scale, task.relative
-        return clip_constraints(self.loaded, sized.facts, events, scale=scale, faults=faults, relative=relative)
+        events = faults.get(frames, otherwise=None)
+        found, scale, relative = Faults(), sized.scale, task.relative
+        constraints = clip_constraints(
+            self.loaded, sized.facts, events or {}, scale=scale, faults=found, relative=relative
+        )
+        for error in found.errors:
+            # Of an event whose frame is at fault itself that has been said.
+            if events is not None or not isinstance(error, resolve.NoEventFrameError):
+                faults.add(error)
+        return constraints
 
     def settings(self, clip: Clip) -> LayeredSettings:
         """Return how the spec wants a clip solved."""

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from motionedit.core.skeleton import same_skeleton
 from motionedit.dataclass import replace
-from motionedit.errors import ClipError, UsageError
+from motionedit.errors import ClipError
 from motionedit.jobs.batch.one_clip import read_task
 from motionedit.jobs.batch.plan import ClipTask, folder_clips
 from motionedit.jobs.clip.facts import facts_of
@@ -29,9 +29,7 @@ def refuse_unfit_reference(loaded: LoadedSpec[EditPrioritizedSpec]) -> None:
     Raises
     ------
     SpecError
-        A constraint follows a reference, and none is given; or none does, and none is of footplants.
-    UsageError
-        There is no such file or folder.
+        There is no such file or folder; a constraint follows a reference, and none is given; or nothing uses it.
     """
     reference, constraints = loaded.model.reference, loaded.model.constraints
     if reference is None:
@@ -40,7 +38,7 @@ def refuse_unfit_reference(loaded: LoadedSpec[EditPrioritizedSpec]) -> None:
                 message = "there is no reference to follow; give reference: or --reference, or follow: input"
                 raise loaded.error((*each.keys, "follow"), message)
     elif not reference.exists():
-        raise UsageError("no such clip or folder to be the reference", file=str(reference))
+        raise loaded.error(("reference",), f"there is no clip or folder {reference}")
     elif not any(each.uses_reference for each in constraints):
         message = "nothing is taken from it: no constraint says follow: reference or is of type footplants"
         raise loaded.error(("reference",), f"{message}; say so in one, or leave it out")

@@ -135,7 +135,7 @@ def _both_phases(
     if failures and (not options.keep_going or not measures):
         return Normalized(_failed(tasks, failures))
     timeline, warnings = common_timeline(loaded, measures)
-    bad_order = events_out_of_order(measures, timeline)
+    bad_order = events_out_of_order(loaded, measures, timeline)
     if bad_order and not options.keep_going:
         return Normalized(_failed(tasks, bad_order))
     failures |= bad_order
