@@ -75,15 +75,6 @@ def one_shard(ctx: click.Context, parameter: click.Parameter, value: str | None)
 
 
 clips_argument = click.argument("clips", nargs=-1, required=True, metavar="CLIPS...", callback=not_empty)
-model_option = click.option(
-    "-m",
-    "--model",
-    required=True,
-    metavar="MODEL.npz",
-    type=_PATH,
-    callback=existing_file,
-    help="The model that fit-pca wrote.",
-)
 set_option = click.option(
     "--set",
     "overrides",
@@ -182,6 +173,19 @@ def spec_option(*, required: bool = True) -> Decorator:
         type=_PATH,
         callback=existing_file,
         help="The YAML spec: what is to be done.",
+    )
+
+
+def model_option(text: str = "The model that fit-pca wrote.", *, required: bool = True) -> Decorator:
+    """Return the option -m."""
+    return click.option(
+        "-m",
+        "--model",
+        required=required,
+        metavar="MODEL.npz",
+        type=_PATH,
+        callback=existing_file,
+        help=text,
     )
 
 

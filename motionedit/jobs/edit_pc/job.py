@@ -96,12 +96,26 @@ def edit(
     SpecError
         As `run`.
     """
+    work = edit_by_components(loaded, model, label, tuple(task.relative for task in tasks))
+    return run_batch(tasks, with_page(work, loaded.data, options), options, verdicts=verdicts)
+
+
+def edit_by_components(
+    loaded: LoadedSpec[EditPcSpec], model: MotionModel, label: str, others: tuple[str, ...]
+) -> EditByComponents:
+    """Return the work on one clip; `others` are all clips of the run, as event files call them.
+
+    Raises
+    ------
+    ModelError
+        The model is damaged.
+    SpecError
+        The spec asks for what the model has not.
+    """
     _refuse_damaged_rules(model, label)
     refuse_another_up(loaded, axis_name(model.up), by=label)
     refuse_unknown_events(loaded, model)
-    cut = model.truncated(_component_count(loaded, model))
-    work = _Edit(loaded, cut, label, tuple(task.relative for task in tasks))
-    return run_batch(tasks, with_page(work, loaded.data, options), options, verdicts=verdicts)
+    return EditByComponents(loaded, model.truncated(_component_count(loaded, model)), label, others)
 
 
 def _refuse_damaged_rules(model: MotionModel, label: str) -> None:
@@ -122,8 +136,18 @@ def _component_count(loaded: LoadedSpec[EditPcSpec], model: MotionModel) -> int:
     return spec.components or available
 
 
+@dataclass(frozen=True, eq=False)
+class Ready:
+    """A clip in a model's coordinates, its goals, and the world transforms of the motion that is edited."""
+
+    facts: ClipFacts
+    projection: Projection
+    goals: list[ClipGoal]
+    poses: WorldPoses
+
+
 @dataclass(frozen=True)
-class _Edit:
+class EditByComponents:
     """The work on one clip."""
 
     loaded: LoadedSpec[EditPcSpec]
@@ -132,6 +156,22 @@ class _Edit:
     others: tuple[str, ...]
 
     def __call__(self, clip: Clip, task: ClipTask) -> Outcome:
+        """Return the edited clip, and how near each goal came."""
+        spec, model = self.loaded.model, self.model
+        ready = self.ready(clip, task)
+        facts, projection, goals = ready.facts, ready.projection, ready.goals
+        bound = plausibility_bound(spec, model, projection.coefficients, asked=_asked_together(spec, goals))
+        held = Solving(spec, model, facts, projection, tuple(goal.request for goal in goals), bound).edit()
+        return self._outcome(facts, projection, held, goals, before=ready.poses, bound=bound)
+
+    def ready(self, clip: Clip, task: ClipTask) -> Ready:
+        """Return a clip that can be solved.
+
+        Raises
+        ------
+        MotionEditError
+            All that an edit of the clip is refused for.
+        """
         spec, model = self.loaded.model, self.model
         facts = facts_of(
             clip,
@@ -142,10 +182,7 @@ class _Edit:
         facts.refuse_one_frame()
         projection, events = self._projection(facts, task)
         poses = kinematics.forward(projection.motion) if spec.timing == "normalized" else facts.poses
-        goals = clip_goals(self.loaded, model, facts, events=events, poses=poses)
-        bound = plausibility_bound(spec, model, projection.coefficients, asked=_asked_together(spec, goals))
-        held = Solving(spec, model, facts, projection, tuple(goal.request for goal in goals), bound).edit()
-        return self._outcome(facts, projection, held, goals, before=poses, bound=bound)
+        return Ready(facts, projection, clip_goals(self.loaded, model, facts, events=events, poses=poses), poses)
 
     def _projection(self, facts: ClipFacts, task: ClipTask) -> tuple[Projection, dict[str, float]]:
         """Return a clip in the model's coordinates, and the frames of its events."""

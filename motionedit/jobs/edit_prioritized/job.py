@@ -10,7 +10,7 @@ from motionedit.core.blocks import BLOCK_FRAMES, blocks_of, forward_blocks, fram
 from motionedit.core.body.steps import change_steps
 from motionedit.core.bvh import edited_pieces, unedited_bytes
 from motionedit.core.motion import Motion, scaled
-from motionedit.core.priorities.edit import PrioritizedEdit, RecruitingError, edit_by_priorities
+from motionedit.core.priorities.edit import PrioritizedEdit, edit_by_priorities
 from motionedit.core.priorities.settings import LayeredSettings, PaperFilter, Passes
 from motionedit.core.priorities.targets import Follows
 from motionedit.dataclass import dataclass, replace
@@ -29,7 +29,7 @@ from motionedit.jobs.edit_prioritized.body import sized_clip
 from motionedit.jobs.edit_prioritized.constraints import clip_constraints
 from motionedit.jobs.edit_prioritized.floors import refuse_floors_out_of_reach
 from motionedit.jobs.edit_prioritized.record import edit_record
-from motionedit.jobs.edit_prioritized.recruits import breach_error, breach_warnings, immovable_warnings, layer_lines
+from motionedit.jobs.edit_prioritized.recruits import breach_warnings, immovable_warnings, layer_lines, refuse_breaches
 from motionedit.jobs.edit_prioritized.reference import reference_facts, reference_files, refuse_unfit_reference
 from motionedit.jobs.edit_prioritized.rest_pose import moved_rest_pose
 from motionedit.jobs.edit_prioritized.standing import on_feet
@@ -114,15 +114,10 @@ class EditByPriorities:
         """Return the edited clip, and how near each constraint came."""
         if task.clip is None and task.source is not None and len(clip.text.file) > _LONG:
             clip.text.file.let_go(task.source)
-        sized, constraints = self.resolved(clip, task)
-        settings = self.settings(clip)
-        other = self._reference(clip, task)
-        if any(each.constraint.stands for each in constraints):
-            kept = sized.facts if other is None else other
-            sized, constraints = on_feet(self.loaded, sized, constraints, kept, curve=settings.curve)
+        sized, constraints, other = self.ready(clip, task)
         if not constraints:
             return self._unedited(clip, sized)
-        refuse_floors_out_of_reach(self.loaded, sized, [c.constraint for c in constraints], curve=settings.curve)
+        settings = self.settings(clip)
         before = feet_of(sized.facts, blocks_of(sized.facts.poses), masses=sized.masses)
         grips = grips_in(sized)
         # What is read off the input has been read, its phases with it: an edit of a long clip needs the room.
@@ -130,17 +125,13 @@ class EditByPriorities:
             sized.facts.forget_poses()
         _ = sized.facts.phases
         sized.facts.forget_poses()
-        try:
-            edit = edit_by_priorities(
-                sized.motion,
-                [c.constraint for c in constraints],
-                sized.body,
-                settings,
-                follows=Follows(sized.input, None if other is None else scaled(other.clip.motion, sized.scale)),
-            )
-        except RecruitingError as error:
-            asked = [c.constraint for c in constraints]
-            raise breach_error(self.loaded, error.breach, asked, sized.facts) from None
+        edit = edit_by_priorities(
+            sized.motion,
+            [c.constraint for c in constraints],
+            sized.body,
+            settings,
+            follows=Follows(sized.input, None if other is None else scaled(other.clip.motion, sized.scale)),
+        )
         return self._outcome(sized, constraints, edit, settings, before=before, grips=grips)
 
     def _unedited(self, clip: Clip, sized: SizedClip) -> Outcome:
@@ -152,7 +143,26 @@ class EditByPriorities:
             unedited_bytes(clip), record, warnings=sized.warnings, details=("no constraints: the same bytes",)
         )
 
-    def resolved(self, clip: Clip, task: ClipTask) -> tuple[SizedClip, list[ClipConstraint]]:
+    def ready(self, clip: Clip, task: ClipTask) -> tuple[SizedClip, list[ClipConstraint], ClipFacts | None]:
+        """Return a clip whose feet stand, the constraints that are left to solve, and the facts of its reference.
+
+        Raises
+        ------
+        MotionEditError
+            All that an edit of the clip is refused for.
+        """
+        curve = self.loaded.model.curve
+        sized, constraints = self._resolved(clip, task)
+        other = reference_facts(self.loaded, clip, task)
+        if any(each.constraint.stands for each in constraints):
+            kept = sized.facts if other is None else other
+            sized, constraints = on_feet(self.loaded, sized, constraints, kept, curve=curve)
+        asked = [each.constraint for each in constraints]
+        refuse_floors_out_of_reach(self.loaded, sized, asked, curve=curve)
+        refuse_breaches(self.loaded, sized, asked)
+        return sized, constraints, other
+
+    def _resolved(self, clip: Clip, task: ClipTask) -> tuple[SizedClip, list[ClipConstraint]]:
         """Return a clip in normalised metres, and the spec's constraints in it.
 
         Raises
@@ -167,14 +177,6 @@ class EditByPriorities:
         constraints = self._constraints(sized, task, faults)
         faults.raise_all(f"what the spec names and {task.label} lacks")
         return replace(sized, warnings=(*sized.warnings, *_warnings_of(constraints, sized.masses))), constraints
-
-    def _reference(self, clip: Clip, task: ClipTask) -> ClipFacts | None:
-        """Return the facts of the clip's reference, None where there is none."""
-        spec = self.loaded.model
-        if spec.reference is None:
-            return None
-        given = resolve.body(spec.body, clip.motion.skeleton, resolve.Place(self.loaded, ("body",), task.label))
-        return reference_facts(spec.reference, clip, task, up=spec.up, given=given)
 
     def _constraints(self, sized: SizedClip, task: ClipTask, faults: Faults) -> list[ClipConstraint]:
         spec = self.loaded.model

@@ -6,6 +6,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from motionedit.core.body.bones import below
+from motionedit.core.priorities.edit import RecruitingError, recruit
 from motionedit.core.priorities.kinds.constraint import Movable
 from motionedit.core.priorities.recruiting import Recruits
 from motionedit.core.priorities.solver.problem import order_of_layers
@@ -20,14 +21,33 @@ if TYPE_CHECKING:
     from motionedit.core.skeleton import Skeleton
     from motionedit.errors import MotionEditError
     from motionedit.jobs.clip.facts import ClipFacts
+    from motionedit.jobs.edit_prioritized.body import SizedClip
     from motionedit.spec.edit_prioritized import EditPrioritizedSpec
     from motionedit.spec.load import LoadedSpec
 
 
-def breach_error(
+def refuse_breaches(
+    loaded: LoadedSpec[EditPrioritizedSpec], sized: SizedClip, constraints: Sequence[Constraint]
+) -> None:
+    """Refuse a breach of the recruiting rule where the spec wants none.
+
+    Raises
+    ------
+    SpecError
+        At the recruiting of the higher constraint.
+    """
+    rule = loaded.model.recruiting_rule
+    if rule != "error" or not constraints:
+        return
+    try:
+        recruit(constraints, sized.motion, sized.body, rule=rule)
+    except RecruitingError as error:
+        raise _breach_error(loaded, error.breach, constraints, sized.facts) from None
+
+
+def _breach_error(
     loaded: LoadedSpec[EditPrioritizedSpec], breach: Breach, constraints: Sequence[Constraint], facts: ClipFacts
 ) -> MotionEditError:
-    """Return the error of a breach where the spec wants none, at the recruiting of the higher constraint."""
     keys = loaded.model.constraints[breach.higher].keys
     place = resolve.recruit_place(resolve.Place(loaded, keys, facts.clip.label))
     higher, lower = (constraints[i].name for i in (breach.higher, breach.lower))

@@ -9,12 +9,12 @@ from motionedit.dataclass import replace
 from motionedit.errors import ClipError
 from motionedit.jobs.batch.one_clip import read_task
 from motionedit.jobs.batch.plan import ClipTask, folder_clips
+from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.facts import facts_of
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from motionedit.core.body.anatomy import GivenBody
     from motionedit.core.bvh import Clip
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.spec.edit_prioritized import EditPrioritizedSpec
@@ -53,20 +53,24 @@ def reference_files(reference: Path | None) -> list[Path]:
     return [clip.source for clip in folder_clips(reference) if clip.source]
 
 
-def reference_facts(
-    reference: Path, clip: Clip, task: ClipTask, *, up: str, given: GivenBody, lenient: bool = False
-) -> ClipFacts:
+def reference_facts(loaded: LoadedSpec[EditPrioritizedSpec], clip: Clip, task: ClipTask) -> ClipFacts | None:
     """Return the facts of a clip's reference: the file itself, or the clip of the same relative name in a folder.
+
+    None where the spec gives none.
 
     Raises
     ------
     ClipError
         It is not there, cannot be read, or is no version of the clip: another skeleton, frame count or rate.
     """
+    spec = loaded.model
+    reference = spec.reference
+    if reference is None:
+        return None
     path = reference / task.relative if reference.is_dir() else reference
     if not path.is_file():
         raise ClipError(f"has no reference: there is no {path}", file=task.label)
-    other = read_task(ClipTask(path, str(path), None, task.relative), lenient=lenient)
+    other = read_task(ClipTask(path, str(path), None, task.relative), lenient=False)
     mine, theirs = clip.motion, other.motion
     if not same_skeleton(mine.skeleton, theirs.skeleton):
         raise ClipError(f"its reference {path} has another skeleton", file=task.label)
@@ -76,4 +80,5 @@ def reference_facts(
             f"{mine.frame_rate:.6g} Hz",
             file=task.label,
         )
-    return facts_of(replace(other, label=str(path)), up=up, given=given)
+    given = resolve.body(spec.body, mine.skeleton, resolve.Place(loaded, ("body",), task.label))
+    return facts_of(replace(other, label=str(path)), up=spec.up, given=given)

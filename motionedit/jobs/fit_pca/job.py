@@ -10,7 +10,6 @@ from motionedit.core.body.ground import axis_vector
 from motionedit.core.pca.database import FitSettings, build_model, database_space
 from motionedit.core.pca.fit import AllTheSameError, ComponentCount, TooFewComponentsError
 from motionedit.core.pca.model_file import model_bytes
-from motionedit.core.pca.streaming import MOST_COMPONENTS
 from motionedit.dataclass import dataclass
 from motionedit.errors import ModelError, UsageError
 from motionedit.jobs.batch.files import clean_leftovers
@@ -19,8 +18,8 @@ from motionedit.jobs.batch.outputs import is_of_another_kind, refuse_clashes
 from motionedit.jobs.batch.pool import threads_within
 from motionedit.jobs.clip.kept_rules import body_said, kept_body, refuse_another_up, with_body
 from motionedit.jobs.clip.unit import unit_doubts
+from motionedit.jobs.fit_pca.asked import excluded_joints, too_few_components
 from motionedit.jobs.fit_pca.database import Motions, database_in
-from motionedit.jobs.fit_pca.excluded import excluded_joints
 from motionedit.jobs.fit_pca.report import fit_report
 from motionedit.jobs.normalize.normalization_file import NAME
 from motionedit.spec.fit_pca import FitPcaSpec
@@ -31,7 +30,6 @@ if TYPE_CHECKING:
     from motionedit.core.body.anatomy import GivenBody
     from motionedit.core.pca.model import MotionModel
     from motionedit.core.skeleton import Skeleton
-    from motionedit.errors import MotionEditError
     from motionedit.jobs.batch.plan import RunOptions
     from motionedit.jobs.fit_pca.database import Database
     from motionedit.jobs.fit_pca.report import FitReport
@@ -107,7 +105,7 @@ def fit(database: Database, loaded: LoadedSpec[FitPcaSpec] | None, *, options: R
             rules=with_body(normalization.rules, spec.body),
         )
     except TooFewComponentsError as error:
-        raise _too_few(loaded, spec, count, error.available) from None
+        raise too_few_components(loaded, spec, count, error.available) from None
     except AllTheSameError as error:
         raise ModelError(f"{error}: there is nothing to learn; give clips that differ", file=database.label) from error
     doubts = unit_doubts(leg_length, spec.unit)
@@ -120,10 +118,3 @@ def _body(loaded: LoadedSpec[FitPcaSpec] | None, database: Database, skeleton: S
     if loaded is None:
         return kept_body(rules, skeleton, **where)
     return body_said(loaded, rules, skeleton, **where)
-
-
-def _too_few(loaded: LoadedSpec[FitPcaSpec] | None, spec: FitPcaSpec, clips: int, available: int) -> MotionEditError:
-    message = f"{clips} clips have {available} components, not {spec.components}"
-    if available == MOST_COMPONENTS:
-        message = f"of {clips} clips at most {available} components are kept, not {spec.components}"
-    return ModelError(message) if loaded is None else loaded.error(("components",), message)
