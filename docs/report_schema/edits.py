@@ -13,6 +13,7 @@ from report_schema.forms import (
     STRING,
     UNIT,
     VERIFY,
+    WARNINGS,
     Schema,
     count,
     flag,
@@ -105,6 +106,7 @@ _PC_CLIP = {
         ),
         "where hands: keep looked for them, else null",
     ),
+    **WARNINGS,
     **VERIFY,
 }
 
@@ -136,6 +138,7 @@ _PRIORITIZED_CLIP = {
     "metrics": _metrics({"com_shift_max": number("how far the center of mass moved")}),
     "constraints": list_of(part("constraint"), "the spec's constraints, in its order"),
     **_SOLVED,
+    **WARNINGS,
     **VERIFY,
 }
 

@@ -117,6 +117,7 @@ def measures(about: str, form: Callable[[str], Schema], *, step: str) -> Schema:
 CLIP = {"clip": text("the clip as it was named on the command line, or found in a folder")}
 OUTPUT = {"output": text_or_null("what was written; null for standard output and where nothing was")}
 MESSAGE = {"message": text_or_null("why, in words; null where all is well")}
+WARNINGS = {"warnings": list_of({"type": "string"}, "what was warned of, one line each")}
 UNIT = {"unit": text_or_null("the spec's unit")}
 VERIFY = {
     "verify": obj(

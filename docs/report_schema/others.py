@@ -12,6 +12,7 @@ from report_schema.forms import (
     STRING,
     UNIT,
     VERIFY,
+    WARNINGS,
     Schema,
     count,
     flag,
@@ -53,6 +54,11 @@ MODEL: Schema = {
             ),
         },
     ),
+    "streamed": obj(
+        "how components of more than 2,000 clips were found",
+        {"passes": count("over the clips"), "residual": number("the largest, over the first variance")},
+    ),
+    **WARNINGS,
 }
 
 _NORMALIZED_CLIP = {
@@ -65,6 +71,7 @@ _NORMALIZED_CLIP = {
     "first_frame": count("the input's first frame after a rest pose"),
     "clip_sha256": text("SHA-256 of the normalized clip"),
     "events": map_of(NUMBER, "each event's frame in the input, to a part of a frame"),
+    **WARNINGS,
     **VERIFY,
 }
 
@@ -127,7 +134,7 @@ _CHECKED_CLIP = {
     "measures": map_of(NUMBER, "what limits are set on, by name"),
     "passed": list_of(STRING, "the measures whose limit is passed"),
     "spec_errors": list_of(STRING, "what the spec names and the clip lacks, a line each"),
-    "warnings": list_of(STRING, "one line each"),
+    **WARNINGS,
 }
 _SHOWN_CLIP = {
     **CLIP,
@@ -153,7 +160,7 @@ _SHOWN_CLIP = {
     "hinges": list_of(_HINGE, "joints that bend about one axis"),
     "defects": list_of(_DEFECT, "what looks like a fault of the capture"),
     "metrics": measures("of the clip as it is", number, step="a joint against its parent"),
-    "warnings": list_of(STRING, "one line each"),
+    **WARNINGS,
     "contacts": list_of(_CONTACT, "with --contacts: heels and toes, each by itself"),
     "plants": list_of(_PLANT, "with --contacts: whole feet"),
     "poses": list_of(part("pose"), "with --at and --joint"),

@@ -37,7 +37,7 @@ def finish_batch(result: BatchResult, options: RunOptions, *, command: str, spec
     elif not on_stdout and result.paths:
         _list(result.paths)
     if options.report is not None:
-        report = report_pieces(command, result.records, spec=spec)
+        report = report_pieces(command, result.records, spec=spec, more=result.more)
         write_report(report, options.report, dry_run=options.dry_run)
     return result.exit_code
 

@@ -64,6 +64,7 @@ def fit_report(fitted: FittedModel, spec: FitPcaSpec, *, doubts: Sequence[str] =
     if fitted.streamed is not None:
         record["streamed"] = {"passes": fitted.streamed.passes, "residual": fitted.streamed.residual}
     warnings = [*doubts, *_warnings(fitted, spec)]
+    record["warnings"] = warnings
     rows = _rows(pca)
     shown = rows if verbosity > 0 else rows[:MOST_ROWS]
     notes = [*_rest_note(pca, len(shown)), *_notes(fitted, spec)]
