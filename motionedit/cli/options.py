@@ -130,7 +130,11 @@ overwrite_option = click.option(
     default=True,
     help="Refuse, before any work, if an output or the report exists.",
 )
-dry_run_option = click.option("--dry-run", is_flag=True, help="Print what would be done; write nothing.")
+dry_run_option = click.option(
+    "--dry-run",
+    is_flag=True,
+    help="Print what would be done with each clip: events, goals, or layers with points and joints; write nothing.",
+)
 
 preview_option = click.option(
     "--preview", is_flag=True, help="Write a page next to each clip: input, edit, goals and constraints (NAME.html)."

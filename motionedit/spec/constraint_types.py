@@ -117,6 +117,8 @@ class AimConstraint(Recruiting, Placed, EffectorItem, ConstraintItem):
         yield from super().faults_between_keys(data)
         if "target" in data and "relative_to" in data:
             yield Fault("stands beside target, whose frame it is in; give one of them", ("relative_to",))
+        if _joints_of(data.get("effector")) & _joints_of(data.get("target")):
+            yield Fault("is the joint that looks, which never moves against itself; name another joint", ("target",))
         if "target" not in data and not data.get("points"):
             yield Fault("needs one of target, points: what shall be looked at")
         for i, point in mappings_in(data, "points"):

@@ -256,9 +256,7 @@ class EditByPriorities:
             result.status,
             (*sized.warnings, *immovable, *breaches, *rest, *loose, *result.warnings),
             motion=_in_clip_units(edit, sized, slice(None)) if changed and self.verify else None,
-            details=(*layer_lines(asked, edit.recruits, sized.body.hinges, facts), *breaches)
-            if self.tells_plan
-            else (),
+            details=(*layer_lines(asked, edit.recruits, sized), *breaches) if self.tells_plan else (),
         )
 
     def _about(self, sized: SizedClip, before: Trace, after: Trace, steps: Steps) -> dict[str, Any]:
