@@ -183,6 +183,29 @@ def test_every_key_says_what_it_means():
             assert value.get("description") or "$ref" in value, f"{path}: {key}"
 
 
+# Of numbers: what they are measured in, and keys of those that have no unit.
+UNITS = re.compile(r"clip units|degrees|\b(m|m/s|Hz|seconds|share|standard deviations)\b")
+PURE = {
+    *("explained_variance", "times", "residual", "alpha", "coefficients"),
+    *("mahalanobis", "median", "axis", "quaternion"),
+}
+
+
+def is_numeric(schema):
+    if "anyOf" in schema:
+        return any(map(is_numeric, schema["anyOf"]))
+    if schema.get("type") == "array":
+        return is_numeric(schema["items"])
+    return "number" in (schema.get("type"), *(schema.get("type") or ()))
+
+
+def test_every_number_says_its_unit():
+    for path, schema in objects(SCHEMA):
+        for key, value in schema["properties"].items():
+            if is_numeric(value) and not PURE & {key, *path.split("/")}:
+                assert UNITS.search(value["description"]), f"{path}: {key}"
+
+
 def test_the_page_on_files_names_every_key_of_the_reports():
     page = (ROOT / "docs" / "files.md").read_text(encoding="utf-8").partition("## The report")[2].partition("\n## ")[0]
     named = set(re.findall(r"\w+", " ".join(re.findall(r"`([^`]+)`", page))))
