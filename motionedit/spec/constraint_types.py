@@ -6,7 +6,7 @@ from typing import Any, Literal
 from motionedit.spec import kinds
 from motionedit.spec.constraints import TYPES, ConstraintItem, Placed, Recruiting, type_words
 from motionedit.spec.faults import Fault, FaultyValueError, faulty, show
-from motionedit.spec.items import EffectorItem
+from motionedit.spec.items import EFFECTOR_KEYS, EffectorItem
 from motionedit.spec.model import Context, Kind, mappings_in, spec_key
 from motionedit.spec.nested import reference_to
 from motionedit.spec.plants import PLANTS, PlantsSpec
@@ -262,16 +262,19 @@ CONSTRAINT = Kind(
 
 
 def _foreign_keys(type_name: str) -> dict[str, str]:
-    """Return what to say of each key that only other types have."""
+    """Return what to say of each key that stands elsewhere: in points, in the effector, in other types."""
     owners: dict[str, list[str]] = {}
     for other, model in TYPES.items():
         for key in model.key_names():
             owners.setdefault(key, []).append(other)
-    return {
-        key: f"belongs to {type_words(names)}, not {type_name}"
-        for key, names in owners.items()
-        if type_name not in names
-    }
+    model = TYPES[type_name]
+    foreign = {key: f"belongs to {type_words(names)}, not {type_name}" for key, names in owners.items()}
+    if "effector" in model.key_names():
+        foreign |= EFFECTOR_KEYS
+    if "points" in model.key_names():
+        foreign |= {key: f"belongs to a point, as points: [{{{key}: ...}}]" for key in ("at", "hold", "during")}
+        foreign |= {key: f"belongs to a point, as points: [{{at: ..., {key}: ...}}]" for key in model.point_keys}
+    return {key: text for key, text in foreign.items() if key not in model.key_names()}
 
 
 for _name, _model in TYPES.items():
