@@ -13,6 +13,7 @@ from motionedit.cli.options import (
     jobs_option,
     lenient_option,
     model_option,
+    reference_option,
     spec_option,
     test_report_option,
     up_option,
@@ -57,6 +58,31 @@ def _limit_options(function: Callable[..., int]) -> Callable[..., int]:
     return collected
 
 
+class Against(NamedTuple):
+    """The spec that clips are held against, and what its command is given beside it."""
+
+    spec: Path | None
+    model: Path | None
+    reference: str | None
+
+
+def _spec_options(function: Callable[..., int]) -> Callable[..., int]:
+    """Return a command with the options of a spec, which it is given as one argument."""
+
+    @spec_option(required=False)
+    @model_option("The model that edit-pc is to use: what its spec asks of it is checked, too.", required=False)
+    @reference_option("What edit-prioritized is to have as its reference, in place of the spec's.")
+    @functools.wraps(function)
+    def collected(spec_path: Path | None, model: Path | None, reference: str | None, **values: Any) -> int:  # noqa: ANN401  as above
+        beside = {"-m": model, "--reference": reference}
+        for name, value in beside.items():
+            if value is not None and spec_path is None:
+                raise click.UsageError(f"{name} stands beside a spec: give -s too")
+        return function(against=Against(spec_path, model, reference), **values)
+
+    return collected
+
+
 @click.command(
     "check",
     epilog="""\b
@@ -64,8 +90,7 @@ def _limit_options(function: Callable[..., int]) -> Callable[..., int]:
       motionedit check takes/ --limit foot_skate_ratio=0.1""",
 )
 @clips_argument
-@spec_option(required=False)
-@model_option("The model that edit-pc is to use: what its spec asks of it is checked, too.", required=False)
+@_spec_options
 @_limit_options
 @jobs_option
 @up_option
@@ -74,8 +99,7 @@ def _limit_options(function: Callable[..., int]) -> Callable[..., int]:
 @verbosity_options
 def command(
     clips: tuple[Path, ...],
-    spec_path: Path | None,
-    model: Path | None,
+    against: Against,
     limits: Limits,
     jobs: int,
     up: str,
@@ -100,13 +124,12 @@ def command(
     from motionedit.jobs.check import job as check
     from motionedit.jobs.check.specs import spec_check
 
-    if model is not None and spec_path is None:
-        raise click.UsageError("-m is for a spec of edit-pc: give -s too")
     given = [task.source for task in find_clips(clips)]
-    refuse_clashes([("the report", report)], [*given, spec_path, model, limits.file])
+    reference = None if against.reference is None else Path(against.reference)
+    refuse_clashes([("the report", report)], [*given, against.spec, against.model, reference, limits.file])
     held = check.limits_of(limits.pairs, limits.file)
     found: list[Checked] = []
-    spec = None if spec_path is None else spec_check(spec_path, model)
+    spec = None if against.spec is None else spec_check(against.spec, against.model, against.reference)
     for one in check.run(clips, limits=held, check=spec, up=up, lenient=lenient, jobs=jobs):
         found.append(one)
         if one.line and str(report) != "-":

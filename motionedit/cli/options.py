@@ -193,6 +193,11 @@ def model_option(text: str = "The model that fit-pca wrote.", *, required: bool 
     )
 
 
+def reference_option(text: str) -> Decorator:
+    """Return the option --reference."""
+    return click.option("--reference", metavar="PATH", help=text)
+
+
 def output_option(metavar: str, text: str) -> Decorator:
     """Return the option -o; its value is the text as typed, since ``-`` is no path."""
     return click.option("-o", "--output", required=True, metavar=metavar, callback=not_empty, help=text)

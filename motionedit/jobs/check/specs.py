@@ -113,29 +113,34 @@ class SpecCheck:
         EditByPriorities(self.loaded, self.others).ready(facts.clip, task)
 
 
-def spec_check(spec: Path, model: Path | None = None) -> SpecCheck:
-    """Return what holds clips against a spec, which is read whole; `model` is that of edit-pc.
+def spec_check(spec: Path, model: Path | None = None, reference: str | None = None) -> SpecCheck:
+    """Return what holds clips against a spec, which is read whole.
+
+    `model` is that of edit-pc, `reference` that of edit-prioritized, as its option has it.
 
     Raises
     ------
     MotionEditError
         Its faults, whatever the clips are.
     UsageError
-        A model stands beside a spec of another command.
+        A model or a reference stands beside a spec of another command.
     """
     from motionedit.spec import SPEC_COMMANDS
-    from motionedit.spec.load import load_spec, spec_command
+    from motionedit.spec.load import load_spec, spec_command, with_reference
 
     command = spec_command(spec, SPEC_COMMANDS)
     loaded: LoadedSpec[Any] = load_spec(spec, command)  # type: ignore[call-overload]  # one of them
+    for option, value, owner in (("-m", model, "edit-pc"), ("--reference", reference, "edit-prioritized")):
+        if value is not None and command != owner:
+            raise UsageError(f"{option} {value}: {spec} is a spec of {command}; it goes with one of {owner}")
+    if reference is not None:
+        loaded = with_reference(loaded, reference)
     if command == "edit-prioritized":
         from motionedit.jobs.edit_prioritized.reference import refuse_unfit_reference
 
         refuse_unfit_reference(loaded)
     if model is None:
         return SpecCheck(command, loaded)
-    if command != "edit-pc":
-        raise UsageError(f"-m {model}: {spec} is a spec of {command}; a model goes with one of edit-pc")
     from motionedit.core.pca.model_file import read_model
     from motionedit.jobs.edit_pc.job import edit_by_components
 
