@@ -41,6 +41,7 @@ FAULTS = {
         (f"{HIT}\nevents: {{hit: 0}}", "events.hit"),
         (f"{HIT}\ncomponents: 99", "components"),
         (f"{HIT}\nup: z", "up"),
+        (f"{HIT}\nevents: {{top: 30, hti: 80}}", "events.hti"),
     ],
     "edit-prioritized": [
         (f"constraints: [{HAND.replace('LeftHand', 'Hed')}]", "constraints.0.effector"),
