@@ -13,6 +13,7 @@ from report_schema.forms import (
     STRING,
     UNIT,
     VERIFY,
+    WARNINGS,
     Schema,
     count,
     flag,
@@ -34,19 +35,19 @@ def _metrics(more: Schema) -> Schema:
     about = "{} the edit; null where it has another timing"
     steps = {"before": "a joint against its parent", "after": "the change that the edit made of such a turn"}
     sides = {side: measures(about.format(side), number_or_null, step=step) for side, step in steps.items()}
-    drift = {"foot_drift_max": number_or_null("how far a planted point of the input moved")}
+    drift = {"foot_drift_max": number_or_null("how far a planted point of the input moved, clip units")}
     return obj("side effects of the edit", {**sides, **drift, **more})
 
 
 _ASKED = {
     "name": text("its name in the spec"),
     "priority": {"type": "integer", "description": "larger is more important"},
-    "error_max": number_or_null("the largest distance from where its effector was wanted; null for what only turns"),
-    "error_rms": number_or_null("root mean square of these distances"),
-    "error_angle_max": number_or_null("the largest angle from what was wanted; null where no turn was asked for"),
+    "error_max": number_or_null("the largest distance from where it was wanted, clip units; null for what only turns"),
+    "error_rms": number_or_null("root mean square of these distances, clip units"),
+    "error_angle_max": number_or_null("the largest angle from what was wanted, degrees; null where no turn was asked"),
     "frame": count("a goal's frame, a constraint's worst"),
-    "tolerance": number_or_null("up to which distance it counts as met; null for none"),
-    "tolerance_angle": number_or_null("up to which angle it counts as met; null for none"),
+    "tolerance": number_or_null("up to which distance it counts as met, clip units; null for none"),
+    "tolerance_angle": number_or_null("up to which angle it counts as met, degrees; null for none"),
     "status": part("goal_status"),
     "gave_way_to": list_of(STRING, "names of those of the same or a higher priority for which it is missed"),
 }
@@ -61,7 +62,7 @@ _PC_CLIP = {
     "goals": list_of(part("goal"), "the spec's goals, in its order"),
     "iterations": count("of the solver"),
     "stopped": word("why the solver stopped", "converged", "stalled", "bound", "iterations"),
-    "history": list_of(NUMBER, "the norm of all goals' weighted errors at the start and after each iteration"),
+    "history": list_of(NUMBER, "the norm of all goals' weighted errors, clip units, at first and after each iteration"),
     "alpha": obj(
         "the clip's principal coefficients",
         {side: list_of(NUMBER, f"{side} the edit") for side in ("before", "after")},
@@ -81,7 +82,7 @@ _PC_CLIP = {
         "the change under the prior of method map",
         {
             "norm": number_or_null("in standard deviations of the database; null by another method"),
-            "bound": number_or_null("the largest that is allowed; null for any"),
+            "bound": number_or_null("the largest that is allowed, standard deviations; null for any"),
             "residual_share": number_or_null("the share of the change's variance that may leave the components"),
         },
     ),
@@ -100,11 +101,12 @@ _PC_CLIP = {
                     ),
                     "in order",
                 ),
-                "apart_max": number_or_null("how far the edit leaves them apart; null where no grip was kept"),
+                "apart_max": number_or_null("how far they are left apart, clip units; null where no grip was kept"),
             },
         ),
         "where hands: keep looked for them, else null",
     ),
+    **WARNINGS,
     **VERIFY,
 }
 
@@ -133,9 +135,10 @@ _PRIORITIZED_CLIP = {
     "status": part("edit_status"),
     **MESSAGE,
     **UNIT,
-    "metrics": _metrics({"com_shift_max": number("how far the center of mass moved")}),
+    "metrics": _metrics({"com_shift_max": number("how far the center of mass moved, clip units")}),
     "constraints": list_of(part("constraint"), "the spec's constraints, in its order"),
     **_SOLVED,
+    **WARNINGS,
     **VERIFY,
 }
 
@@ -152,12 +155,12 @@ _CONSTRAINT = {
     "frames": obj(
         "by frame from first_frame on",
         {
-            "error": numbers_or_null("the distance from where its effector was wanted"),
-            "error_angle": numbers_or_null("the angle from what was wanted"),
+            "error": numbers_or_null("the distance from where its effector was wanted, clip units"),
+            "error_angle": numbers_or_null("the angle from what was wanted, degrees"),
             "target": or_null(
                 {"type": "array", "items": POINT},
-                "where its effector was wanted, in the world; along axes that are free, where it is. What an aim looks "
-                "at, a com's center of mass; null for what only turns",
+                "where its effector was wanted, in the world, clip units; along axes that are free, where it is. What "
+                "an aim looks at, a com's center of mass; null for what only turns",
             ),
         },
     ),
@@ -172,7 +175,7 @@ EDIT_PARTS: Schema = {
     "goal_status": word("met, missed, or out of reach", "ok", "out_of_tolerance", "unreachable"),
     "effector": obj(
         "A point fixed in a joint's frame.",
-        {"joint": text("the joint's name"), "offset": point("the point in the joint's frame")},
+        {"joint": text("the joint's name"), "offset": point("the point in the joint's frame, clip units")},
     ),
     "span": obj(
         "A point of a constraint.",
@@ -187,7 +190,7 @@ EDIT_PARTS: Schema = {
         {
             **_ASKED,
             "effector": part("effector"),
-            "target": or_null(POINT, "where its effector was wanted, in the world; null for what only turns"),
+            "target": or_null(POINT, "where it was wanted, in the world, clip units; null for what only turns"),
         },
     ),
     "constraint": obj("A constraint of edit-prioritized.", _CONSTRAINT, optional=("frames",)),

@@ -98,7 +98,7 @@ def measures(about: str, form: Callable[[str], Schema], *, step: str) -> Schema:
     return obj(
         about,
         {
-            "foot_slide_max": form("the fastest horizontal speed of a planted ankle or toe, per second"),
+            "foot_slide_max": form("the fastest horizontal speed of a planted ankle or toe, clip units per second"),
             "foot_skate_mean": form("mean speed of toes below 5 cm, m/s at leg length 0.85 m"),
             "foot_skate_ratio": form("share of frames with a toe below 5 cm in which it is faster than 0.2 m/s"),
             "foot_sliding_share": form("share of planted frames in which the toe moves by more than 1 cm/s"),
@@ -106,7 +106,7 @@ def measures(about: str, form: Callable[[str], Schema], *, step: str) -> Schema:
             "floor_penetration_share": form("share of frames in which a heel or toe is more than 1 cm below up = 0"),
             "floor_penetration_max": form("how deep below up = 0, m at leg length 0.85 m"),
             "foot_floating_max": form("how high above up = 0 the highest planted toe is, m at leg length 0.85 m"),
-            "jerk_rms": form("root mean square third difference of all joints over time, per second cubed"),
+            "jerk_rms": form("root mean square third difference of all joints over time, clip units per second cubed"),
             "step_max": form(f"the largest turn of {step} from frame to frame, degrees in a sixtieth of a second"),
             "step_frame": or_null(INTEGER, "the frame into which it steps; null where nothing does"),
             "step_joint": text_or_null("the joint that steps; null where none does"),
@@ -117,12 +117,13 @@ def measures(about: str, form: Callable[[str], Schema], *, step: str) -> Schema:
 CLIP = {"clip": text("the clip as it was named on the command line, or found in a folder")}
 OUTPUT = {"output": text_or_null("what was written; null for standard output and where nothing was")}
 MESSAGE = {"message": text_or_null("why, in words; null where all is well")}
+WARNINGS = {"warnings": list_of({"type": "string"}, "what was warned of, one line each")}
 UNIT = {"unit": text_or_null("the spec's unit")}
 VERIFY = {
     "verify": obj(
         "what bvhio, an independent reader, found in the file (--verify)",
         {
-            "distance": number("the largest distance of a joint from its place"),
+            "distance": number("the largest distance of a joint from its place, clip units"),
             "frames_skipped": count("frames at gimbal lock, which bvhio reads wrongly"),
         },
     )

@@ -12,6 +12,7 @@ from report_schema.forms import (
     STRING,
     UNIT,
     VERIFY,
+    WARNINGS,
     Schema,
     count,
     flag,
@@ -38,14 +39,14 @@ MODEL: Schema = {
     "left_out": obj(
         "each clip left out in turn and looked for by the others",
         {
-            "share": number("of an unseen clip, what the database does not explain, 0 to 1"),
+            "share": number("share of an unseen clip that the database does not explain, 0 to 1"),
             "furthest": text("the clip that is furthest from the others"),
             "clips": list_of(
                 obj(
                     "a clip of the database",
                     {
                         "clip": text("its name"),
-                        "share": number("of it, what the others do not explain"),
+                        "share": number("share of it that the others do not explain, 0 to 1"),
                         "times": number("how far it is from them, over the median of all"),
                     },
                 ),
@@ -53,6 +54,11 @@ MODEL: Schema = {
             ),
         },
     ),
+    "streamed": obj(
+        "how components of more than 2,000 clips were found",
+        {"passes": count("over the clips"), "residual": number("the largest, over the first variance")},
+    ),
+    **WARNINGS,
 }
 
 _NORMALIZED_CLIP = {
@@ -65,19 +71,20 @@ _NORMALIZED_CLIP = {
     "first_frame": count("the input's first frame after a rest pose"),
     "clip_sha256": text("SHA-256 of the normalized clip"),
     "events": map_of(NUMBER, "each event's frame in the input, to a part of a frame"),
+    **WARNINGS,
     **VERIFY,
 }
 
 _UNIT = obj(
     "the unit that makes a leg nearest 0.85 m",
-    {"name": text("such as cm"), "leg": number("the leg in metres"), "likely": flag("that leg is a human's")},
+    {"name": text("such as cm"), "leg": number("the leg, m"), "likely": flag("that leg is a human's")},
 )
 _HINGE = obj(
     "A joint that bends about one axis.",
     {
         "joint": text("its name"),
         "axis": point("about which it bends"),
-        "limits": list_of(NUMBER, "between which angles it bends in the clip", 2),
+        "limits": list_of(NUMBER, "between which angles it bends in the clip, degrees", 2),
     },
 )
 _DEFECT = obj(
@@ -86,7 +93,7 @@ _DEFECT = obj(
         "joint": text("its name"),
         "frames": list_of(INTEGER, "the frames into which it jumps"),
         "frame": count("the frame of the largest jump"),
-        "angle": number("how far it jumps there"),
+        "angle": number("how far it jumps there, degrees"),
         "flips": flag("it jumps to and fro"),
     },
 )
@@ -97,8 +104,8 @@ _CONTACT = obj(
         "part": word("of it", "heel", "toe"),
         "joint": text("its ankle or toe; the ankle where its end site is the toe"),
         "frames": list_of(INTEGER, "from, to, both in", 2),
-        "seconds": number("how long"),
-        "height": number("where it stands, along up"),
+        "seconds": number("how long, seconds"),
+        "height": number("where it stands along up, clip units"),
     },
 )
 _SPAN = list_of(INTEGER, "from, to, both in", 2)
@@ -107,7 +114,7 @@ _PLANT = obj(
     {
         "foot": word("which", "left", "right"),
         "frames": _SPAN,
-        "seconds": number("how long"),
+        "seconds": number("how long, seconds"),
         "heel": list_of(_SPAN, "the phases in which its heel stands"),
         "toe": list_of(_SPAN, "the phases in which its toe stands"),
         "held": obj(
@@ -124,10 +131,10 @@ _CHECKED_CLIP = {
     "up": text("the up axis with its sign, such as y or -z"),
     "unit": or_null(_UNIT, "null where the skeleton has no length"),
     "found": list_of(word("a part of the body", "legs", "arms", "head"), "what of a body was found"),
-    "measures": map_of(NUMBER, "what limits are set on, by name"),
+    "measures": map_of(NUMBER, "what limits are set on, by name, in the units of `info`'s metrics"),
     "passed": list_of(STRING, "the measures whose limit is passed"),
     "spec_errors": list_of(STRING, "what the spec names and the clip lacks, a line each"),
-    "warnings": list_of(STRING, "one line each"),
+    **WARNINGS,
 }
 _SHOWN_CLIP = {
     **CLIP,
@@ -138,11 +145,11 @@ _SHOWN_CLIP = {
     "frame_time": number("seconds from frame to frame"),
     "duration": number("seconds from the first frame to the last"),
     "up": text("the up axis with its sign, such as y or -z"),
-    "heading": number("where the character faces at the first frame after a rest pose"),
+    "heading": number("where the character faces, degrees, at the first frame after a rest pose"),
     "rest_pose_frames": count("frames of a rest pose in front of the take"),
     "travel_joint": text("the joint whose translation carries the travel"),
-    "leg_length": number("from the top of a leg to its ankle"),
-    "height": number("of the skeleton"),
+    "leg_length": number("from the top of a leg to its ankle, clip units"),
+    "height": number("of the skeleton, clip units"),
     "unit": or_null(_UNIT, "null where the skeleton has no length"),
     "anatomy": map_of(
         {"anyOf": [map_of({"type": ["string", "null"]}, "the joint of each part"), STRING, {"type": "null"}]},
@@ -153,7 +160,7 @@ _SHOWN_CLIP = {
     "hinges": list_of(_HINGE, "joints that bend about one axis"),
     "defects": list_of(_DEFECT, "what looks like a fault of the capture"),
     "metrics": measures("of the clip as it is", number, step="a joint against its parent"),
-    "warnings": list_of(STRING, "one line each"),
+    **WARNINGS,
     "contacts": list_of(_CONTACT, "with --contacts: heels and toes, each by itself"),
     "plants": list_of(_PLANT, "with --contacts: whole feet"),
     "poses": list_of(part("pose"), "with --at and --joint"),
@@ -164,20 +171,20 @@ def _transform(about: str) -> Schema:
     return obj(
         about,
         {
-            "position": point("of the effector"),
-            "euler": point("about x, y, z"),
+            "position": point("of the effector, clip units"),
+            "euler": point("about x, y, z, degrees"),
             "order": text("of the angles, as BVH channels"),
             "quaternion": list_of(NUMBER, "w, x, y, z", 4),
         },
     )
 
 
-def _difference(about: str) -> Schema:
+def _difference(about: str, unit: str) -> Schema:
     keys = {
-        "value": number("how large it is"),
+        "value": number(f"how large it is, {unit}"),
         "frame": count("where"),
         "joint": text("of which joint"),
-        "tolerance": number("above which it counts"),
+        "tolerance": number(f"above which it counts, {unit}"),
     }
     return or_null(obj("The largest difference.", keys), about)
 
@@ -204,15 +211,15 @@ OTHER_PARTS: Schema = {
             "parent": text_or_null("null for a root"),
             "depth": count("joints above it"),
             "channels": list_of(STRING, "in the file's order"),
-            "offset": point("from its parent"),
-            "end_sites": list_of(POINT, "offsets of its end sites"),
+            "offset": point("from its parent, clip units"),
+            "end_sites": list_of(POINT, "offsets of its end sites, clip units"),
         },
     ),
     "pose": obj(
         "Where an effector is.",
         {
             "at": count("the frame"),
-            "seconds": number("its time"),
+            "seconds": number("its time, seconds"),
             "effector": {"type": ["string", "object"], "description": "as a spec says it"},
             "world": _transform("in the world"),
             "heading": _transform("in the heading frame"),
@@ -224,8 +231,8 @@ OTHER_PARTS: Schema = {
             "clip": text("the path below the two folders, or B's"),
             "status": word("what came of it", "same", "different", "missing", "not_comparable"),
             **MESSAGE,
-            "position": _difference("of joints' world positions; null where nothing was compared"),
-            "angle": _difference("of joints' angles; null where nothing was compared"),
+            "position": _difference("of joints' world positions; null where nothing was compared", "clip units"),
+            "angle": _difference("of joints' angles; null where nothing was compared", "degrees"),
         },
     ),
 }

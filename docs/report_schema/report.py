@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from motionedit.report.record import SCHEMA
 from report_schema.edits import EDIT_PARTS
-from report_schema.forms import Schema, list_of, obj, or_null, part, text
+from report_schema.forms import WARNINGS, Schema, list_of, obj, or_null, part, text
 from report_schema.others import MODEL, OTHER_PARTS
 
 # What stands in `clips` of each command's report.
@@ -45,6 +45,7 @@ def _report(command: str) -> Schema:
             "command": {"const": command, "description": "what wrote it"},
             "spec": or_null({"type": "object"}, "the spec with --set applied; null where there is none"),
             "clips": clips if kinds else list_of({}, "empty: the model has no clips to write", 0),
-            **(MODEL if command == "fit-pca" else {}),
+            **(MODEL if command == "fit-pca" else WARNINGS if command == "normalize" else {}),
         },
+        optional=("streamed",),
     )

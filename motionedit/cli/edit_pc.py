@@ -31,7 +31,7 @@ if TYPE_CHECKING:
       motionedit edit-pc swings/ -m golf.npz -s golf-edit.yaml -o edited/""",
 )
 @clips_argument
-@model_option
+@model_option()
 @spec_option()
 @output_option("OUT", "A name ending in .bvh for one clip, '-' for standard output, else a folder.")
 @set_option

@@ -11,6 +11,7 @@ from motionedit.cli.options import (
     not_supported_yet,
     output_option,
     preview_option,
+    reference_option,
     report_frames_option,
     run_options,
     set_option,
@@ -34,10 +35,8 @@ if TYPE_CHECKING:
 @spec_option()
 @output_option("OUT", "A name ending in .bvh for one clip, '-' for standard output, else a folder.")
 @set_option
-@click.option(
-    "--reference",
-    metavar="PATH",
-    help="Another version of the clip, or a folder of them, whose plants footplants keep; in place of the spec's.",
+@reference_option(
+    "Another version of the clip, or a folder of them, whose plants footplants keep; in place of the spec's."
 )
 @preview_option
 @shard_option

@@ -37,7 +37,7 @@ def finish_batch(result: BatchResult, options: RunOptions, *, command: str, spec
     elif not on_stdout and result.paths:
         _list(result.paths)
     if options.report is not None:
-        report = report_pieces(command, result.records, spec=spec)
+        report = report_pieces(command, result.records, spec=spec, more=result.more)
         write_report(report, options.report, dry_run=options.dry_run)
     return result.exit_code
 
@@ -115,7 +115,8 @@ def show_failures(failures: Sequence[MotionEditError]) -> None:
             complain(str(error))
         elif place not in said:
             said.add(place)
-            others = f" (and in {places[place] - 1} more clips)" if places[place] > 1 else ""
+            more = places[place] - 1
+            others = f" (and in {more} more {'clip' if more == 1 else 'clips'})" if more else ""
             complain(f"{error}{others}")
 
 
@@ -172,4 +173,5 @@ def _place(error: MotionEditError) -> tuple[object, ...] | None:
     """Return what is the same for clips that fail by one fault; None where each has its own."""
     if isinstance(error, ClusterLostError):
         return (error.message,)
-    return (error.file, error.line, error.key) if isinstance(error, SpecError) else None
+    # What has a key is of a spec, or of rules that a model has kept.
+    return (error.file, error.line, error.key) if isinstance(error, SpecError) or error.key is not None else None

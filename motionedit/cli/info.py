@@ -46,7 +46,7 @@ def command(
 
     Prints the joint tree with exact names and channels, frames, rate and duration, which way is up and which way
     the character faces, its leg length and likely unit, rest-pose frames, defects of the capture, hinges, and the
-    joint that carries the travel.
+    joint that carries the travel. The tree of several clips that have the same is printed once.
 
     CLIPS are BVH files, folders of them, or '-' for standard input.
     """

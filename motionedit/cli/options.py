@@ -75,15 +75,6 @@ def one_shard(ctx: click.Context, parameter: click.Parameter, value: str | None)
 
 
 clips_argument = click.argument("clips", nargs=-1, required=True, metavar="CLIPS...", callback=not_empty)
-model_option = click.option(
-    "-m",
-    "--model",
-    required=True,
-    metavar="MODEL.npz",
-    type=_PATH,
-    callback=existing_file,
-    help="The model that fit-pca wrote.",
-)
 set_option = click.option(
     "--set",
     "overrides",
@@ -139,7 +130,11 @@ overwrite_option = click.option(
     default=True,
     help="Refuse, before any work, if an output or the report exists.",
 )
-dry_run_option = click.option("--dry-run", is_flag=True, help="Print what would be done; write nothing.")
+dry_run_option = click.option(
+    "--dry-run",
+    is_flag=True,
+    help="Print what would be done with each clip: events, goals, or layers with points and joints; write nothing.",
+)
 
 preview_option = click.option(
     "--preview", is_flag=True, help="Write a page next to each clip: input, edit, goals and constraints (NAME.html)."
@@ -183,6 +178,24 @@ def spec_option(*, required: bool = True) -> Decorator:
         callback=existing_file,
         help="The YAML spec: what is to be done.",
     )
+
+
+def model_option(text: str = "The model that fit-pca wrote.", *, required: bool = True) -> Decorator:
+    """Return the option -m."""
+    return click.option(
+        "-m",
+        "--model",
+        required=required,
+        metavar="MODEL.npz",
+        type=_PATH,
+        callback=existing_file,
+        help=text,
+    )
+
+
+def reference_option(text: str) -> Decorator:
+    """Return the option --reference."""
+    return click.option("--reference", metavar="PATH", help=text)
 
 
 def output_option(metavar: str, text: str) -> Decorator:

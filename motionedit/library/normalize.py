@@ -115,7 +115,7 @@ def normalize(clips: AnyClips, spec: AnySpec, *, lenient: bool = False, jobs: Su
             for task, content in zip(tasks, contents, strict=True)
         ),
         normalization=done.normalization,
-        report=report_of("normalize", done.result.records, spec=loaded.data),
+        report=report_of("normalize", done.result.records, spec=loaded.data, more=done.result.more),
         warnings=tuple(done.result.warnings),
         inputs=inputs_of(tasks, loaded.files),
     )

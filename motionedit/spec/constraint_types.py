@@ -6,7 +6,7 @@ from typing import Any, Literal
 from motionedit.spec import kinds
 from motionedit.spec.constraints import TYPES, ConstraintItem, Placed, Recruiting, type_words
 from motionedit.spec.faults import Fault, FaultyValueError, faulty, show
-from motionedit.spec.items import EffectorItem
+from motionedit.spec.items import EFFECTOR_KEYS, EffectorItem
 from motionedit.spec.model import Context, Kind, mappings_in, spec_key
 from motionedit.spec.nested import reference_to
 from motionedit.spec.plants import PLANTS, PlantsSpec
@@ -117,6 +117,8 @@ class AimConstraint(Recruiting, Placed, EffectorItem, ConstraintItem):
         yield from super().faults_between_keys(data)
         if "target" in data and "relative_to" in data:
             yield Fault("stands beside target, whose frame it is in; give one of them", ("relative_to",))
+        if _joints_of(data.get("effector")) & _joints_of(data.get("target")):
+            yield Fault("is the joint that looks, which never moves against itself; name another joint", ("target",))
         if "target" not in data and not data.get("points"):
             yield Fault("needs one of target, points: what shall be looked at")
         for i, point in mappings_in(data, "points"):
@@ -232,6 +234,11 @@ class FootplantsConstraint(_Timeless):
         "of the root take it, along the axes that count, and the body turns with the path.",
     )
 
+    @property
+    def uses_reference(self) -> bool:
+        """Whether anything is taken from the reference: plants and places, where there is one."""
+        return True
+
 
 def _constraint(value: object, context: Context) -> ConstraintItem:
     if not isinstance(value, dict):
@@ -255,16 +262,19 @@ CONSTRAINT = Kind(
 
 
 def _foreign_keys(type_name: str) -> dict[str, str]:
-    """Return what to say of each key that only other types have."""
+    """Return what to say of each key that stands elsewhere: in points, in the effector, in other types."""
     owners: dict[str, list[str]] = {}
     for other, model in TYPES.items():
         for key in model.key_names():
             owners.setdefault(key, []).append(other)
-    return {
-        key: f"belongs to {type_words(names)}, not {type_name}"
-        for key, names in owners.items()
-        if type_name not in names
-    }
+    model = TYPES[type_name]
+    foreign = {key: f"belongs to {type_words(names)}, not {type_name}" for key, names in owners.items()}
+    if "effector" in model.key_names():
+        foreign |= EFFECTOR_KEYS
+    if "points" in model.key_names():
+        foreign |= {key: f"belongs to a point, as points: [{{{key}: ...}}]" for key in ("at", "hold", "during")}
+        foreign |= {key: f"belongs to a point, as points: [{{at: ..., {key}: ...}}]" for key in model.point_keys}
+    return {key: text for key, text in foreign.items() if key not in model.key_names()}
 
 
 for _name, _model in TYPES.items():

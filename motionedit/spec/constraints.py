@@ -107,6 +107,11 @@ class ConstraintItem(Item):
         return tolerance if self.has_position else tolerance.as_angle()
 
     @property
+    def uses_reference(self) -> bool:
+        """Whether anything is taken from the reference."""
+        return self.follow == "reference"
+
+    @property
     def counts_for_strict(self) -> bool:
         """Whether --strict fails where this constraint is not met."""
         if self.tolerance is not None:

@@ -34,7 +34,8 @@ class Document(SpecModel):
     up: Literal["y", "z", "x", "-y", "-z", "-x", "auto"] = spec_key(
         kinds.word("y", "z", "x", "-y", "-z", "-x", "auto"),
         default="auto",
-        description="The axis that points up; auto: by the floor, the OFFSETs and the way the body stands.",
+        description="The axis that points up; auto: by the floor, the OFFSETs and the way the body stands; "
+        "of a model the one that its clips were normalized with.",
     )
     body: BodySpec = spec_key(
         mapping(BodySpec),

@@ -6,7 +6,15 @@ from typing import Any, ClassVar, Literal
 from motionedit.spec import kinds
 from motionedit.spec.document import Document
 from motionedit.spec.faults import Fault
-from motionedit.spec.items import NOT_TWO_FRAMES, EffectorItem, measured_in_itself, repeated_names, taken_apart, without
+from motionedit.spec.items import (
+    EFFECTOR_KEYS,
+    NOT_TWO_FRAMES,
+    EffectorItem,
+    measured_in_itself,
+    repeated_names,
+    taken_apart,
+    without,
+)
 from motionedit.spec.model import SpecModel, mappings_in, spec_key
 from motionedit.spec.nested import list_of, mapping
 from motionedit.spec.scalars import Vector
@@ -21,6 +29,12 @@ class PcGoal(EffectorItem):
 
     at_least_one = (("position", "shift", "orientation", "turn"),)
     at_most_one = (("position", "shift"), ("orientation", "turn"))
+    foreign_keys: ClassVar[Mapping[str, str]] = {
+        **EFFECTOR_KEYS,
+        **dict.fromkeys(
+            ("points", "hold", "during"), "belongs to edit-prioritized; a goal is at one instant, as at: TIME"
+        ),
+    }
     between_keys = (
         NOT_TWO_FRAMES,
         {"if": {"required": ["axes"]}, "then": {"anyOf": [{"required": [key]} for key in ("position", "shift")]}},

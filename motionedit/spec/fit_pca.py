@@ -39,6 +39,6 @@ class FitPcaSpec(Document):
     exclude_joints: tuple[str, ...] = spec_key(
         kinds.JOINTS_OR_NONE,
         default=(),
-        description="Joints left out of the model; edits copy them through, and turn no leg or arm with one of them "
-        "for feet that stand and hands that hold.",
+        description="Joints left out of the model, but for the one that carries the travel; edits copy them through, "
+        "and turn no leg or arm with one of them for feet that stand and hands that hold.",
     )

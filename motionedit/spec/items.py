@@ -41,6 +41,13 @@ class Item(SpecModel):
         return self.changed({"name": name, "_keys": keys})
 
 
+# What is said of an effector's keys that stand beside it.
+EFFECTOR_KEYS = {
+    "joint": "belongs to effector, as effector: NAME, or effector: {joint: NAME, offset: [x, y, z]}",
+    "end_site": "belongs to effector, as effector: {end_site: NAME}",
+}
+
+
 class EffectorItem(Item):
     """An item with an effector."""
 

@@ -157,9 +157,12 @@ def load_spec(spec: Spec, command: str, **changes: Unpack[Overrides]) -> LoadedS
 
 
 def with_reference(loaded: LoadedSpec[EditPrioritizedSpec], reference: str) -> LoadedSpec[EditPrioritizedSpec]:
-    """Return a spec with another reference, a path as the command line has it; reports tell it, too."""
-    model = loaded.model.changed({"reference": Path(reference)})
-    return replace(loaded, model=model, data={**loaded.data, "reference": reference})
+    """Return a spec with another reference, a path as the command line has it; reports and faults tell it, too."""
+    tree, model = loaded.tree, loaded.model.changed({"reference": Path(reference)})
+    node = Node(reference, tree.line, source="--reference")
+    lines = {**tree.key_lines, "reference": tree.line}
+    tree = replace(tree, value={**tree.value, "reference": node}, key_lines=lines)
+    return replace(loaded, model=model, data={**loaded.data, "reference": reference}, tree=tree)
 
 
 def spec_command(path: Path, commands: Collection[str]) -> str:

@@ -51,6 +51,8 @@ def syntax_fault(error: yaml.YAMLError, text: str) -> Fault:
     if _TOO_DEEP in problem:
         return Fault(f"nested more than {DEEPEST} deep", line=line)
     context = getattr(error, "context_mark", None)
+    if "',' or '}'" in problem and here[mark.column : mark.column + 1] == ":" and context and context.line == mark.line:
+        return Fault("not valid YAML: a comma that is missing before a key in braces", line=line)
     opened = f" (opened on line {context.line + 1})" if context is not None and context.line + 1 < line else ""
     for part, meaning in _SYNTAX:
         if part in problem:

@@ -16,7 +16,16 @@ HANDED_OVER = {
     "edit_pc": {"preview.with_page"},
     "edit_prioritized": {"preview.with_page"},
     # Whether a spec fits a clip its command says, and what unit it is likely in, `info`.
-    "check": {"edit_pc.without_model", "edit_prioritized.job", "normalize.measures", "info.job"},
+    "check": {
+        "edit_pc.job",
+        "edit_pc.without_model",
+        "edit_prioritized.job",
+        "edit_prioritized.reference",
+        "fit_pca.asked",
+        "normalize.common_timeline",
+        "normalize.measures",
+        "info.job",
+    },
 }
 
 

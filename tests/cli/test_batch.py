@@ -61,6 +61,7 @@ def test_results_are_in_order_and_the_bytes_the_same_for_any_jobs(go, jobs):
         "status": "ok",
         "message": None,
         "unit": "cm",
+        "warnings": [],
     }
     assert result.exit_code == 0
     for path in result.paths:

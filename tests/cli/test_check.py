@@ -194,3 +194,16 @@ def test_check_holds_clips_against_a_spec(run, tmp_path):
     assert "s.yaml:2: constraints.0.effector" in done.stdout
     (tmp_path / "bad.bvh").write_text("HIERARCHY\n")
     assert run("check", WALK, "bad.bvh").exit_code == 1
+
+
+def test_check_is_given_what_stands_beside_a_spec(held_against, run):
+    follows = "constraints: [{type: position, effector: LeftFoot, follow: reference}]"
+    assert "give reference: or --reference" in held_against("edit-prioritized", follows).stderr
+    assert held_against("edit-prioritized", follows, "--reference", SWING).exit_code == 0
+    assert "has another skeleton" in held_against("edit-prioritized", follows, "--reference", WALK).stdout
+    refused = held_against("normalize", "frames: 9", "--reference", SWING)
+    assert f"--reference {SWING}: s.yaml is a spec of normalize; it goes with one of edit-prioritized" in refused.stderr
+    refused = held_against("normalize", "frames: 9", "-m", "s.yaml")
+    assert "-m s.yaml: s.yaml is a spec of normalize; it goes with one of edit-pc" in refused.stderr
+    assert "-m stands beside a spec: give -s too" in run("check", SWING, "-m", "s.yaml").stderr
+    assert "--reference stands beside a spec" in run("check", SWING, "--reference", "s.yaml").stderr

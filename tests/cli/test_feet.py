@@ -79,7 +79,7 @@ def test_plants_stand_where_the_reference_has_them(edit):
 
 
 def test_a_reference_that_is_none_is_refused(edit, tmp_path):
-    assert "no such clip or folder" in edit([FEET], "--reference", "nowhere", code=2)
+    assert "--reference: there is no clip or folder nowhere" in edit([FEET], "--reference", "nowhere", code=2)
     assert "its reference" in edit([FEET], "--reference", DATA / "kick.bvh", code=1)
     (tmp_path / "empty").mkdir()
     assert "has no reference" in edit([FEET], "--reference", tmp_path / "empty", code=1)

@@ -9,7 +9,7 @@ from motionedit.core.bvh import read_clip, resampled_bytes
 from motionedit.core.motion import Motion
 from motionedit.core.pca import streaming, vectors
 from motionedit.core.pca.model_file import read_model
-from motionedit.jobs.fit_pca import job as fit_pca
+from motionedit.jobs.fit_pca import asked as fit_pca
 
 
 def changed_copy(data, path, *, rate=1, scale=1.0):

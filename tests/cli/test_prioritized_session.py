@@ -252,3 +252,17 @@ def test_points_may_stand_at_an_event_that_each_clip_has_elsewhere(edit):
     moved = np.linalg.norm(after - before, axis=1)
     assert abs(int(np.argmax(moved)) - int(np.argmin(before[70:110, 1])) - 70) <= 1
     assert moved.max() == pytest.approx(6.0, abs=0.01)
+
+
+def test_a_dry_run_says_what_is_asked_at_each_point(edit):
+    turn = {"euler": [0, 9, 0], "order": "ZXY"}
+    points = [{"at": 20}, {"hold": [30, 40], "shift": [0, -5, 0.25]}, {"at": 60, "position": [40, 120, 200]}]
+    asked = [
+        hand(*points),
+        {"type": "orientation", "effector": "Head", "points": [{"during": [3, 9], "turn": turn}]},
+        {"type": "distance", "effector": "LeftHand", "to": "Head", "points": [{"at": 5, "at_least": 30}]},
+    ]
+    plan = edit(asked, "--dry-run").result.stdout
+    assert "; at 20, hold [30, 40] shift [0, -5, 0.25], at 60 position [40, 120, 200]; recruits" in plan
+    assert "; during [3, 9] turn; recruits" in plan
+    assert "; at 5 at_least 30; recruits" in plan

@@ -98,13 +98,14 @@ def test_a_dry_run_lists_the_layers_in_solving_order_and_writes_nothing(edit):
     done = edit([wrist, feet, com], "--dry-run", defaults={"ease_in": 5, "ease_out": 5})
     assert done.result.exit_code == 0
     moved = ("Hips", "LeftArm", "LeftForeArm", "Hips.position")
+    raised = "hold [66, 72] shift [5, 20, 10]"
     assert done.result.stdout.splitlines() == [
         f"would write {WALK} -> e.bvh",
         "  layer 1, priority 10",
         "    feet: position of LeftFoot, frames 0 to 144; recruits Hips, LeftLeg, Hips.position",
         "    feet-2: position of RightFoot, frames 0 to 144; recruits Hips, RightLeg, Hips.position",
         "  layer 2, priority 4",
-        f"    hand: position of LeftHand, frames 61 to 77; hold [66, 72]; recruits {', '.join(moved)}",
+        f"    hand: position of LeftHand, frames 61 to 77; {raised}; recruits {', '.join(moved)}",
         "  layer 3, priority 1",
         "    com: center of mass over LeftFoot, RightFoot, frames 0 to 144; weight 2; recruits LeftArm, LeftForeArm",
         "  hinges: LeftLeg, RightLeg, LeftForeArm, RightForeArm",

@@ -8,6 +8,8 @@ from pathlib import Path
 import jsonschema
 import pytest
 
+from motionedit.core.pca import vectors
+
 ROOT = Path(__file__).resolve().parents[2]
 WALK = ROOT / "data" / "walk.bvh"
 SCHEMA = json.loads((ROOT / "docs" / "report.schema.json").read_text(encoding="utf-8"))
@@ -118,6 +120,38 @@ def test_diff(report, clip):
     assert {one["status"] for one in found["clips"]} == {"same", "different", "missing", "not_comparable"}
 
 
+def test_check(report, bad, copy_spec):
+    report("check", WALK, bad, "--limit", "jumps=0", exit_code=1)
+    copy_spec.write_text("schema: motionedit/edit-prioritized/v1\nconstraints: []\nhinges: [Nope]\n")
+    found = report("check", WALK, "-s", copy_spec, "--limit", "frames=3", exit_code=3)
+    (clip,) = found["clips"]
+    assert (clip["passed"], len(clip["spec_errors"])) == (["frames"], 1)
+
+
+def test_a_model_of_very_many_clips(report, golf, copy_spec, monkeypatch):
+    copy_spec.write_text("schema: motionedit/normalize/v1\n")
+    report("normalize", *golf.swings[:4], "-s", copy_spec, "-o", "n")
+    monkeypatch.setattr(vectors, "MOST_IN_MEMORY", 3)
+    assert report("fit-pca", "n", "-o", "m.npz")["streamed"]["passes"]
+
+
+def test_what_is_warned_of_is_in_the_report(report, run, clip, tmp_path):
+    """Of normalize, in its clips and in all of them together; of fit-pca; of an edit."""
+    (tmp_path / "n.yaml").write_text("schema: motionedit/normalize/v1\nup: y\nunit: mm\n")
+    clips = [clip(f"in/walk{n}.bvh", seed=n, frames=8 if n else 40) for n in range(3)]
+    found = report("normalize", *clips, "-s", "n.yaml", "-o", "n")
+    assert [any("a leg is" in line for line in one["warnings"]) for one in found["clips"]] == [True] * 3
+    assert [line for line in found["warnings"] if "is it one of them?" in line]
+    assert report("normalize", *clips, "-s", "n.yaml", "-o", "n", "--update")["clips"] == found["clips"]
+    (tmp_path / "f.yaml").write_text("schema: motionedit/fit-pca/v1\nunit: mm\n")
+    assert "a leg is" in report("fit-pca", "n", "-s", "f.yaml", "-o", "m.npz")["warnings"][0]
+    edit = ("edit-prioritized", WALK, "-s", ROOT / "configs" / "reach.yaml", "--set", "unit=mm", "-o", "out.bvh")
+    printed = [line.removeprefix("motionedit: warning: ") for line in run(*edit).stderr.splitlines()]
+    warnings = report(*edit)["clips"][0]["warnings"]
+    assert any("a leg is" in line for line in warnings)
+    assert [line for line in printed if line in warnings] == warnings
+
+
 def objects(schema, path=""):
     """Yield every object of a schema that has keys of its own, with its place."""
     if isinstance(schema, dict):
@@ -147,6 +181,29 @@ def test_every_key_says_what_it_means():
         assert schema["description"], path
         for key, value in schema["properties"].items():
             assert value.get("description") or "$ref" in value, f"{path}: {key}"
+
+
+# Of numbers: what they are measured in, and keys of those that have no unit.
+UNITS = re.compile(r"clip units|degrees|\b(m|m/s|Hz|seconds|share|standard deviations)\b")
+PURE = {
+    *("explained_variance", "times", "residual", "alpha", "coefficients"),
+    *("mahalanobis", "median", "axis", "quaternion"),
+}
+
+
+def is_numeric(schema):
+    if "anyOf" in schema:
+        return any(map(is_numeric, schema["anyOf"]))
+    if schema.get("type") == "array":
+        return is_numeric(schema["items"])
+    return "number" in (schema.get("type"), *(schema.get("type") or ()))
+
+
+def test_every_number_says_its_unit():
+    for path, schema in objects(SCHEMA):
+        for key, value in schema["properties"].items():
+            if is_numeric(value) and not PURE & {key, *path.split("/")}:
+                assert UNITS.search(value["description"]), f"{path}: {key}"
 
 
 def test_the_page_on_files_names_every_key_of_the_reports():

@@ -154,6 +154,7 @@ SYNTAX = [
         2,
         "not valid YAML: a second ': ' on the line, or a wrong indentation; quote a text that holds ': '",
     ),
+    ("a: [{b: 1 c: 2}]", 1, "not valid YAML: a comma that is missing before a key in braces"),
     ("a: 'x\nb: 2\n", 2, "not valid YAML: a quote that is not closed (opened on line 1)"),
     ("a: @x", 1, "not valid YAML: a character that cannot begin a value; put quotes around the text"),
     ("a: ]", 1, "not valid YAML: a value that is not there"),

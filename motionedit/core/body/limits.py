@@ -50,6 +50,7 @@ WRIST = Range(90.0, 120.0)
 ANKLE = Range(60.0, 45.0)
 
 _BLOCK_POSES = 1 << 13
+_OPPOSITE = 1e-6  # of unit vectors: a sum as short as this has no direction
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,14 +114,30 @@ def given_limits(motion: Motion, poses: WorldPoses, given: Mapping[int, Range], 
     """Return limits that a user gives by joint; a joint's bone leads to the middle of its children."""
     found = []
     for joint in sorted(given):
-        children = np.flatnonzero(motion.skeleton.parents == joint)
-        ends = [(joint, int(child)) for child in children] or [(int(motion.skeleton.parents[joint]), joint)]
-        ways = [mean_direction(poses, start, stop, seen_from=joint, first=first) for start, stop in ends]
-        along = np.sum(ways, axis=0)
-        along = along / max(float(np.linalg.norm(along)), np.finfo(float).tiny)
+        along = _bone(motion.skeleton, poses, joint, first)
         halves = np.radians([[given[joint].swing, given[joint].twist]])
         found.append(_limits(motion, np.array([joint]), along[None], halves, first))
     return _together(found)
+
+
+def _bone(skeleton: Skeleton, poses: WorldPoses, joint: int, first: int) -> FloatArray:
+    """Return where a joint's bone leads, a unit vector in its frame, shape (3,): from above where none is below.
+
+    A child that stands where the joint does is passed on to its own children; of children on opposite sides the first
+    counts.
+    """
+    ways, waiting = [], [joint]
+    while waiting:
+        for child in np.flatnonzero(skeleton.parents == waiting.pop(0)).tolist():
+            way = mean_direction(poses, joint, child, seen_from=joint, first=first)
+            if way.any():
+                ways.append(way)
+            else:
+                waiting.append(child)
+    ways = ways or [mean_direction(poses, int(skeleton.parents[joint]), joint, seen_from=joint, first=first)]
+    middle = np.sum(ways, axis=0)
+    length = float(np.linalg.norm(middle))
+    return middle / length if length > _OPPOSITE else ways[0]
 
 
 def _limits(motion: Motion, joints: IntArray, along: FloatArray, halves: FloatArray, first: int) -> Limits:

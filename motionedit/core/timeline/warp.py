@@ -54,6 +54,12 @@ class TimeWarp:
         return monotone_cubic(self.source, self.timeline, frames)
 
 
+class EventOrderError(ClipError):
+    """Events of a clip that do not follow each other inside it; `names` are those of the first two, as far as known."""
+
+    names: tuple[str, ...] = ()
+
+
 def make_warp(timeline: Timeline, *, first: int, last: int, events: Mapping[str, float], label: str) -> TimeWarp:
     """Return the warp of a clip.
 
@@ -66,7 +72,7 @@ def make_warp(timeline: Timeline, *, first: int, last: int, events: Mapping[str,
 
     Raises
     ------
-    ClipError
+    EventOrderError
         If first frame, events in the timeline's order and last frame do not increase strictly.
     """
     source = [float(first), *(float(events[name]) for name, _ in timeline.events), float(last)]
@@ -77,6 +83,8 @@ def make_warp(timeline: Timeline, *, first: int, last: int, events: Mapping[str,
                 f"{names[i]} at frame {source[i]:g} is not after {names[i - 1]} at frame {source[i - 1]:g}; "
                 "events must follow each other inside the clip, in the same order in every clip"
             )
-            raise ClipError(message, file=label)
+            error = EventOrderError(message, file=label)
+            error.names = tuple(name for name, _ in timeline.events[max(i - 2, 0) : i])
+            raise error
     frames = [0.0, *(float(frame) for _, frame in timeline.events), float(timeline.frames - 1)]
     return TimeWarp(np.array(source), np.array(frames))

@@ -65,6 +65,8 @@ class BatchResult:
         The clips of the records that have no output: one for standard output, or those that a caller takes.
     current : int
         How many outputs --update left alone.
+    more : dict
+        What the report has beside the fixed keys.
     """
 
     records: Sequence[dict[str, Any]]
@@ -76,6 +78,7 @@ class BatchResult:
     details: list[tuple[str, tuple[str, ...]]] = field(default_factory=list)
     contents: list[bytes | None] = field(default_factory=list)
     current: int = 0
+    more: dict[str, Any] = field(default_factory=dict)
 
     @property
     def warnings(self) -> list[str]:
@@ -286,7 +289,9 @@ def _record(task: ClipTask, done: Done) -> dict[str, Any]:
         message = "; ".join(str(_named(error, task)) for error in done.errors)
         return failed_record(task, message)
     output = None if task.output is None else str(task.output)
-    return {"clip": task.label, "output": output, "status": done.outcome.status, "message": None, **done.outcome.record}
+    outcome = done.outcome
+    about = {"clip": task.label, "output": output, "status": outcome.status, "message": None}
+    return {**about, **outcome.record, "warnings": list(outcome.warnings)}
 
 
 def failed_record(task: ClipTask, message: str) -> dict[str, Any]:

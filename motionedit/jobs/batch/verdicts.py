@@ -30,8 +30,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
 NAME = ".motionedit-verdicts.jsonl"
-# What an entry of the report has of its run, not of the work: with other names for the same files it is another.
-OF_THE_TASK = ("clip", "output")
+# What an entry of the report has of its run, not of the work, with other names for the same files another; and what is
+# kept beside it.
+_KEPT_ELSEWHERE = ("clip", "output", "warnings")
 
 
 @dataclass(frozen=True)
@@ -123,7 +124,7 @@ class Verdicts:
             "clip": stamp,
             "key": self._key,
             "by_frame": verdict.frames,
-            "record": plain({key: value for key, value in verdict.record.items() if key not in OF_THE_TASK}),
+            "record": plain({key: value for key, value in verdict.record.items() if key not in _KEPT_ELSEWHERE}),
             "warnings": list(verdict.warnings),
         }
         line = json.dumps(said).encode() + b"\n"

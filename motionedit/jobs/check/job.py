@@ -26,13 +26,14 @@ from motionedit.jobs.info.job import likely_unit
 from motionedit.regular_files import read_file
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
     from pathlib import Path
 
     from motionedit.core.bvh import Clip
     from motionedit.jobs.batch.plan import ClipTask
     from motionedit.jobs.check.specs import SpecCheck
     from motionedit.jobs.clip.facts import ClipFacts
+    from motionedit.jobs.normalize.measures import ClipMeasure
 
 # Metres at leg length 0.85 m: feet that stand further above or below the floor of the file stand on another.
 _OFF_THE_FLOOR = 0.1
@@ -52,6 +53,22 @@ MEASURES = {
     "rest_pose_frames": "count",
     "frames": "count",
 }
+
+
+@dataclass(frozen=True)
+class _Looked:
+    """What a worker says of one clip.
+
+    Its `record` without a verdict, None where there is a `failure`; the limits `passed`; the `errors` of the spec in
+    it, and what normalize `measured`; where its feet `stand`, if that is not the floor.
+    """
+
+    record: dict[str, Any] | None
+    passed: tuple[str, ...] = ()
+    errors: tuple[MotionEditError, ...] = ()
+    measured: ClipMeasure | None = None
+    stand: str | None = None
+    failure: MotionEditError | None = None
 
 
 @dataclass(frozen=True)
@@ -112,6 +129,8 @@ def run(
 ) -> Iterator[Checked]:
     """Yield what came of each clip, in order, whatever the number of `jobs`.
 
+    A fault of the spec that several clips have is told whole in the first one's line.
+
     Raises
     ------
     UsageError
@@ -120,7 +139,14 @@ def run(
     tasks = find_clips(clips)
     if check is not None:
         check = replace(check, others=tuple(task.relative for task in tasks))
-    one = partial(_checked, limits=dict(limits), check=check, up=up, lenient=lenient)
+    one = partial(_looked, limits=dict(limits), check=check, up=up, lenient=lenient)
+    looked = zip(tasks, _each(one, tasks, jobs), strict=True)
+    said: set[str] = set()
+    for task, found in looked if check is None else _together(check, looked):
+        yield _checked(task, found, limits, said)
+
+
+def _each(one: Callable[[ClipTask], _Looked], tasks: Sequence[ClipTask], jobs: int) -> Iterator[_Looked]:
     if jobs == 1 or len(tasks) < 2:
         yield from map(one, tasks)
         return
@@ -128,6 +154,18 @@ def run(
 
     with ProcessPoolExecutor(jobs or None) as pool:
         yield from pool.map(one, tasks)
+
+
+def _together(check: SpecCheck, looked: Iterator[tuple[ClipTask, _Looked]]) -> Iterator[tuple[ClipTask, _Looked]]:
+    """Yield the clips, with what is wrong with them beside each other where the spec's command takes all at once."""
+    if not check.takes_all:
+        yield from looked
+        return
+    every = list(looked)
+    unfit = check.unfit_together([(task, one.measured) for task, one in every if one.record and not one.errors])
+    for task, one in every:
+        more = unfit[task.label].errors if task.label in unfit else ()
+        yield task, replace(one, errors=(*one.errors, *more), measured=None)
 
 
 def exit_code(found: Sequence[Checked]) -> int:
@@ -138,36 +176,47 @@ def exit_code(found: Sequence[Checked]) -> int:
     return EXIT_OUT_OF_TOLERANCE if "unfit" in statuses else EXIT_DONE
 
 
-def _checked(
-    task: ClipTask, *, limits: Mapping[str, float], check: SpecCheck | None, up: str, lenient: bool
-) -> Checked:
-    lacking = Faults()
+def _looked(task: ClipTask, *, limits: Mapping[str, float], check: SpecCheck | None, up: str, lenient: bool) -> _Looked:
+    faults, none = Faults(), None
     try:
         clip = read_task(task, lenient=lenient)
-        facts = _facts(clip, task, check, lacking, up=up)
+        facts = _facts(clip, task, check, faults, up=up)
     except MotionEditError as error:
-        return Checked({"clip": task.label, "status": "failed", "message": str(error)}, "", error)
-    if check is not None:
-        lacking.get(partial(check.refuse_lacking, facts, task), otherwise=None)
-    measures = _measures(facts)
-    passed = [name for name, limit in limits.items() if measures[name] > limit]
-    errors, stand = [str(error) for error in lacking.errors], _off_the_floor(facts)
+        return _Looked(None, failure=error)
+    measured = None if check is None else faults.get(partial(check.refuse_unfit, facts, task), otherwise=none)
+    measures, stand = _measures(facts), _off_the_floor(facts)
     off = [] if stand is None else [f"{stand}: skate, depth and floating are measured from 0, the floor of the file"]
-    reasons = [f"{name} {measures[name]:.4g} above {limits[name]:.4g}" for name in passed] + errors
     record = {
-        "clip": task.label,
-        "status": "unfit" if reasons else "ok",
-        "message": "; ".join(reasons) or None,
         "frame_rate": facts.clip.motion.frame_rate,
         "up": ground.axis_name(facts.up),
         "unit": likely_unit(facts.anatomy.leg_length),
         "found": _found(facts),
         "measures": measures,
-        "passed": passed,
-        "spec_errors": errors,
         "warnings": [*clip.warnings, *facts.warnings, *facts.anatomy.missing, *off],
     }
-    return Checked(record, _line(record, stand))
+    passed = tuple(name for name, limit in limits.items() if measures[name] > limit)
+    return _Looked(record, passed, tuple(faults.errors), measured, stand)
+
+
+def _checked(task: ClipTask, looked: _Looked, limits: Mapping[str, float], said: set[str]) -> Checked:
+    """Return what came of a clip; of faults whose place is in `said` its line gives the place alone."""
+    if looked.record is None:
+        failed = {"clip": task.label, "status": "failed", "message": str(looked.failure)}
+        return Checked(failed, "", looked.failure)
+    measures, errors = looked.record["measures"], [str(error) for error in looked.errors]
+    passed = [f"{name} {measures[name]:.4g} above {limits[name]:.4g}" for name in looked.passed]
+    places = [str(type(error)("", file=error.file, line=error.line, key=error.key)) for error in looked.errors]
+    short = [f"{place}: as above" if place in said else error for place, error in zip(places, errors, strict=True)]
+    said.update(place for place, error in zip(places, looked.errors, strict=True) if error.key is not None)
+    record: dict[str, Any] = {
+        "clip": task.label,
+        "status": "unfit" if passed or errors else "ok",
+        "message": "; ".join([*passed, *errors]) or None,
+        **looked.record,
+        "passed": list(looked.passed),
+        "spec_errors": errors,
+    }
+    return Checked(record, _line(record, [*passed, *short], looked.stand))
 
 
 def _facts(clip: Clip, task: ClipTask, check: SpecCheck | None, lacking: Faults, *, up: str) -> ClipFacts:
@@ -209,7 +258,7 @@ def _found(facts: ClipFacts) -> list[str]:
     return [part for part, found in parts.items() if found is not None]
 
 
-def _line(record: Mapping[str, Any], stand: str | None) -> str:
+def _line(record: Mapping[str, Any], reasons: Sequence[str], stand: str | None) -> str:
     """Return a clip's line."""
     measures, unit = record["measures"], record["unit"]
     words = [
@@ -227,5 +276,5 @@ def _line(record: Mapping[str, Any], stand: str | None) -> str:
     ]
     if stand is not None:
         words.append(stand)
-    reasons = f": {record['message']}" if record["message"] else ""
-    return f"{record['clip']}: {record['status']}{reasons} ({'; '.join(words)})"
+    why = f": {'; '.join(reasons)}" if reasons else ""
+    return f"{record['clip']}: {record['status']}{why} ({'; '.join(words)})"

@@ -11,6 +11,7 @@ import numpy as np
 from motionedit.core.again import LastFew, Same
 from motionedit.core.kinematics import effector_positions
 from motionedit.core.timeline.events import Quantity, Search, find_event
+from motionedit.core.timeline.warp import EventOrderError, make_warp
 from motionedit.errors import MotionEditError
 from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.faults import Faults
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from motionedit.core.kinematics import Effector
     from motionedit.core.motion import Motion
     from motionedit.core.skeleton import Skeleton
+    from motionedit.core.timeline.warp import Timeline, TimeWarp
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.jobs.clip.resolve import Place
     from motionedit.spec.document import Document
@@ -171,6 +173,33 @@ def _found(rule: DetectRule, effector: Effector, facts: ClipFacts, window: tuple
         frame_time=facts.clip.motion.frame_time,
         to=None if rule.to is None else np.array(rule.to),
     )
+
+
+def clip_warp(
+    loaded: LoadedSpec[Document],
+    timeline: Timeline,
+    *,
+    first: int,
+    last: int,
+    events: Mapping[str, float],
+    label: str,
+) -> TimeWarp:
+    """Return `make_warp` of a clip.
+
+    Raises
+    ------
+    SpecError
+        Events do not follow each other, and the spec says when they are.
+    EventOrderError
+        It does not.
+    """
+    try:
+        return make_warp(timeline, first=first, last=last, events=events, label=label)
+    except EventOrderError as error:
+        for name in error.names:
+            if loaded.has(("events", name)):
+                raise loaded.error(("events", name), f"in {label}: {error.message}") from None
+        raise
 
 
 def events_at_edge(found: FoundEvents) -> list[str]:

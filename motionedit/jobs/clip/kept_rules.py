@@ -57,6 +57,13 @@ def body_said(
     return kept_body(with_body(rules, said), skeleton, label=label, clip=clip)
 
 
+def refuse_another_up(loaded: LoadedSpec[Document], up: str, *, by: str) -> None:
+    """Raise a SpecError where a spec has another axis up than clips that were normalized, which `by` tells of."""
+    said = loaded.model.up
+    if said not in ("auto", up):
+        raise loaded.error(("up",), f"the clips of {by} were normalized with {up} up, not {said}; leave it out")
+
+
 def kept_body(rules: Mapping[str, Any], skeleton: Skeleton, *, label: str, clip: str) -> GivenBody:
     """Return what kept rules say that a clip's joints are; `label` is the file that they are in.
 

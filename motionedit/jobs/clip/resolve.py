@@ -13,6 +13,7 @@ from motionedit.core.arrays import frozen
 from motionedit.core.body.anatomy import GivenBody
 from motionedit.core.kinematics import Effector
 from motionedit.dataclass import dataclass
+from motionedit.errors import SpecError
 from motionedit.jobs.clip.faults import ITS_JOINTS, Faults
 from motionedit.spec.body import NONE
 from motionedit.spec.faults import listed, nearest
@@ -26,6 +27,10 @@ if TYPE_CHECKING:
     from motionedit.spec.body import BodySpec
     from motionedit.spec.times import Interval, Time
     from motionedit.spec.values import EffectorSpec, OrientationSpec
+
+
+class NoEventFrameError(SpecError):
+    """A time counts from an event that the spec lists, and that has no frame in the clip."""
 
 
 class Source(Protocol):
@@ -206,7 +211,7 @@ def frame(time: Time, place: Where, *, frames: int, frame_time: float, events: M
     try:
         return time.frame(frames=frames, frame_time=frame_time, events=events)
     except ValueError as error:
-        raise place.error(f"in {place.clip}: {error}") from None
+        raise _no_frame(place, (time,), events, str(error)) from None
 
 
 def frame_range(
@@ -216,7 +221,16 @@ def frame_range(
     try:
         return interval.frame_range(frames=frames, frame_time=frame_time, events=events)
     except ValueError as error:
-        raise place.error(f"in {place.clip}: {error}") from None
+        raise _no_frame(place, (interval.start, interval.stop), events, str(error)) from None
+
+
+def _no_frame(place: Where, times: Sequence[Time], events: Mapping[str, float], message: str) -> MotionEditError:
+    """Return the error of times in a clip: that an event which the spec lists has no frame in it, or what else is."""
+    names = [time.event for time in times if time.event is not None and time.event not in events]
+    if not names or not isinstance(place, Place) or not place.loaded.has(("events", names[0])):
+        return place.error(f"in {place.clip}: {message}")
+    error = place.error(f"in {place.clip}: event '{names[0]}' has no frame; add one to its frames, or give it detect")
+    return NoEventFrameError(error.message, file=error.file, line=error.line, key=error.key)
 
 
 def recruit_place(constraint: Place) -> Place:

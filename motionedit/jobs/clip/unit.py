@@ -5,16 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.spec.values import Unit
 
 # Metres between which a leg is a person's, small or large, or a creature's: else the unit is a slip.
 _SHORTEST_LEG, _LONGEST_LEG = 0.3, 1.5
 
 
-def unit_doubts(facts: ClipFacts, unit: Unit | None) -> list[str]:
-    """Return a line for the user where a leg has no length of legs in this unit, else none."""
-    length = facts.anatomy.leg_length
-    if unit is None or length <= 0.0 or _SHORTEST_LEG <= length * unit.metres <= _LONGEST_LEG:
+def unit_doubts(leg_length: float, unit: Unit | None) -> list[str]:
+    """Return a line for the user where a leg (clip units) has no length of legs in this unit, else none."""
+    if unit is None or leg_length <= 0.0 or _SHORTEST_LEG <= leg_length * unit.metres <= _LONGEST_LEG:
         return []
-    return [f"a leg is {length * unit.metres:.3g} m long where the unit is {unit.name}: is that the clip's unit?"]
+    return [f"a leg is {leg_length * unit.metres:.3g} m long where the unit is {unit.name}: is that the clip's unit?"]

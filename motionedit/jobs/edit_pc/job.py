@@ -16,7 +16,6 @@ from motionedit.core.pca.fit import components_for
 from motionedit.core.pca.model_file import read_model
 from motionedit.core.pca.rules import checked_rules
 from motionedit.core.skeleton_match import match_joints
-from motionedit.core.timeline.warp import make_warp
 from motionedit.dataclass import dataclass
 from motionedit.errors import ModelError
 from motionedit.jobs.batch.one_clip import Outcome
@@ -25,8 +24,9 @@ from motionedit.jobs.batch.run import run_batch
 from motionedit.jobs.batch.verdicts import run_key, verdicts_in
 from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.crop import cropped
+from motionedit.jobs.clip.events import clip_warp
 from motionedit.jobs.clip.facts import facts_of
-from motionedit.jobs.clip.kept_rules import body_said
+from motionedit.jobs.clip.kept_rules import body_said, refuse_another_up
 from motionedit.jobs.clip.metrics import edit_metrics, feet_of
 from motionedit.jobs.clip.roughness import rough_lines, snap_line
 from motionedit.jobs.clip.unit import unit_doubts
@@ -96,11 +96,26 @@ def edit(
     SpecError
         As `run`.
     """
-    _refuse_damaged_rules(model, label)
-    refuse_unknown_events(loaded, model)
-    cut = model.truncated(_component_count(loaded, model))
-    work = _Edit(loaded, cut, label, tuple(task.relative for task in tasks))
+    work = edit_by_components(loaded, model, label, tuple(task.relative for task in tasks))
     return run_batch(tasks, with_page(work, loaded.data, options), options, verdicts=verdicts)
+
+
+def edit_by_components(
+    loaded: LoadedSpec[EditPcSpec], model: MotionModel, label: str, others: tuple[str, ...]
+) -> EditByComponents:
+    """Return the work on one clip; `others` are all clips of the run, as event files call them.
+
+    Raises
+    ------
+    ModelError
+        The model is damaged.
+    SpecError
+        The spec asks for what the model has not.
+    """
+    _refuse_damaged_rules(model, label)
+    refuse_another_up(loaded, axis_name(model.up), by=label)
+    refuse_unknown_events(loaded, model)
+    return EditByComponents(loaded, model.truncated(_component_count(loaded, model)), label, others)
 
 
 def _refuse_damaged_rules(model: MotionModel, label: str) -> None:
@@ -121,8 +136,18 @@ def _component_count(loaded: LoadedSpec[EditPcSpec], model: MotionModel) -> int:
     return spec.components or available
 
 
+@dataclass(frozen=True, eq=False)
+class Ready:
+    """A clip in a model's coordinates, its goals, and the world transforms of the motion that is edited."""
+
+    facts: ClipFacts
+    projection: Projection
+    goals: list[ClipGoal]
+    poses: WorldPoses
+
+
 @dataclass(frozen=True)
-class _Edit:
+class EditByComponents:
     """The work on one clip."""
 
     loaded: LoadedSpec[EditPcSpec]
@@ -131,6 +156,22 @@ class _Edit:
     others: tuple[str, ...]
 
     def __call__(self, clip: Clip, task: ClipTask) -> Outcome:
+        """Return the edited clip, and how near each goal came."""
+        spec, model = self.loaded.model, self.model
+        ready = self.ready(clip, task)
+        facts, projection, goals = ready.facts, ready.projection, ready.goals
+        bound = plausibility_bound(spec, model, projection.coefficients, asked=_asked_together(spec, goals))
+        held = Solving(spec, model, facts, projection, tuple(goal.request for goal in goals), bound).edit()
+        return self._outcome(facts, projection, held, goals, before=ready.poses, bound=bound)
+
+    def ready(self, clip: Clip, task: ClipTask) -> Ready:
+        """Return a clip that can be solved.
+
+        Raises
+        ------
+        MotionEditError
+            All that an edit of the clip is refused for.
+        """
         spec, model = self.loaded.model, self.model
         facts = facts_of(
             clip,
@@ -141,10 +182,7 @@ class _Edit:
         facts.refuse_one_frame()
         projection, events = self._projection(facts, task)
         poses = kinematics.forward(projection.motion) if spec.timing == "normalized" else facts.poses
-        goals = clip_goals(self.loaded, model, facts, events=events, poses=poses)
-        bound = plausibility_bound(spec, model, projection.coefficients, asked=_asked_together(spec, goals))
-        held = Solving(spec, model, facts, projection, tuple(goal.request for goal in goals), bound).edit()
-        return self._outcome(facts, projection, held, goals, before=poses, bound=bound)
+        return Ready(facts, projection, clip_goals(self.loaded, model, facts, events=events, poses=poses), poses)
 
     def _projection(self, facts: ClipFacts, task: ClipTask) -> tuple[Projection, dict[str, float]]:
         """Return a clip in the model's coordinates, and the frames of its events."""
@@ -159,7 +197,7 @@ class _Edit:
         events = events_for_model(self.loaded, model, facts, task, model_label=self.model_label, others=self.others)
         crop = model.rules.get("crop", {})
         first, last = cropped(crop, facts, resolve.Place(self.loaded, (), task.label), events=events)
-        warp = make_warp(model.timeline, first=first, last=last, events=events, label=task.label)
+        warp = clip_warp(self.loaded, model.timeline, first=first, last=last, events=events, label=task.label)
         align = model.rules["align"]
         begins = None if first == facts.first else float(first)
         alignment = facts.alignment(
@@ -208,7 +246,9 @@ class _Edit:
         share = residual_share(spec, self.model) if spec.solver.method == "map" else None
         if share is not None and self.model.components.left_out is None and spec.residual_share == "auto":
             odd.append(f"the model has no left-out error, so residual_share is {share:g}; make it again with fit-pca")
-        verdicts = Judged(bound, share, (*facts.warnings, *unit_doubts(facts, spec.unit), *odd), rough)
+        verdicts = Judged(
+            bound, share, (*facts.warnings, *unit_doubts(facts.anatomy.leg_length, spec.unit), *odd), rough
+        )
         result = edit_record(self.model, projection, edit, goals, poses=after, verdicts=verdicts)
         return Outcome(
             resampled_bytes(facts.clip, edit.motion) if retimed else _edited_bytes(facts.clip, projection, edit),

@@ -10,6 +10,8 @@ from motionedit.jobs.clip import resolve
 from motionedit.jobs.clip.crop import crop_events
 from motionedit.jobs.clip.events import event_frames, explicit_events
 from motionedit.jobs.clip.kept_rules import KeptRules
+from motionedit.spec.event_names import events_named
+from motionedit.spec.faults import nearest
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,13 +27,22 @@ _KNOWN_BY = "a clip is known by its name and its bytes"
 
 
 def refuse_unknown_events(loaded: LoadedSpec[EditPcSpec], model: MotionModel) -> None:
-    """Raise a SpecError where a goal's time names an event that neither the spec nor the model has."""
+    """Raise a SpecError where a goal's time names an event that neither the spec nor the model has.
+
+    Or where the spec has an event that nothing is at, and that is all but named as one that the model has.
+    """
     known = sorted({*loaded.model.events, *events_of_model(model)})
     for i, goal in enumerate(loaded.model.goals):
         if goal.at.event is not None and goal.at.event not in known:
             listed = ", ".join(f"'{name}'" for name in known) or "none"
             message = f"no event '{goal.at.event}' in this spec or in the model; there are: {listed}"
             raise loaded.error(("goals", i, "at"), message)
+    own = loaded.model.events
+    used = {*events_of_model(model), *events_named(loaded.model.goals), *events_named(own)}
+    for name in (each for each in own if each not in used):
+        meant = nearest(name, [each for each in events_of_model(model) if each not in own])
+        if meant is not None:
+            raise loaded.error(("events", name), f"nothing is at this event; did you mean the model's '{meant}'?")
 
 
 def events_of_model(model: MotionModel) -> list[str]:

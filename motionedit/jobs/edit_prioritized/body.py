@@ -66,7 +66,7 @@ def sized_clip(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults
     if anatomy.leg_length <= 0.0 and spec.constraints:
         raise ClipError("its bones have no length; a body without length cannot be edited", file=clip.label)
     scale = STANDARD_LEG / (anatomy.leg_length or STANDARD_LEG)
-    warnings = [*facts.warnings, *unit_doubts(facts, spec.unit)]
+    warnings = [*facts.warnings, *unit_doubts(facts.anatomy.leg_length, spec.unit)]
     masses = _masses(loaded, facts, faults)
     motion = scaled(clip.motion, scale)
     sized = scaled_masses(masses, motion.skeleton, scale)

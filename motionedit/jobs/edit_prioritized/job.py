@@ -10,7 +10,7 @@ from motionedit.core.blocks import BLOCK_FRAMES, blocks_of, forward_blocks, fram
 from motionedit.core.body.steps import change_steps
 from motionedit.core.bvh import edited_pieces, unedited_bytes
 from motionedit.core.motion import Motion, scaled
-from motionedit.core.priorities.edit import PrioritizedEdit, RecruitingError, edit_by_priorities
+from motionedit.core.priorities.edit import PrioritizedEdit, edit_by_priorities
 from motionedit.core.priorities.settings import LayeredSettings, PaperFilter, Passes
 from motionedit.core.priorities.targets import Follows
 from motionedit.dataclass import dataclass, replace
@@ -29,8 +29,8 @@ from motionedit.jobs.edit_prioritized.body import sized_clip
 from motionedit.jobs.edit_prioritized.constraints import clip_constraints
 from motionedit.jobs.edit_prioritized.floors import refuse_floors_out_of_reach
 from motionedit.jobs.edit_prioritized.record import edit_record
-from motionedit.jobs.edit_prioritized.recruits import breach_error, breach_warnings, immovable_warnings, layer_lines
-from motionedit.jobs.edit_prioritized.reference import reference_facts, reference_files, refuse_missing_reference
+from motionedit.jobs.edit_prioritized.recruits import breach_warnings, immovable_warnings, layer_lines, refuse_breaches
+from motionedit.jobs.edit_prioritized.reference import reference_facts, reference_files, refuse_unfit_reference
 from motionedit.jobs.edit_prioritized.rest_pose import moved_rest_pose
 from motionedit.jobs.edit_prioritized.standing import on_feet
 from motionedit.jobs.edit_prioritized.unheld import grips_in, loose_feet, loose_hands
@@ -63,10 +63,10 @@ def run(
 
     Raises
     ------
-    UsageError
-        As `plan`.
+    UsageError, SpecError
+        As `plan` and `edit`.
     """
-    refuse_missing_reference(loaded.model.reference)
+    refuse_unfit_reference(loaded)
     references = reference_files(loaded.model.reference)
     files = [*loaded.model.event_files, *references]
     key = run_key("edit-prioritized", loaded.data, files=files, more=options.lenient)
@@ -82,7 +82,14 @@ def edit(
     options: RunOptions,
     verdicts: Verdicts | None = None,
 ) -> BatchResult:
-    """Edit the clips of tasks, and write those that have an output; what becomes of them `verdicts` are told."""
+    """Edit the clips of tasks, and write those that have an output; what becomes of them `verdicts` are told.
+
+    Raises
+    ------
+    SpecError
+        The reference is not there, or nothing is taken from it, or it is followed and not given.
+    """
+    refuse_unfit_reference(loaded)
     others = tuple(task.relative for task in tasks)
     threads = threads_within(sum(not task.elsewhere for task in tasks), options)
     work = EditByPriorities(loaded, others, threads, verify=options.verify, tells_plan=options.dry_run)
@@ -107,15 +114,10 @@ class EditByPriorities:
         """Return the edited clip, and how near each constraint came."""
         if task.clip is None and task.source is not None and len(clip.text.file) > _LONG:
             clip.text.file.let_go(task.source)
-        sized, constraints = self.resolved(clip, task)
-        settings = self.settings(clip)
-        other = self._reference(clip, task)
-        if any(each.constraint.stands for each in constraints):
-            kept = sized.facts if other is None else other
-            sized, constraints = on_feet(self.loaded, sized, constraints, kept, curve=settings.curve)
+        sized, constraints, other = self.ready(clip, task)
         if not constraints:
             return self._unedited(clip, sized)
-        refuse_floors_out_of_reach(self.loaded, sized, [c.constraint for c in constraints], curve=settings.curve)
+        settings = self.settings(clip)
         before = feet_of(sized.facts, blocks_of(sized.facts.poses), masses=sized.masses)
         grips = grips_in(sized)
         # What is read off the input has been read, its phases with it: an edit of a long clip needs the room.
@@ -123,17 +125,13 @@ class EditByPriorities:
             sized.facts.forget_poses()
         _ = sized.facts.phases
         sized.facts.forget_poses()
-        try:
-            edit = edit_by_priorities(
-                sized.motion,
-                [c.constraint for c in constraints],
-                sized.body,
-                settings,
-                follows=Follows(sized.input, None if other is None else scaled(other.clip.motion, sized.scale)),
-            )
-        except RecruitingError as error:
-            asked = [c.constraint for c in constraints]
-            raise breach_error(self.loaded, error.breach, asked, sized.facts) from None
+        edit = edit_by_priorities(
+            sized.motion,
+            [c.constraint for c in constraints],
+            sized.body,
+            settings,
+            follows=Follows(sized.input, None if other is None else scaled(other.clip.motion, sized.scale)),
+        )
         return self._outcome(sized, constraints, edit, settings, before=before, grips=grips)
 
     def _unedited(self, clip: Clip, sized: SizedClip) -> Outcome:
@@ -145,7 +143,26 @@ class EditByPriorities:
             unedited_bytes(clip), record, warnings=sized.warnings, details=("no constraints: the same bytes",)
         )
 
-    def resolved(self, clip: Clip, task: ClipTask) -> tuple[SizedClip, list[ClipConstraint]]:
+    def ready(self, clip: Clip, task: ClipTask) -> tuple[SizedClip, list[ClipConstraint], ClipFacts | None]:
+        """Return a clip whose feet stand, the constraints that are left to solve, and the facts of its reference.
+
+        Raises
+        ------
+        MotionEditError
+            All that an edit of the clip is refused for.
+        """
+        curve = self.loaded.model.curve
+        sized, constraints = self._resolved(clip, task)
+        other = reference_facts(self.loaded, clip, task)
+        if any(each.constraint.stands for each in constraints):
+            kept = sized.facts if other is None else other
+            sized, constraints = on_feet(self.loaded, sized, constraints, kept, curve=curve)
+        asked = [each.constraint for each in constraints]
+        refuse_floors_out_of_reach(self.loaded, sized, asked, curve=curve)
+        refuse_breaches(self.loaded, sized, asked)
+        return sized, constraints, other
+
+    def _resolved(self, clip: Clip, task: ClipTask) -> tuple[SizedClip, list[ClipConstraint]]:
         """Return a clip in normalised metres, and the spec's constraints in it.
 
         Raises
@@ -161,39 +178,24 @@ class EditByPriorities:
         faults.raise_all(f"what the spec names and {task.label} lacks")
         return replace(sized, warnings=(*sized.warnings, *_warnings_of(constraints, sized.masses))), constraints
 
-    def _reference(self, clip: Clip, task: ClipTask) -> ClipFacts | None:
-        """Return the facts of the clip's reference, None where there is none.
-
-        Raises
-        ------
-        SpecError
-            There is none, and a constraint follows it.
-        """
-        spec = self.loaded.model
-        if spec.reference is None:
-            self._refuse_following()
-            return None
-        given = resolve.body(spec.body, clip.motion.skeleton, resolve.Place(self.loaded, ("body",), task.label))
-        return reference_facts(spec.reference, clip, task, up=spec.up, given=given)
-
-    def _refuse_following(self) -> None:
-        for each in self.loaded.model.constraints:
-            if each.follow == "reference":
-                message = "there is no reference to follow; give reference: or --reference, or follow: input"
-                raise self.loaded.error((*each.keys, "follow"), message)
-
     def _constraints(self, sized: SizedClip, task: ClipTask, faults: Faults) -> list[ClipConstraint]:
         spec = self.loaded.model
         place = resolve.Place(self.loaded, ("events",), task.label)
-        none: dict[str, float] = {}
 
         def frames() -> dict[str, float]:
             known = explicit_events(self.loaded, sized.facts.clip, relative=task.relative, others=self.others)
             return event_frames(spec.events, sized.facts, place, known=known)
 
-        events = faults.get(frames, otherwise=none)
-        scale, relative = sized.scale, task.relative
-        return clip_constraints(self.loaded, sized.facts, events, scale=scale, faults=faults, relative=relative)
+        events = faults.get(frames, otherwise=None)
+        found, scale, relative = Faults(), sized.scale, task.relative
+        constraints = clip_constraints(
+            self.loaded, sized.facts, events or {}, scale=scale, faults=found, relative=relative
+        )
+        for error in found.errors:
+            # Of an event whose frame is at fault itself that has been said.
+            if events is not None or not isinstance(error, resolve.NoEventFrameError):
+                faults.add(error)
+        return constraints
 
     def settings(self, clip: Clip) -> LayeredSettings:
         """Return how the spec wants a clip solved."""
@@ -254,9 +256,7 @@ class EditByPriorities:
             result.status,
             (*sized.warnings, *immovable, *breaches, *rest, *loose, *result.warnings),
             motion=_in_clip_units(edit, sized, slice(None)) if changed and self.verify else None,
-            details=(*layer_lines(asked, edit.recruits, sized.body.hinges, facts), *breaches)
-            if self.tells_plan
-            else (),
+            details=(*layer_lines(asked, edit.recruits, sized), *breaches) if self.tells_plan else (),
         )
 
     def _about(self, sized: SizedClip, before: Trace, after: Trace, steps: Steps) -> dict[str, Any]:

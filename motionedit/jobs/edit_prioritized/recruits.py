@@ -6,28 +6,49 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from motionedit.core.body.bones import below
+from motionedit.core.priorities.edit import RecruitingError, recruit
 from motionedit.core.priorities.kinds.constraint import Movable
 from motionedit.core.priorities.recruiting import Recruits
 from motionedit.core.priorities.solver.problem import order_of_layers
+from motionedit.core.priorities.trajectories.lengths import LengthPoint
 from motionedit.jobs.clip import resolve
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from motionedit.core.body.hinges import Hinge
     from motionedit.core.priorities.kinds.constraint import Constraint
     from motionedit.core.priorities.recruiting import Breach
+    from motionedit.core.priorities.trajectories.positions import ControlPoint
     from motionedit.core.skeleton import Skeleton
     from motionedit.errors import MotionEditError
     from motionedit.jobs.clip.facts import ClipFacts
+    from motionedit.jobs.edit_prioritized.body import SizedClip
     from motionedit.spec.edit_prioritized import EditPrioritizedSpec
     from motionedit.spec.load import LoadedSpec
 
 
-def breach_error(
+def refuse_breaches(
+    loaded: LoadedSpec[EditPrioritizedSpec], sized: SizedClip, constraints: Sequence[Constraint]
+) -> None:
+    """Refuse a breach of the recruiting rule where the spec wants none.
+
+    Raises
+    ------
+    SpecError
+        At the recruiting of the higher constraint.
+    """
+    rule = loaded.model.recruiting_rule
+    if rule != "error" or not constraints:
+        return
+    try:
+        recruit(constraints, sized.motion, sized.body, rule=rule)
+    except RecruitingError as error:
+        raise _breach_error(loaded, error.breach, constraints, sized.facts) from None
+
+
+def _breach_error(
     loaded: LoadedSpec[EditPrioritizedSpec], breach: Breach, constraints: Sequence[Constraint], facts: ClipFacts
 ) -> MotionEditError:
-    """Return the error of a breach where the spec wants none, at the recruiting of the higher constraint."""
     keys = loaded.model.constraints[breach.higher].keys
     place = resolve.recruit_place(resolve.Place(loaded, keys, facts.clip.label))
     higher, lower = (constraints[i].name for i in (breach.higher, breach.lower))
@@ -97,31 +118,44 @@ def _immovable(
 _immovable_again = lru_cache(maxsize=4)(_immovable)
 
 
-def layer_lines(
-    constraints: Sequence[Constraint], recruits: Sequence[Recruits], hinges: Sequence[Hinge], facts: ClipFacts
-) -> list[str]:
-    """Return the layers in solving order: each constraint, its interval, and what it may move."""
+def layer_lines(constraints: Sequence[Constraint], recruits: Sequence[Recruits], sized: SizedClip) -> list[str]:
+    """Return the layers in solving order: each constraint, its interval, its points, and what it may move."""
+    facts = sized.facts
     lines = []
     for number, priority in enumerate(order_of_layers([c.priority for c in constraints]), start=1):
         lines.append(f"layer {number}, priority {priority}")
         for constraint, own in zip(constraints, recruits, strict=True):
             if constraint.priority == priority:
-                lines.append(f"  {_constraint_line(constraint, own, facts)}")
+                lines.append(f"  {_constraint_line(constraint, own, sized)}")
     names = facts.clip.motion.skeleton.names
-    lines.append(f"hinges: {', '.join(names[hinge.joint] for hinge in hinges) or 'none'}")
+    lines.append(f"hinges: {', '.join(names[hinge.joint] for hinge in sized.body.hinges) or 'none'}")
     return lines
 
 
-def _constraint_line(constraint: Constraint, recruits: Recruits, facts: ClipFacts) -> str:
+def _constraint_line(constraint: Constraint, recruits: Recruits, sized: SizedClip) -> str:
+    facts = sized.facts
     skeleton = facts.clip.motion.skeleton
     first, last = constraint.active(len(facts.clip.motion))
     parts = [f"{constraint.name}: {constraint.words(skeleton.names)}, frames {first} to {last}"]
     if constraint.points:
-        parts.append(", ".join(point.text for point in constraint.points))
+        parts.append(", ".join(_point_words(point, sized.scale) for point in constraint.points))
     if constraint.weight != 1.0:
         parts.append(f"weight {constraint.weight:g}")
     moved = ", ".join(recruited_names(recruits, facts))
     return f"{'; '.join(parts)}; recruits {moved or 'nothing'}"
+
+
+def _point_words(point: ControlPoint, scale: float) -> str:
+    """Return a point's time and what is asked there, lengths in clip units: places in the world, shifts as given."""
+    words = [point.text]
+    for key in ("position", "shift"):
+        value = getattr(point, key)
+        if value is not None:
+            words.append(f"{key} [{', '.join(f'{part / scale + 0.0:.4g}' for part in value)}]")
+    if isinstance(point, LengthPoint) and point.length is not None:
+        words.append(f"{point.bound} {point.length / scale:.4g}")
+    words += [key for key in ("orientation", "turn") if getattr(point, key) is not None]
+    return " ".join(words)
 
 
 def recruited_names(recruits: Recruits, facts: ClipFacts) -> list[str]:

@@ -10,15 +10,15 @@ from motionedit.core.body.ground import axis_vector
 from motionedit.core.pca.database import FitSettings, build_model, database_space
 from motionedit.core.pca.fit import AllTheSameError, ComponentCount, TooFewComponentsError
 from motionedit.core.pca.model_file import model_bytes
-from motionedit.core.pca.streaming import MOST_COMPONENTS
 from motionedit.dataclass import dataclass
 from motionedit.errors import ModelError, UsageError
 from motionedit.jobs.batch.files import clean_leftovers
 from motionedit.jobs.batch.one_clip import write_file
 from motionedit.jobs.batch.outputs import is_of_another_kind, refuse_clashes
 from motionedit.jobs.batch.pool import threads_within
-from motionedit.jobs.clip import resolve
-from motionedit.jobs.clip.kept_rules import body_said, kept_body, with_body
+from motionedit.jobs.clip.kept_rules import body_said, kept_body, refuse_another_up, with_body
+from motionedit.jobs.clip.unit import unit_doubts
+from motionedit.jobs.fit_pca.asked import excluded_joints, too_few_components
 from motionedit.jobs.fit_pca.database import Motions, database_in
 from motionedit.jobs.fit_pca.report import fit_report
 from motionedit.jobs.normalize.normalization_file import NAME
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from motionedit.core.body.anatomy import GivenBody
     from motionedit.core.pca.model import MotionModel
     from motionedit.core.skeleton import Skeleton
-    from motionedit.errors import MotionEditError
     from motionedit.jobs.batch.plan import RunOptions
     from motionedit.jobs.fit_pca.database import Database
     from motionedit.jobs.fit_pca.report import FitReport
@@ -84,10 +83,12 @@ def fit(database: Database, loaded: LoadedSpec[FitPcaSpec] | None, *, options: R
         raise ModelError(f"lists {count} clip; a PCA needs two or more", file=database.list_label)
     motions = Motions(database, options)
     first = motions.first
+    if loaded is not None:
+        refuse_another_up(loaded, normalization.up, by=database.list_label)
     settings = FitSettings(
         representation="centred" if spec.rotation == "centred" else "exponential",
         root_weight=spec.root_weight,
-        excluded=_excluded(loaded, first.skeleton, database.label),
+        excluded=excluded_joints(loaded, first, database.label),
         components=ComponentCount(spec.components, spec.explained_variance),
         threads=threads_within(1, options),
     )
@@ -104,10 +105,11 @@ def fit(database: Database, loaded: LoadedSpec[FitPcaSpec] | None, *, options: R
             rules=with_body(normalization.rules, spec.body),
         )
     except TooFewComponentsError as error:
-        raise _too_few(loaded, spec, count, error.available) from None
+        raise too_few_components(loaded, spec, count, error.available) from None
     except AllTheSameError as error:
         raise ModelError(f"{error}: there is nothing to learn; give clips that differ", file=database.label) from error
-    return Fit(fitted.model, fit_report(fitted, spec, verbosity=options.verbosity))
+    doubts = unit_doubts(leg_length, spec.unit)
+    return Fit(fitted.model, fit_report(fitted, spec, doubts=doubts, verbosity=options.verbosity))
 
 
 def _body(loaded: LoadedSpec[FitPcaSpec] | None, database: Database, skeleton: Skeleton) -> GivenBody:
@@ -116,17 +118,3 @@ def _body(loaded: LoadedSpec[FitPcaSpec] | None, database: Database, skeleton: S
     if loaded is None:
         return kept_body(rules, skeleton, **where)
     return body_said(loaded, rules, skeleton, **where)
-
-
-def _excluded(loaded: LoadedSpec[FitPcaSpec] | None, skeleton: Skeleton, folder: str) -> frozenset[int]:
-    if loaded is None:
-        return frozenset()
-    place = resolve.Place(loaded, ("exclude_joints",), folder)
-    return frozenset(resolve.joints(loaded.model.exclude_joints, skeleton, place))
-
-
-def _too_few(loaded: LoadedSpec[FitPcaSpec] | None, spec: FitPcaSpec, clips: int, available: int) -> MotionEditError:
-    message = f"{clips} clips have {available} components, not {spec.components}"
-    if available == MOST_COMPONENTS:
-        message = f"of {clips} clips at most {available} components are kept, not {spec.components}"
-    return ModelError(message) if loaded is None else loaded.error(("components",), message)

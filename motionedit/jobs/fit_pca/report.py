@@ -38,8 +38,8 @@ class FitReport:
     notes: list[str]
 
 
-def fit_report(fitted: FittedModel, spec: FitPcaSpec, *, verbosity: int = 0) -> FitReport:
-    """Return what is to be said of a fit."""
+def fit_report(fitted: FittedModel, spec: FitPcaSpec, *, doubts: Sequence[str] = (), verbosity: int = 0) -> FitReport:
+    """Return what is to be said of a fit; `doubts` are warnings of its clips."""
     model, pca = fitted.model, fitted.model.components
     record = {
         "frames": model.timeline.frames,
@@ -63,10 +63,12 @@ def fit_report(fitted: FittedModel, spec: FitPcaSpec, *, verbosity: int = 0) -> 
         }
     if fitted.streamed is not None:
         record["streamed"] = {"passes": fitted.streamed.passes, "residual": fitted.streamed.residual}
+    warnings = [*doubts, *_warnings(fitted, spec)]
+    record["warnings"] = warnings
     rows = _rows(pca)
     shown = rows if verbosity > 0 else rows[:MOST_ROWS]
     notes = [*_rest_note(pca, len(shown)), *_notes(fitted, spec)]
-    return FitReport((HEADINGS, shown), record, _warnings(fitted, spec), notes)
+    return FitReport((HEADINGS, shown), record, warnings, notes)
 
 
 def _rows(pca: PrincipalComponents) -> list[tuple[object, ...]]:
@@ -104,6 +106,8 @@ def _warnings(fitted: FittedModel, spec: FitPcaSpec) -> list[str]:
             f"the first {len(shares)} components explain {100 * explained:.2f} % of the variance, not "
             f"{100 * spec.explained_variance:g} %; no more are kept of so many clips"
         )
+    if spec.events:
+        warnings.append("events: nothing is taken from them; a model has the events of its normalized clips")
     return warnings
 
 

@@ -72,6 +72,7 @@ def run(
     """
     question = ask(at, joints)
     texts, records = [], []
+    told: dict[tuple[str, ...], str] = {}
     failures: list[MotionEditError] = []
     lacking: list[MotionEditError] = []
     for task in find_clips(clips):
@@ -85,7 +86,7 @@ def run(
         lacking += errors
         failures += errors
         records.append(record)
-        texts.append(describe(record))
+        texts.append(describe(record, told))
     if lacking and all(record["status"] == "failed" for record in records):
         raise together("no clip has what is asked for", failures)
     return InfoReport("\n".join(texts), records, failures)

@@ -16,9 +16,14 @@ _ZERO_FACES = {"y": "+z", "-y": "-z", "z": "-y", "-z": "+y", "x": "-z", "-x": "+
 _MOST_FRAMES = 8  # of a defect, before the rest is counted
 
 
-def describe(record: dict[str, Any]) -> str:
-    """Return the text of one clip's record, ending in a line's end."""
-    sections = [_facts(record), _tree(record)]
+def describe(record: dict[str, Any], told: dict[tuple[str, ...], str]) -> str:
+    """Return the text of one clip's record, ending in a line's end.
+
+    `told` has the joint trees of clips before it, each with its first clip, which is named in place of the same tree.
+    """
+    tree = _tree(record)
+    first = told.setdefault(tuple(tree), record["clip"])
+    sections = [_facts(record), tree if first == record["clip"] else [f"{tree[0]}, as in {first}"]]
     if "plants" in record:
         sections.append(_plants(record["plants"]))
     if record.get("poses"):

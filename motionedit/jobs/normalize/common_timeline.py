@@ -9,9 +9,10 @@ import numpy as np
 
 from motionedit.core.arrays import median
 from motionedit.core.timeline import round_half_up
-from motionedit.core.timeline.warp import Timeline, make_warp
-from motionedit.errors import ClipError, MotionEditError
+from motionedit.core.timeline.warp import Timeline
+from motionedit.errors import MotionEditError
 from motionedit.jobs.clip.crop import crop_events
+from motionedit.jobs.clip.events import clip_warp
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -39,7 +40,8 @@ def common_timeline(loaded: LoadedSpec[NormalizeSpec], measures: Sequence[ClipMe
     Raises
     ------
     SpecError
-        The clips' rates differ and the spec gives none, or the timeline would have one frame.
+        The clips' rates differ and the spec gives none, the timeline would have one frame, or events do not follow each
+        other on it.
     """
     warnings = [f"'{measures[0].label}' is the only clip: there are no means to take"] if len(measures) == 1 else []
     rate = _rate(loaded, measures, warnings)
@@ -107,7 +109,12 @@ def _events(
                 f"event '{name}' lies at {shares.min():.0%} to {shares.max():.0%} of the clips, furthest off "
                 f"in {odd}: was it found rightly? A badly found event is worse than none"
             )
-    return tuple(sorted(places, key=lambda place: place[1]))
+    places.sort(key=lambda place: place[1])
+    if any(b <= a for a, b in itertools.pairwise([0, *(frame for _, frame in places), timeline.frames - 1])):
+        named = ", ".join(f"'{name}' at {frame}" for name, frame in places)
+        message = f"must lie strictly inside the timeline of {timeline.frames} frames, one after the other: {named}"
+        raise loaded.error(("events",), message)
+    return tuple(places)
 
 
 def _target(loaded: LoadedSpec[NormalizeSpec], name: str, target: Time, timeline: Timeline) -> int:
@@ -118,19 +125,15 @@ def _target(loaded: LoadedSpec[NormalizeSpec], name: str, target: Time, timeline
         raise loaded.error(("events", name, "target"), message) from None
 
 
-def events_out_of_order(measures: Sequence[ClipMeasure], timeline: Timeline) -> dict[str, MotionEditError]:
+def events_out_of_order(
+    loaded: LoadedSpec[NormalizeSpec], measures: Sequence[ClipMeasure], timeline: Timeline
+) -> dict[str, MotionEditError]:
     """Return the clips that cannot be warped to the timeline because their events do not follow each other."""
     failures: dict[str, MotionEditError] = {}
-    knots = [0, *(frame for _, frame in timeline.events), timeline.frames - 1]
-    if any(b <= a for a, b in itertools.pairwise(knots)):
-        named = ", ".join(f"'{name}' at {frame}" for name, frame in timeline.events)
-        message = (
-            f"events must lie strictly inside the timeline of {timeline.frames} frames, one after the other: {named}"
-        )
-        return {measure.label: ClipError(message, file=measure.label) for measure in measures}
     for measure in measures:
         try:
-            make_warp(timeline, first=measure.first, last=measure.last, events=measure.events, label=measure.label)
-        except ClipError as error:
+            span = {"first": measure.first, "last": measure.last}
+            clip_warp(loaded, timeline, **span, events=measure.events, label=measure.label)
+        except MotionEditError as error:
             failures[measure.label] = error
     return failures

@@ -72,7 +72,7 @@ def run(loaded: LoadedSpec[NormalizeSpec], clips: Sequence[Path], output: Path, 
         clips, str(output), options=options, depends=loaded.files, writes=writes, verdicts=verdicts, found=found
     )
     if all(task.current for task in tasks) and (output / NAME).exists():
-        return earlier(tasks, options)
+        return replace(earlier(tasks, options), more={"warnings": []})
     # One clip that changed moves the means: all are made anew.
     anew = [replace(task, current=False) if task.current else task for task in tasks]
     first = partial(_remove_list, output / NAME)
@@ -135,7 +135,7 @@ def _both_phases(
     if failures and (not options.keep_going or not measures):
         return Normalized(_failed(tasks, failures))
     timeline, warnings = common_timeline(loaded, measures)
-    bad_order = events_out_of_order(measures, timeline)
+    bad_order = events_out_of_order(loaded, measures, timeline)
     if bad_order and not options.keep_going:
         return Normalized(_failed(tasks, bad_order))
     failures |= bad_order
@@ -218,6 +218,7 @@ def _failed(tasks: Sequence[ClipTask], failures: dict[str, MotionEditError]) -> 
         records=records,
         failures=_one_by_one(failures),
         seconds=[0.0] * len(records),
+        more={"warnings": []},
     )
 
 
@@ -248,4 +249,5 @@ def _with_failures(
         notices=[*map(Notice, warnings), *result.notices],
         failures=[*_one_by_one(failures), *result.failures],
         exit_code=EXIT_CLIP_FAILED if failures else result.exit_code,
+        more={"warnings": warnings},
     )

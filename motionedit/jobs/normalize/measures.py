@@ -99,7 +99,7 @@ class MeasureClip:
             travel=facts.travel,
             stands=facts.stands(at),
             lines=lines,
-            warnings=(*facts.warnings, *unit_doubts(facts, spec.unit), *warnings),
+            warnings=(*facts.warnings, *unit_doubts(facts.anatomy.leg_length, spec.unit), *warnings),
         )
 
 

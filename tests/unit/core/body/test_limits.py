@@ -11,6 +11,7 @@ from motionedit.core import rotations as rot
 from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.body.limits import NECK, Range, given_limits, human_limits, swing_and_twist
 from motionedit.core.kinematics import forward
+from motionedit.dataclass import replace
 
 SKELETON = skeleton_of()
 INDEX = SKELETON.names.index
@@ -68,6 +69,28 @@ def test_given_limits_are_of_the_joints_that_are_named():
     limits = by_name(found, SKELETON)
     np.testing.assert_allclose(limits["Head"].swing, np.radians(20.0))
     np.testing.assert_allclose(limits["LeftArm"].twist, np.radians(45.0))
+
+
+def heaped():
+    """Return the skeleton with all children of the hips where the hips are."""
+    offsets = SKELETON.offsets.copy()
+    offsets[SKELETON.parents == INDEX("Hips")] = 0.0
+    return replace(SKELETON, offsets=offsets)
+
+
+def spread():
+    """Return hips between two joints, as far on one side as on the other."""
+    sides = [("Left", "Hips", [10.0, 0.0, 0.0]), ("Right", "Hips", [-10.0, 0.0, 0.0])]
+    return skeleton_of([("Hips", None, [0.0, 0.0, 0.0]), *sides])
+
+
+@pytest.mark.parametrize("skeleton", [heaped(), spread()], ids=["heaped", "spread"])
+def test_a_joint_has_a_bone_where_its_children_are_heaped_or_opposite(skeleton):
+    motion = standing(skeleton)
+    found = given_limits(motion, forward(motion), {0: Range(5.0, 5.0)}, first=0)
+    np.testing.assert_allclose(np.linalg.norm(found.along, axis=1), 1.0)
+    swing, _ = swing_and_twist(rot.exp(np.array([0.5, 0.5, 0.5])), found.along[0])
+    assert swing > 0.1
 
 
 def test_no_given_limits_are_none():
