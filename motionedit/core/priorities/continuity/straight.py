@@ -81,8 +81,8 @@ def _is_recruited(run: Run, bend: Bend) -> BoolArray:
 
 
 def _is_better(after: Solved, before: Solved) -> BoolArray:
-    """Return at which frames the most important layer that differs is nearer to its goals, shape (F,)."""
-    gains = before.left - after.left
+    """Return at which frames the most important layer that differs is nearer to its goals, shape (F,): met is met."""
+    gains = np.maximum(before.left, _MISSED) - np.maximum(after.left, _MISSED)
     gains[np.abs(gains) < 0.1 * _MISSED] = 0.0
     first = np.argmax(gains != 0.0, axis=1)
     better: BoolArray = gains[np.arange(len(gains)), first] > 0.0

@@ -72,6 +72,14 @@ def test_the_hips_go_down_on_straight_legs_whose_feet_are_held(passes):
 
 
 @pytest.mark.usefixtures("solver")
+@pytest.mark.parametrize(("down", "ease", "first", "last"), [(0.05, 32, 40, 60), (0.2, 24, 30, 45)])
+def test_hips_that_ease_down_slowly_do_so_where_feet_are_met_a_little_less_well(down, ease, first, last):
+    goal = wanted("Hips", (0.0, -down, 0.0), first=first, last=last, ease_in=ease, ease_out=ease)
+    edit = edited(standing(SKELETON, 160), [goal, *feet()])
+    assert max(errors.positions.max() for errors in edit.errors if errors.positions is not None) < 1e-5
+
+
+@pytest.mark.usefixtures("solver")
 def test_the_hips_go_down_on_knees_that_a_capture_has_past_straight_all_along():
     motion = standing(SKELETON, FRAMES)
     for side in ("Left", "Right"):
