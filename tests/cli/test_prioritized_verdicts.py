@@ -21,7 +21,7 @@ def test_an_unreachable_hand_warns_and_fails_strict_alone(edit):
     done = edit([far], "--strict")
     assert done.result.exit_code == 3
     assert done.record["status"] == done.constraint("hand")["status"] == "unreachable"
-    assert done.warnings[0].endswith("(tolerance 0.102): out of reach of the joints it recruits")
+    assert done.warnings[0].endswith("(tolerance 0.1018): out of reach of the joints it recruits")
     assert done.record["message"] == done.warnings[0].removeprefix("motionedit: warning: ")
     assert done.path.exists()
     assert edit([far]).result.exit_code == 0

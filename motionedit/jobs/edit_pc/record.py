@@ -156,8 +156,8 @@ def _missed(record: dict[str, Any], reason: str, records: Sequence[dict[str, Any
     if record["error_angle_max"] is not None:
         parts.append(f"turned {record['error_angle_max']:.4g} degrees from its goal at frame {record['frame']}")
     limits = [
-        f"{record['tolerance']:.3g}" if record["tolerance"] is not None else "",
-        f"{record['tolerance_angle']:.3g} degrees" if record["tolerance_angle"] is not None else "",
+        f"{record['tolerance']:.4g}" if record["tolerance"] is not None else "",
+        f"{record['tolerance_angle']:.4g} degrees" if record["tolerance_angle"] is not None else "",
     ]
     missed = f"{record['name']}: {' and '.join(parts)} (tolerance {', '.join(filter(None, limits))})"
     return f"{missed}: {_gave_way(record, records) if record['gave_way_to'] else _WHY[reason]}"

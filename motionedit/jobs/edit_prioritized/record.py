@@ -150,5 +150,5 @@ def _missed_by(one: Measured) -> str:
     ):
         if values is not None and values.max() > limit:
             parts.append(f"{words.format(values.max())} at frame {one.first + first_worst(values / limit)}")
-            limits.append(f"{limit:.3g}{unit}")
+            limits.append(f"{limit:.4g}{unit}")
     return f"{each.constraint.name}: {' and '.join(parts)} (tolerance {', '.join(limits)})"
