@@ -63,6 +63,10 @@ class Bend:
     angles: FloatArray
     bent: tuple[float, float]
 
+    def angles_in(self, rotations: FloatArray) -> FloatArray:
+        """Return how far it is bent, shape (n,), rad, from -pi to pi, by local rotations of all joints, (n, J, 4)."""
+        return turns_about(self.axis, self.upper, rot.rotate(rotations[:, self.joint], self.lower))
+
 
 def find_bends(skeleton: Skeleton, poses: WorldPoses, anatomy: Anatomy, *, first: int) -> tuple[Bend, ...]:
     """Return the bends of knees and elbows, left before right, knees first.

@@ -8,7 +8,6 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
-from motionedit.core.body.bends import turns_about
 from motionedit.core.motion import Motion
 from motionedit.dataclass import dataclass
 
@@ -50,7 +49,7 @@ def hold_bends(motion: Motion, bends: Sequence[Bend], *, first: int) -> HeldBend
     """
     rotations, turned = motion.rotations.copy(), []
     for bend in bends:
-        now = _bent(turns_about(bend.axis, bend.upper, rot.rotate(rotations[first:, bend.joint], bend.lower)))
+        now = _bent(bend.angles_in(rotations[first:]))
         least, most = bend.bent
         low, high = min(0.0, least), max(_SHUT, most)
         if ((low - _ROUNDING <= now) & (now <= high + _ROUNDING)).all():

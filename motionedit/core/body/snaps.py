@@ -6,8 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motionedit.core import rotations as rot
-from motionedit.core.body.bends import turns_about
 from motionedit.core.body.steps import STEP_RATE
 from motionedit.dataclass import dataclass
 
@@ -53,8 +51,7 @@ def snaps(after: Motion, bends: Sequence[Bend], *, first: int, touched: BoolArra
     for bend in bends:
         if not touched[bend.joint]:
             continue
-        lower = rot.rotate(after.rotations[first:, bend.joint], bend.lower)
-        taken = pace_changes(turns_about(bend.axis, bend.upper, lower), after.frame_time)
+        taken = pace_changes(bend.angles_in(after.rotations[first:]), after.frame_time)
         worst = int(np.argmax(taken))
         if taken[worst] <= SNAP:
             continue

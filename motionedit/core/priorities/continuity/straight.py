@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.body.bends import turns_about
 from motionedit.core.motion import Motion
 from motionedit.core.priorities.frames import Known, Solved, solve_frames
 from motionedit.dataclass import replace
@@ -67,7 +66,7 @@ def _is_ever_straight(bend: Bend) -> bool:
 
 def _back(rotations: FloatArray, bend: Bend) -> FloatArray:
     """Return how far a limb of a motion is bent back, shape (F,), rad: 0 where it is not, or no more than straight."""
-    angles = turns_about(bend.axis, bend.upper, rot.rotate(rotations[:, bend.joint], bend.lower))
+    angles = bend.angles_in(rotations)
     return np.where(angles < -_BACK, -angles, 0.0)
 
 

@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 
 from motionedit.core import rotations as rot
+from motionedit.core.body.bends import Bend
 from motionedit.core.body.snaps import SNAP, pace_changes, snaps
 
 AXIS, DOWN = np.array([1.0, 0.0, 0.0]), np.array([0.0, -1.0, 0.0])
 
 
 def bend_of(angles):
-    return SimpleNamespace(joint=1, axis=AXIS, upper=DOWN, lower=DOWN, angles=angles)
+    return Bend(1, AXIS, np.zeros(len(angles), dtype=np.bool_), DOWN, DOWN, angles, (angles.min(), angles.max()))
 
 
 def motion_of(angles, frame_time):
