@@ -80,16 +80,16 @@ class Solving:
         ).motion
 
     def _stand(self, edit: CoefficientEdit, still: Collection[int], *, feet: Sequence[StandingFoot]) -> CoefficientEdit:
-        if self.spec.feet_in_force == "off":
-            return edit
-        return edit_standing(edit, self._again, self.requests, self.facts, feet=feet, still=still)
+        return edit_standing(edit, self._again, self.requests, self.facts, feet=feet, still=still) if feet else edit
 
     def _feet_of(self, edit: CoefficientEdit) -> list[StandingFoot]:
-        """Return the feet that stand in an edit, and where."""
-        facts = self.facts
+        """Return the feet that stand in an edit, and where; none where they are left alone."""
+        facts, places = self.facts, self.spec.feet_in_force
+        if places == "off":
+            return []
         motion, anatomy, plants = facts.clip.motion, facts.anatomy, foot_plants(facts.plants)
         feet = standing_feet(motion, anatomy, plants, fixed=self._fixed, left_alone=self._left_alone)
-        return carried(feet, edit.motion, motion, anatomy, up=facts.up) if self.spec.feet_in_force == "move" else feet
+        return carried(feet, edit.motion, motion, anatomy, up=facts.up) if places == "move" else feet
 
     @cached_property
     def _left_alone(self) -> frozenset[int]:
