@@ -13,6 +13,8 @@ from motionedit.core.arrays import frozen
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
+    from collections.abc import Hashable
+
     from motionedit.core.arrays import FloatArray
     from motionedit.core.kinematics import WorldPoses
 
@@ -34,6 +36,11 @@ class Measure:
     axes: FloatArray = field(default_factory=lambda: frozen(np.eye(3)))
     counted: tuple[int, ...] = (0, 1, 2)
     base: int | None = None
+
+    @cached_property
+    def key(self) -> Hashable:
+        """What is equal of measures that are the same."""
+        return self.axes.tobytes(), self.counted, self.base
 
     @cached_property
     def rows(self) -> FloatArray:

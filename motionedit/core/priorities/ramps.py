@@ -13,6 +13,7 @@ import numpy as np
 
 from motionedit.core.arrays import frozen
 from motionedit.core.blocks import BLOCK_FRAMES
+from motionedit.core.priorities.agreeing import agreed
 from motionedit.core.priorities.groups import Ramp, seen_by
 from motionedit.core.priorities.solver.constants import NO_DISPLACEMENT
 from motionedit.core.priorities.task_targets import Targets, moved
@@ -90,13 +91,16 @@ def ends_in(asked: Asked, motion: Motion) -> Ends:
 
 
 def led_to(asked: Asked, ends: Ends) -> tuple[Targets, ...]:
-    """Return the targets of all constraints, ramps moved along so that they end there: T + left (end' - end)."""
+    """Return the targets of all constraints, ramps moved along so that they end there: T + left (end' - end).
+
+    Those of the same task agree as before.
+    """
     targets = list(asked.targets)
     for i, (ramps, places) in enumerate(zip(asked.ramps, ends, strict=True)):
         for ramp, place in zip(ramps, places, strict=True):
             if apart(ramp.end, place) > NO_DISPLACEMENT:
                 targets[i] = moved(targets[i], ramp.end, place, ramp.left[targets[i].span])
-    return tuple(targets)
+    return agreed(asked.constraints, targets, len(asked.motion))
 
 
 def led_frames(asked: Asked, one: Ends, other: Ends) -> BoolArray:

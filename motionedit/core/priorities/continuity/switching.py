@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.priorities.agreeing import agreed
 from motionedit.core.priorities.continuity.passes import solve_in_passes
 from motionedit.core.priorities.frames import run_of
 from motionedit.core.priorities.ramps import ramps_of, task_at
@@ -57,7 +58,10 @@ class _Alone:
 
 
 def _eased(asked: Asked, ramps: Ramps, members: Members, alone: _Alone) -> Asked:
-    """Return what some constraints ask for, with ramps from and to where the others of them alone have each one's."""
+    """Return what some constraints ask for, with ramps from and to where the others of them alone have each one's.
+
+    Those of the same task agree in their ramps.
+    """
     targets, led = list(asked.targets), list(ramps)
     for i in members:
         own = list(ramps[i])
@@ -69,7 +73,8 @@ def _eased(asked: Asked, ramps: Ramps, members: Members, alone: _Alone) -> Asked
             targets[i] = moved(targets[i], reached(asked, i, asked.motion), reached(asked, i, there), left)
             own[k] = replace(ramp, end=task_at(asked, i, there, ramp.outside))
         led[i] = tuple(own)
-    return replace(asked, targets=tuple(targets), ramps=tuple(led)).only(members)
+    found = replace(asked, targets=tuple(targets), ramps=tuple(led)).only(members)
+    return replace(found, targets=agreed(found.constraints, found.targets, len(asked.motion)))
 
 
 def _others(asked: Asked, i: int, ramp: Ramp, members: Members) -> Members:

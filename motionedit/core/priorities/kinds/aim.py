@@ -20,6 +20,8 @@ from motionedit.core.units import METRES_PER_RADIAN
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
+    from collections.abc import Hashable
+
     from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.motion import Motion
@@ -51,6 +53,11 @@ class Aim(EffectorConstraint):
     def seen(self) -> Measure:
         """What it is measured in: the frame of the joint that is looked at, where there is one."""
         return self.measure if self.target is None else Measure(base=self.target)
+
+    @property
+    def about(self) -> Hashable:
+        """The axis that looks, and in whose frame what it looks at is."""
+        return self.type, self.effector.joint, self.effector.offset.tobytes(), self.axis.tobytes(), self.base
 
     @property
     def base(self) -> int | None:

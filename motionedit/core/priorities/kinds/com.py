@@ -18,7 +18,7 @@ from motionedit.core.priorities.trajectories.positions import position_targets
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Hashable, Iterator, Mapping
 
     from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.kinematics import WorldPoses
@@ -52,6 +52,11 @@ class CenterOfMass(Constraint):
     relative_to: Literal["support", "world"] = "support"
     measure: Measure = WORLD
     recruit: RecruitRule = EVERYTHING
+
+    @property
+    def about(self) -> Hashable:
+        """The center of mass, along the axes that count."""
+        return self.type, self.measure.key
 
     @property
     def members(self) -> tuple[int, ...]:

@@ -17,7 +17,7 @@ from motionedit.core.priorities.trajectories.positions import active_interval, s
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Hashable, Iterator, Mapping
     from typing import Self
 
     from motionedit.core.arrays import FloatArray, IntArray
@@ -194,6 +194,11 @@ class Constraint(ABC):
     @property
     def least(self) -> Level | None:
         """The height below which it wants none of its points; None where it says nothing of it."""
+        return None
+
+    @property
+    def about(self) -> Hashable:
+        """What its targets are the targets of, equal to another's that asks for the same task; None where none can."""
         return None
 
     def active(self, frames: int) -> tuple[int, int]:

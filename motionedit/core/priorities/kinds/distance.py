@@ -19,6 +19,8 @@ from motionedit.core.priorities.trajectories.lengths import length_targets
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
+    from collections.abc import Hashable
+
     from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.motion import Motion
@@ -45,6 +47,12 @@ class Distance(EffectorConstraint):
 
     to: Effector
     points: tuple[LengthPoint, ...] = ()
+
+    @property
+    def about(self) -> Hashable:
+        """Its two ends; a bound on one side agrees with others as it is."""
+        ends = [(end.joint, end.offset.tobytes()) for end in self._ends]
+        return None if self.one_sided else (self.type, *ends)
 
     @property
     def bound(self) -> Bound:

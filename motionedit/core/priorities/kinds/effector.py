@@ -17,6 +17,8 @@ from motionedit.core.priorities.task_targets import Targets
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
+    from collections.abc import Hashable
+
     from motionedit.core.arrays import FloatArray
     from motionedit.core.priorities.kinds.constraint import Scene
     from motionedit.core.priorities.sight import Sight
@@ -47,6 +49,11 @@ class EffectorConstraint(Constraint):
     def at(self) -> Effector:
         """The effector."""
         return self.effector
+
+    @property
+    def about(self) -> Hashable:
+        """The kind, the effector, and what it is measured in."""
+        return self.type, self.effector.joint, self.effector.offset.tobytes(), self.measure.key
 
     @property
     def base(self) -> int | None:

@@ -71,12 +71,12 @@ def test_the_hand_does_not_jump_where_a_constraint_begins_over_another(over):
 
 
 def test_the_hand_does_not_jump_where_a_ramp_ends_within_that_of_a_third():
-    first, second = riding((0.0, 0.25, 0.1), 14, 22, priority=4), riding((0.15, 0.0, 0.1), 26, 40, priority=4)
+    first, second = riding((0.0, 0.25, 0.1), 14, 22, priority=4), riding((0.15, 0.0, 0.1), 26, 40, priority=3)
     third = riding((0.1, 0.2, 0.0), 42, 50, priority=9)
     after, before = (path(each, "RightHand") for each in (edited(MOTION, [first, second, third]).motion, MOTION))
     bends = np.linalg.norm(np.diff(after - before, 2, axis=0), axis=1)
     # Where the first ends, 34, the third has begun to take over from both, 30.
-    assert bends.max() < 15.0 * MM
+    assert bends.max() < 20.0 * MM
 
 
 def test_what_others_do_not_move_keeps_its_targets():

@@ -1,0 +1,116 @@
+"""Constraints of one priority on one task: where their ramps overlap they agree on a way, and all of them are met."""
+
+import numpy as np
+import pytest
+from person import BODY, edited, end, held, path, swaying
+
+from motionedit.core import rotations as rot
+from motionedit.core.priorities.agreeing import agreed
+from motionedit.core.priorities.edit import prepare
+from motionedit.core.priorities.kinds import Aim, CenterOfMass, Distance, Orientation, Pose, Position
+from motionedit.core.priorities.settings import LayeredSettings
+from motionedit.core.priorities.trajectories.lengths import LengthPoint
+from motionedit.core.priorities.trajectories.positions import ControlPoint
+
+FRAMES = 80
+MOTION = swaying(FRAMES)
+# The ramps of both take 14 frames: from 26, to 50.
+SPANS = (30, 36), (40, 46)
+EASE = 14
+SHIFTS = np.array([[0.1, 0.1, 0.1], [-0.05, 0.1, 0.15]])
+TURNS = rot.exp(np.array([[0.3, 0.2, 0.0], [0.0, -0.2, 0.3]]))
+PLACES = np.array([[0.5, 1.5, 2.0], [-0.5, 1.8, 2.0]])
+
+
+def two(kind, points, **more):
+    """Return a constraint for each of the points."""
+    return [
+        kind(name=f"{kind.type}-{k}", points=(point,), ease_in=EASE, ease_out=EASE, **more)
+        for k, point in enumerate(points)
+    ]
+
+
+def points(*, shifts=(None, None), turns=(None, None), places=(None, None)):
+    rows = zip(SPANS, places, shifts, turns, strict=True)
+    return [ControlPoint("during", *span, place, shift, turn=turn) for span, place, shift, turn in rows]
+
+
+def constraints_of(kind):
+    """Return two constraints of a kind that want other things of the same."""
+    if kind is CenterOfMass:
+        return two(kind, points(shifts=0.3 * SHIFTS), relative_to="world")
+    if kind is Distance:
+        spans = [LengthPoint("during", *span, length=each) for span, each in zip(SPANS, (0.5, 0.4), strict=True)]
+        return two(kind, spans, effector=end("RightHand"), to=end("LeftHand"))
+    given = {
+        Position: {"shifts": SHIFTS},
+        Pose: {"shifts": SHIFTS, "turns": TURNS},
+        Orientation: {"turns": TURNS},
+        Aim: {"places": PLACES},
+    }[kind]
+    return two(kind, points(**given), effector=end("Head" if kind is Aim else "RightHand"))
+
+
+def left_of(constraints):
+    """Return what an edit leaves of constraints, metres or radians: the largest of each."""
+    errors = edited(MOTION, constraints, LayeredSettings()).errors
+    return [max(part.max() for part in (each.positions, each.angles) if part is not None) for each in errors]
+
+
+@pytest.mark.parametrize("kind", [Position, Pose, Orientation, Aim, CenterOfMass, Distance])
+def test_both_are_met_in_their_points_and_where_their_ramps_overlap(kind):
+    assert max(left_of(constraints_of(kind))) < 1e-4
+
+
+def test_their_points_are_met_as_they_were_asked_for():
+    after, before = (path(each, "RightHand") for each in (edited(MOTION, constraints_of(Position)).motion, MOTION))
+    for (first, last), shift in zip(SPANS, SHIFTS, strict=True):
+        moved = (after - before)[first : last + 1]
+        np.testing.assert_allclose(moved, np.broadcast_to(shift, moved.shape), atol=1e-5)
+
+
+def test_the_way_from_one_to_the_other_is_smooth():
+    after, before = (path(each, "RightHand") for each in (edited(MOTION, constraints_of(Position)).motion, MOTION))
+    steps = np.linalg.norm(np.diff(after - before, axis=0), axis=1)
+    # From shift to shift in four frames: 17 cm.
+    apart = np.linalg.norm(SHIFTS[1] - SHIFTS[0])
+    assert steps[36:40].max() < 0.45 * apart
+    assert np.delete(steps, slice(36, 40)).max() < 0.15 * apart
+
+
+def test_the_heavier_has_more_to_say_on_the_way():
+    def middle(weight):
+        one, other = constraints_of(Position)
+        heavy = type(one)(**{**vars(one), "weight": weight})
+        moved = path(edited(MOTION, [heavy, other]).motion, "RightHand")[38] - path(MOTION, "RightHand")[38]
+        return np.linalg.norm(moved - SHIFTS[0])
+
+    assert middle(3.0) < 0.5 * middle(1.0)
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        {"priority": 2},
+        {"effector": end("LeftHand")},
+        {"effector": end("RightHand", (0.0, 0.1, 0.0))},
+        {"points": points(shifts=SHIFTS)[:1]},
+    ],
+)
+def test_those_that_are_no_equals_or_contradict_each_other_keep_their_targets(other):
+    one, second = constraints_of(Position)
+    given = [one, type(second)(**{**vars(second), **other})]
+    targets = prepare(MOTION, given, BODY, LayeredSettings())[0].asked.targets
+    assert all(a is b for a, b in zip(agreed(given, targets, FRAMES), targets, strict=True))
+
+
+def test_those_that_last_the_whole_clip_keep_their_targets():
+    given = [held("RightHand", FRAMES), constraints_of(Position)[0]]
+    targets = prepare(MOTION, given, BODY, LayeredSettings())[0].asked.targets
+    assert all(a is b for a, b in zip(agreed(given, targets, FRAMES), targets, strict=True))
+
+
+@pytest.mark.parametrize("bound", ["at_least", "at_most"])
+def test_a_bound_on_one_side_is_about_nothing_that_another_could_agree_to(bound):
+    point = LengthPoint("during", 3, 9, length=0.5, bound=bound)
+    assert Distance(name="d", effector=end("RightHand"), to=end("LeftHand"), points=(point,)).about is None
