@@ -1,7 +1,9 @@
-"""Constraints of one priority that ask for the same task agree in their ramps: nobody asked for a way of their own.
+"""Constraints that ask for the same task: a more important one overrules others, and equals agree in their ramps.
 
-Of equals that are eased in by s, whose targets are T, all ask for sum b T / sum b there, b = w^2 s / (1 - s): the one
-whose points are at hand has all the say.
+Where one of a higher priority is active, those below it have no freedom. They are not solved for: what they may move
+they would move, and it would be moved back. And nobody asked for the way of a ramp. Of equals that are eased in by s,
+whose targets are T, all ask for sum b T / sum b there, b = w^2 s / (1 - s): the one whose points are at hand has all
+the say. Those that are overruled in a ramp ask for what overrules them.
 """
 
 from __future__ import annotations
@@ -15,38 +17,69 @@ from motionedit.core.priorities.task_targets import Targets, between
 if TYPE_CHECKING:
     from collections.abc import Hashable, Sequence
 
-    from motionedit.core.arrays import FloatArray
+    from motionedit.core.arrays import BoolArray, FloatArray
     from motionedit.core.priorities.kinds.constraint import Constraint
 
 
+# At the end of its ramp a constraint has a say all the same.
+_LEAST_SHARE = 1e-12
+
+
 def agreed(constraints: Sequence[Constraint], targets: Sequence[Targets], frames: int) -> tuple[Targets, ...]:
-    """Return the targets of constraints in a clip of so many frames, ramps of equals in agreement.
+    """Return the targets of constraints in a clip of so many frames, ramps of the same task in agreement.
 
     Equals whose points overlap contradict each other: they are left to share by weight.
     """
     found = list(targets)
-    for which in _equals(constraints):
-        active = np.zeros((len(which), frames), dtype=np.bool_)
-        for row, i in zip(active, which, strict=True):
-            row[found[i].span] = True
+    for which in _same_tasks(constraints):
+        active = _active([found[i] for i in which], frames)
         several = active.sum(axis=0) > 1
-        shares = active * [constraints[i].share(frames) for i in which]
-        if not several.any() or ((shares == 1.0).sum(axis=0) > 1).any():
+        if not several.any():
             continue
-        theirs = _mean([found[i] for i in which], _say([constraints[i].weight for i in which], shares))
-        for i, follows in zip(which, several & (shares < 1.0), strict=True):
+        together = [constraints[i] for i in which]
+        leads, shares = _leading(together, active), np.array([each.share(frames) for each in together])
+        if ((leads & (shares == 1.0)).sum(axis=0) > 1).any():
+            continue
+        say = _say([each.weight for each in together], leads * np.maximum(shares, _LEAST_SHARE))
+        theirs = _mean([found[i] for i in which], say)
+        for i, follows in zip(which, several & active & (shares < 1.0), strict=True):
             span = found[i].span
             found[i] = between(found[i], theirs.within(span), follows[span].astype(np.float64))
     return tuple(found)
 
 
-def _equals(constraints: Sequence[Constraint]) -> list[list[int]]:
-    """Return the constraints that ask for the same task with the same priority, task by task, where there are two."""
-    equals: dict[Hashable, list[int]] = {}
+def overruled(constraints: Sequence[Constraint], targets: Sequence[Targets], frames: int) -> BoolArray:
+    """Return at which frames constraints are overruled by one of a higher priority, shape (F, C)."""
+    without = np.zeros((frames, len(constraints)), dtype=np.bool_)
+    for which in _same_tasks(constraints):
+        active = _active([targets[i] for i in which], frames)
+        without[:, which] = (active & ~_leading([constraints[i] for i in which], active)).T
+    return without
+
+
+def _same_tasks(constraints: Sequence[Constraint]) -> list[list[int]]:
+    """Return the constraints that ask for a task of which there are several, task by task."""
+    tasks: dict[Hashable, list[int]] = {}
     for i, each in enumerate(constraints):
         if each.about is not None:
-            equals.setdefault((each.about, each.priority), []).append(i)
-    return [which for which in equals.values() if len(which) > 1]
+            tasks.setdefault(each.about, []).append(i)
+    return [which for which in tasks.values() if len(which) > 1]
+
+
+def _active(targets: Sequence[Targets], frames: int) -> BoolArray:
+    """Return at which frames targets are those of something, shape (n, F)."""
+    active = np.zeros((len(targets), frames), dtype=np.bool_)
+    for row, each in zip(active, targets, strict=True):
+        row[each.span] = True
+    return active
+
+
+def _leading(constraints: Sequence[Constraint], active: BoolArray) -> BoolArray:
+    """Return at which frames constraints are of the highest priority of those that are active, shape (n, F)."""
+    priorities = np.array([each.priority for each in constraints])[:, None]
+    highest = np.where(active, priorities, priorities.min()).max(axis=0)
+    leading: BoolArray = active & (priorities == highest)
+    return leading
 
 
 def _say(weights: Sequence[float], shares: FloatArray) -> FloatArray:

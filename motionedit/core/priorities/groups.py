@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.priorities.agreeing import overruled
 from motionedit.core.priorities.held_columns import held_columns
 from motionedit.core.priorities.kinds.constraint import Stage
 from motionedit.core.priorities.plans import frames_together, plan_of
@@ -154,12 +155,13 @@ def seen_by(constraints: Sequence[Constraint], motion: Motion, body: Body, *, po
 
 
 def groups_of(asked: Asked) -> tuple[Group, ...]:
-    """Return the frames at which anything is active, together where the same constraints are."""
+    """Return the frames at which anything is active, together where the same constraints are that nothing overrules."""
     active = np.zeros((len(asked.motion), len(asked.constraints)), dtype=np.int8)
     for i, (targets, softness) in enumerate(zip(asked.targets, asked.softness, strict=True)):
         active[targets.span, i] = 1
         if softness is not None:
             active[targets.span, i] += softness[targets.span] > 0.0
+    active[overruled(asked.constraints, asked.targets, len(asked.motion))] = 0
     if asked.body.first:
         active[: asked.body.first][_nothing_is_wanted(asked)] = 0
     together = frames_together(active)
@@ -194,8 +196,7 @@ def part_of(asked: Asked, group: Group, frames: IntArray) -> Group:
     """Return a group of some of a group's frames."""
     if len(frames) == len(group.frames):
         return group
-    members = [i for i, each in enumerate(asked.targets) if each.first <= frames[0] <= each.last]
-    return _group(asked, members, frames)
+    return _group(asked, sorted(chain(*group.members)), frames)
 
 
 def spans_of(frames: IntArray) -> list[IntArray]:

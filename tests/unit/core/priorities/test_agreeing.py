@@ -1,11 +1,11 @@
-"""Constraints of one priority on one task: where their ramps overlap they agree on a way, and all of them are met."""
+"""Constraints on one task: equals agree where their ramps overlap, and a more important one overrules the others."""
 
 import numpy as np
 import pytest
 from person import BODY, edited, end, held, path, swaying
 
 from motionedit.core import rotations as rot
-from motionedit.core.priorities.agreeing import agreed
+from motionedit.core.priorities.agreeing import agreed, overruled
 from motionedit.core.priorities.edit import prepare
 from motionedit.core.priorities.kinds import Aim, CenterOfMass, Distance, Orientation, Pose, Position
 from motionedit.core.priorities.settings import LayeredSettings
@@ -91,13 +91,12 @@ def test_the_heavier_has_more_to_say_on_the_way():
 @pytest.mark.parametrize(
     "other",
     [
-        {"priority": 2},
         {"effector": end("LeftHand")},
         {"effector": end("RightHand", (0.0, 0.1, 0.0))},
         {"points": points(shifts=SHIFTS)[:1]},
     ],
 )
-def test_those_that_are_no_equals_or_contradict_each_other_keep_their_targets(other):
+def test_those_that_ask_for_another_task_or_contradict_each_other_keep_their_targets(other):
     one, second = constraints_of(Position)
     given = [one, type(second)(**{**vars(second), **other})]
     targets = prepare(MOTION, given, BODY, LayeredSettings())[0].asked.targets
@@ -108,6 +107,42 @@ def test_those_that_last_the_whole_clip_keep_their_targets():
     given = [held("RightHand", FRAMES), constraints_of(Position)[0]]
     targets = prepare(MOTION, given, BODY, LayeredSettings())[0].asked.targets
     assert all(a is b for a, b in zip(agreed(given, targets, FRAMES), targets, strict=True))
+
+
+def with_priorities(*priorities, **more):
+    """Return constraints that want a hand in two places, of these priorities."""
+    pairs = zip(constraints_of(Position), priorities, strict=True)
+    return [type(each)(**{**vars(each), "priority": priority, **more}) for each, priority in pairs]
+
+
+@pytest.mark.parametrize("priorities", [(2, 1), (1, 2)])
+def test_the_less_important_is_not_solved_for_where_the_other_is_active(priorities):
+    given = with_priorities(*priorities)
+    targets = prepare(MOTION, given, BODY, LayeredSettings())[0].asked.targets
+    without = overruled(given, targets, FRAMES)
+    lower, higher = np.argsort(priorities)
+    assert not without[:, higher].any()
+    both = np.zeros(FRAMES, dtype=bool)
+    both[max(each.first for each in targets) : min(each.last for each in targets) + 1] = True
+    np.testing.assert_array_equal(without[:, lower], both)
+
+
+def test_the_less_important_asks_for_the_way_of_the_other_in_its_ramp():
+    errors = edited(MOTION, with_priorities(1, 2), LayeredSettings()).errors
+    assert errors[1].positions.max() < 1e-4
+    left, (_, stop) = errors[0], SPANS[0]
+    assert left.positions[: 26 - left.first].max() < 1e-4
+    # The ramp of the other begins at 26: it has the last frames of its points, but not what comes after them.
+    assert left.positions[stop - left.first] > 0.01
+    assert left.positions[stop + 1 - left.first :].max() < 1e-4
+
+
+def test_an_aim_that_is_overruled_does_not_throw_the_body_about():
+    # From one's distance and the other's a body could be found that looks at both.
+    given = [type(each)(**{**vars(each), "priority": k}) for k, each in enumerate(constraints_of(Aim))]
+    change = rot.log(rot.between(MOTION.rotations, edited(MOTION, given, LayeredSettings()).motion.rotations))
+    steps = np.degrees(np.linalg.norm(np.diff(change, axis=0), axis=-1))
+    assert steps.max() < 5.0
 
 
 @pytest.mark.parametrize("bound", ["at_least", "at_most"])
