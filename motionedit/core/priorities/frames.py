@@ -94,7 +94,7 @@ def solve_frames(
     Parameters
     ----------
     pull_root : bool
-        Whether the root's translation is attracted, too.
+        Whether the root's translation is attracted, too; it always is where what is asked pulls it.
     known : Known, optional
         What is known from the solve before.
     in_place : bool
@@ -102,7 +102,8 @@ def solve_frames(
     """
     solved = _unsolved(run, start, known, in_place=in_place)
     travels = bool(run.motion.translations.shape[1])
-    root = np.ascontiguousarray(reference.translations[:, run.place]) if pull_root and travels else None
+    pulls = travels and (pull_root or run.asked.pulls_root)
+    root = np.ascontiguousarray(reference.translations[:, run.place]) if pulls else None
     aim = Reference(reference.rotations, root)
     for group in run.groups:
         # To count is quicker than to ask whether all are.

@@ -77,7 +77,8 @@ def with_targets(
         None if there.rotations is None else arcs_of(there, each.reached(there, here))
         for each, there in zip(constraints, targets, strict=True)
     )
-    return replace(Asked.of(motion, constraints, recruits, targets, body, settings), arcs=arcs)
+    asked = Asked.of(motion, constraints, recruits, targets, body, settings)
+    return replace(asked, arcs=arcs, pulls_root=not any(each.carries for each in constraints))
 
 
 def _ramped(constraint: Constraint, scene: Scene, here: Sight) -> Targets:

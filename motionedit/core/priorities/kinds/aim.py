@@ -45,6 +45,7 @@ class Aim(EffectorConstraint):
     type: ClassVar[str] = "aim"
     turns: ClassVar[bool] = True
     looks: ClassVar[bool] = True
+    carries: ClassVar[bool] = False
 
     axis: FloatArray = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))
     target: int | None = None

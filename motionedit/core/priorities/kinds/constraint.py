@@ -156,6 +156,8 @@ class Constraint(ABC):
     waits_for_others: ClassVar[bool] = False
     # It keeps its effector in place, or brings it there.
     places_effector: ClassVar[bool] = False
+    # Meeting it may be a reason to carry the whole body elsewhere.
+    carries: ClassVar[bool] = True
     # Its place is the body's center of mass, which needs masses.
     weighs: ClassVar[bool] = False
     # Its goals come from where feet stand, which is found before the edit.

@@ -30,6 +30,7 @@ class Orientation(EffectorConstraint):
     type: ClassVar[str] = "orientation"
     turns: ClassVar[bool] = True
     shifts: ClassVar[bool] = False
+    carries: ClassVar[bool] = False
     symbol: ClassVar[Symbol] = "arc"
 
     def targets(self, scene: Scene) -> Targets:

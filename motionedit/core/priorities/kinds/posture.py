@@ -30,6 +30,7 @@ class Posture(Constraint):
     """The listed `joints` keep their local rotations, or have those of the reference where they follow it."""
 
     type: ClassVar[str] = "posture"
+    carries: ClassVar[bool] = False
     symbol: ClassVar[Symbol] = "arc"
 
     joints: tuple[int, ...] = ()

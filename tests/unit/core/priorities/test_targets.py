@@ -5,7 +5,7 @@ from itertools import pairwise, starmap
 
 import numpy as np
 import pytest
-from person import BODY, FEET, SKELETON, end, joint, swaying
+from person import BODY, FEET, SKELETON, edited, end, joint, swaying
 
 from motionedit.core import rotations as rot
 from motionedit.core.measure import Measure
@@ -112,3 +112,11 @@ def test_what_is_left_of_a_constraint_is_the_same_block_by_block(kind, cuts, mon
 def test_what_has_no_place_to_go_back_to_keeps_its_targets(constraint):
     targets = Targets(0, FRAMES - 1)
     assert constraint.reached(targets, None) is targets
+
+
+@pytest.mark.parametrize("more", [[], [Orientation(name="o", effector=HAND, points=(TURNED,), **EASES)]])
+def test_a_body_that_shall_but_turn_stays_where_it_is(more):
+    aside = ControlPoint("hold", 4, 9, np.array([3.0, 1.5, 1.0]))
+    edit = edited(MOTION, [Aim(name="a", effector=end("Head"), points=(aside,), **EASES), *more])
+    assert edit.errors[0].angles.max() < 1e-4
+    assert np.abs(edit.motion.translations - MOTION.translations).max() < 0.12
