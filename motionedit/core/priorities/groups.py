@@ -58,8 +58,8 @@ class Asked:
 
     `softness` has lambda^2 at every frame, shape (F,), of the constraints that give way: see `Problem`. `arcs` has the
     way round of the targets, shape (n, 3), that turn a joint far: see `far_turns`; `ramps` those of each constraint
-    that are led to the edit. `pulls_root`: the root's translation is attracted to the input's in every solve, for nothing
-    that is asked is a reason to carry the body elsewhere.
+    that are led to the edit. `pulls_root`: the root's translation is attracted in every solve, for nothing that is
+    asked is a reason to carry the body elsewhere.
     """
 
     motion: Motion

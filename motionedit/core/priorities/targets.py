@@ -8,7 +8,6 @@ import numpy as np
 
 from motionedit.core.again import once
 from motionedit.core.blocks import frame_blocks
-from motionedit.core.priorities.agreeing import overruled
 from motionedit.core.priorities.far_turns import arcs_of
 from motionedit.core.priorities.groups import Asked, seen_by
 from motionedit.core.priorities.kinds.constraint import ConstraintErrors, Scene
@@ -109,18 +108,14 @@ def errors_of(asked: Asked, motion: Motion, *, poses: WorldPoses | None = None) 
 
 
 def lefts_of(asked: Asked, motion: Motion) -> list[FloatArray]:
-    """Return what is left of each constraint at every frame, metres or radians, shape (F,).
-
-    It is 0 where it is idle or overruled.
-    """
+    """Return what is left of each constraint at every frame, metres or radians, shape (F,); 0 where it is idle."""
     lefts = []
     for errors, targets in zip(errors_of(asked, motion), asked.targets, strict=True):
         left = np.zeros(len(motion))
         parts = [part for part in (errors.positions, errors.angles) if part is not None]
         left[targets.span] = np.max(parts, axis=0)
         lefts.append(left)
-    without = overruled(asked.constraints, asked.targets, len(motion))
-    return [np.where(idle, 0.0, left) for left, idle in zip(lefts, without.T, strict=True)]
+    return lefts
 
 
 def reached(asked: Asked, i: int, motion: Motion) -> Targets:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.priorities.agreeing import overruled
 from motionedit.core.priorities.continuity.shares import shares_of
 from motionedit.core.priorities.continuity.smoothing import in_passes
 from motionedit.core.priorities.continuity.straight import bent_where_missed
@@ -99,9 +100,10 @@ def members_of(level: int, asked: Asked) -> list[int]:
 
 
 def _missed(asked: Asked, which: list[int], motion: Motion) -> BoolArray:
-    """Return where a motion misses some of the constraints, shape (len(which), F)."""
-    missed: BoolArray = np.array(lefts_of(asked.only(which), motion)) > MISSED
-    return missed
+    """Return where a motion misses some of the constraints that nothing overrules there, shape (len(which), F)."""
+    missed = np.array(lefts_of(asked.only(which), motion)) > MISSED
+    asks: BoolArray = missed & ~overruled(asked.constraints, asked.targets, len(motion))[:, which].T
+    return asks
 
 
 def given_way(
