@@ -57,7 +57,7 @@ def test_of_two_goals_of_a_layer_that_give_way_the_one_of_the_larger_weight_is_n
         assert (sum(errors) >= 30.0 - 1e-6).all()
         found.append(errors)
     (one, other), (near, far) = found
-    assert (np.abs(one - other) < 6.0).all()
+    assert abs(one.mean() - other.mean()) < 4.0
     assert (near < 5.0).all()
     assert (far > 25.0).all()
 

@@ -58,7 +58,8 @@ class Body:
 
     Frames before `first` are a rest pose. `bends` are its knees and elbows, where they are known. `mobility` (J,) is
     how readily each joint turns, `root_mobility` how readily the root shifts; 1, the default, is as the paper has it.
-    `limits` are the cones that joints keep to.
+    `limits` are the cones that joints keep to. `upper` is what hangs on the chest, arms and head: goals for it alone
+    are no reason to carry the body elsewhere.
     """
 
     masses: Masses
@@ -69,3 +70,4 @@ class Body:
     mobility: FloatArray | None = None
     root_mobility: float = 1.0
     limits: Limits = NO_LIMITS
+    upper: frozenset[int] = frozenset()

@@ -55,6 +55,7 @@ def with_targets(
     before = here if follows.input is None else seen_by(constraints, follows.input, body)
     theirs = before if follows.reference is None else seen_by(constraints, follows.reference, body)
     seen = [theirs if each.follow == "reference" else before for each in constraints]
+    stays = not any(each.carries(body) for each in constraints)
     free = [i for i, each in enumerate(constraints) if not each.waits_for_others]
     # Most follow the same motion.
     scenes = {id(each): Scene(each, settings.curve, dict, lambda: before) for each in (before, theirs)}
@@ -65,7 +66,8 @@ def with_targets(
         if not free:
             return before
         own = [constraints[i] for i in free], [recruits[i] for i in free], [found[i] for i in free]
-        return seen_by(constraints, solve(Asked.of(motion, *own, body, settings)), body)
+        asked = replace(Asked.of(motion, *own, body, settings), pulls_root=stays)
+        return seen_by(constraints, solve(asked), body)
 
     goals, made = once(lambda: _goals(constraints, found, len(motion))), once(others)
     targets = tuple(
@@ -76,8 +78,7 @@ def with_targets(
         None if there.rotations is None else arcs_of(there, each.reached(there, here))
         for each, there in zip(constraints, targets, strict=True)
     )
-    asked = Asked.of(motion, constraints, recruits, targets, body, settings)
-    return replace(asked, arcs=arcs, pulls_root=not any(each.carries for each in constraints))
+    return replace(Asked.of(motion, constraints, recruits, targets, body, settings), arcs=arcs, pulls_root=stays)
 
 
 def _ramped(constraint: Constraint, scene: Scene, here: Sight) -> Targets:

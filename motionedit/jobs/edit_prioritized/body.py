@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.body.bones import below
 from motionedit.core.body.center_of_mass import Masses, find_masses, scaled_masses
 from motionedit.core.body.hinges import OFF_AXIS_ENERGY, Hinge, channel_hinges, find_hinges, hinge_of, with_limits_of
 from motionedit.core.body.limits import Limits, Range, given_limits, human_limits
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import FloatArray
     from motionedit.core.body.bends import Bend
+    from motionedit.core.skeleton import Skeleton
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.spec.edit_prioritized import EditPrioritizedSpec
     from motionedit.spec.load import LoadedSpec
@@ -72,8 +74,14 @@ def sized_clip(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults
     sized = scaled_masses(masses, motion.skeleton, scale)
     mobility, root_mobility = _mobility(loaded, facts, faults)
     bends, hinges, limits = _ranges(loaded, facts, faults, warnings)
-    body = Body(sized, hinges, facts.travel, facts.first, bends, mobility, root_mobility, limits)
+    upper = _upper(motion.skeleton, anatomy.chest)
+    body = Body(sized, hinges, facts.travel, facts.first, bends, mobility, root_mobility, limits, upper)
     return SizedClip(facts, motion, body, masses, scale, tuple(warnings))
+
+
+def _upper(skeleton: Skeleton, chest: int | None) -> frozenset[int]:
+    """Return what hangs on the chest."""
+    return frozenset() if chest is None else frozenset(np.flatnonzero(below(skeleton, chest)).tolist()) - {chest}
 
 
 def body_again(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, body: Body) -> Body:

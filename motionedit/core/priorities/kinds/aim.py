@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.kinds.constraint import Scene, Stage
+    from motionedit.core.priorities.settings import Body
     from motionedit.core.priorities.sight import Sight
     from motionedit.core.priorities.solver.points import Point
 
@@ -45,7 +46,6 @@ class Aim(EffectorConstraint):
     type: ClassVar[str] = "aim"
     turns: ClassVar[bool] = True
     looks: ClassVar[bool] = True
-    carries: ClassVar[bool] = False
 
     axis: FloatArray = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))
     target: int | None = None
@@ -100,6 +100,11 @@ class Aim(EffectorConstraint):
             since=self.since,
         )
         return Targets(first, last, positions @ self.measure.axes)
+
+    def carries(self, body: Body) -> bool:
+        """Return False: to turn is no reason."""
+        del body
+        return False
 
     def task(self, targets: Targets, stage: Stage) -> AimTask:
         """Return the task of the axis."""

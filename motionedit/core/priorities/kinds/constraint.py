@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from motionedit.core.measure import Level
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.recruiting import Recruits
+    from motionedit.core.priorities.settings import Body
     from motionedit.core.priorities.sight import Sight
     from motionedit.core.priorities.solver.points import Columns, Point, Recruited
     from motionedit.core.priorities.solver.problem import Task
@@ -156,8 +157,6 @@ class Constraint(ABC):
     waits_for_others: ClassVar[bool] = False
     # It keeps its effector in place, or brings it there.
     places_effector: ClassVar[bool] = False
-    # Meeting it may be a reason to carry the whole body elsewhere.
-    carries: ClassVar[bool] = True
     # Its place is the body's center of mass, which needs masses.
     weighs: ClassVar[bool] = False
     # Its goals come from where feet stand, which is found before the edit.
@@ -202,6 +201,11 @@ class Constraint(ABC):
     def about(self) -> Hashable:
         """What its targets are the targets of, equal to another's that asks for the same task; None where none can."""
         return None
+
+    def carries(self, body: Body) -> bool:
+        """Return whether meeting it may be a reason to carry the whole body elsewhere."""
+        del body
+        return True
 
     def active(self, frames: int) -> tuple[int, int]:
         """Return the first and last frame at which the constraint is active."""

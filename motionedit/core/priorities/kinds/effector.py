@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import FloatArray
     from motionedit.core.priorities.kinds.constraint import Scene
+    from motionedit.core.priorities.settings import Body
     from motionedit.core.priorities.sight import Sight
     from motionedit.core.skeleton import Skeleton
 
@@ -90,6 +91,10 @@ class EffectorConstraint(Constraint):
             movable.travel,
         )
         return chains if self.shifts else Recruits(chains.joints, root=False)
+
+    def carries(self, body: Body) -> bool:
+        """Return whether it is about the lower body: what hangs on the chest reaches, and turns."""
+        return self.effector.joint not in body.upper
 
     def looked_at(self) -> frozenset[int]:
         """Return the effector's joint and its base."""

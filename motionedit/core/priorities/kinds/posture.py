@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.kinds.constraint import Scene, Stage
+    from motionedit.core.priorities.settings import Body
     from motionedit.core.priorities.sight import Sight
     from motionedit.core.priorities.solver.points import Columns
 
@@ -30,7 +31,6 @@ class Posture(Constraint):
     """The listed `joints` keep their local rotations, or have those of the reference where they follow it."""
 
     type: ClassVar[str] = "posture"
-    carries: ClassVar[bool] = False
     symbol: ClassVar[Symbol] = "arc"
 
     joints: tuple[int, ...] = ()
@@ -43,6 +43,11 @@ class Posture(Constraint):
     def moved_by(self, movable: Movable) -> Recruits:
         """Return the joints themselves."""
         return self.recruits(movable)
+
+    def carries(self, body: Body) -> bool:
+        """Return False: to turn is no reason."""
+        del body
+        return False
 
     def targets(self, scene: Scene) -> Targets:
         """Return the interval, and the rotations of the reference where it follows that; else the input's are kept."""

@@ -8,7 +8,8 @@ import pytest
 from person import BODY, FEET, SKELETON, edited, end, joint, swaying
 
 from motionedit.core import rotations as rot
-from motionedit.core.measure import Measure
+from motionedit.core.body.bones import below
+from motionedit.core.measure import Level, Measure
 from motionedit.core.motion import Motion
 from motionedit.core.priorities import targets as of_all
 from motionedit.core.priorities.edit import prepare
@@ -36,6 +37,7 @@ KINDS = {
     "position seen from a joint": Position(
         name="c", effector=HAND, points=(HOLD,), measure=Measure(base=joint("Spine1")), **EASES
     ),
+    "hips": Position(name="c", effector=end("Hips"), points=(HOLD,), **EASES),
     "orientation": Orientation(name="c", effector=HAND, points=(TURNED,), **EASES),
     "orientation seen from a joint": Orientation(
         name="c", effector=HAND, points=(TURNED,), measure=Measure(base=joint("Spine1")), **EASES
@@ -114,9 +116,23 @@ def test_what_has_no_place_to_go_back_to_keeps_its_targets(constraint):
     assert constraint.reached(targets, None) is targets
 
 
-@pytest.mark.parametrize("more", [[], [Orientation(name="o", effector=HAND, points=(TURNED,), **EASES)]])
-def test_a_body_that_shall_but_turn_stays_where_it_is(more):
-    aside = ControlPoint("hold", 4, 9, np.array([3.0, 1.5, 1.0]))
-    edit = edited(MOTION, [Aim(name="a", effector=end("Head"), points=(aside,), **EASES), *more])
-    assert edit.errors[0].angles.max() < 1e-4
-    assert np.abs(edit.motion.translations - MOTION.translations).max() < 0.12
+ASIDE = Aim(name="a", effector=end("Head"), points=(ControlPoint("hold", 4, 9, np.array([3.0, 1.5, 1.0])),), **EASES)
+FLOOR = Floor(name="f", effector=(end("LeftFoot"),), height=Level(np.array([0.0, 1.0, 0.0])))
+# 25 cm up and forward.
+REACH = Position(
+    name="p", effector=HAND, points=(ControlPoint("hold", 4, 9, None, np.array([0.0, 0.2, 0.15])),), **EASES
+)
+HUMAN = replace(BODY, upper=frozenset(np.flatnonzero(below(SKELETON, joint("Spine1"))).tolist()))
+
+
+@pytest.mark.parametrize("asked", [[ASIDE], [REACH], [ASIDE, REACH], [ASIDE, KINDS["orientation"]]])
+def test_a_body_that_shall_but_turn_and_reach_stays_about_where_it_is(asked):
+    edit = edited(MOTION, asked, body=HUMAN)
+    for each in edit.errors:
+        assert max(part.max() for part in (each.positions, each.angles) if part is not None) < 1e-4
+    assert np.abs(edit.motion.translations - MOTION.translations).max() < 0.15
+
+
+@pytest.mark.parametrize("more", [KINDS["com"], FLOOR, KINDS["hips"]])
+def test_where_the_body_shall_go_elsewhere_it_is_not_held_back(more):
+    assert not prepare(MOTION, [ASIDE, more], HUMAN, LayeredSettings())[0].asked.pulls_root
