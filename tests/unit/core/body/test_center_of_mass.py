@@ -144,6 +144,26 @@ def test_units_and_axes_do_not_matter():
     np.testing.assert_allclose(inches.points, metres.points @ turn.T / INCH, atol=1e-12)
 
 
+def test_the_axes_that_joints_have_do_not_matter():
+    rows = [row for row in BONES if row[0] not in {"LeftHandIndex1", "RightHandIndex1"}]
+    skeleton, rng = skeleton_of(rows, {}), np.random.default_rng(3)
+    motion = standing(skeleton, 30)
+    rotations = rot.exp(0.2 * rng.normal(size=(30, len(skeleton), 3)) + 0.3 * rng.normal(size=(len(skeleton), 3)))
+    motion = Motion(skeleton, rotations, motion.translations, motion.frame_time)
+    # Each joint's frame is turned by B: R' = B_parent^T R B, and what is given in a frame by B^T.
+    turns = rot.exp(2.0 * rng.normal(size=(len(skeleton), 3)))
+    above_it = np.concatenate((rot.IDENTITY[None], turns[skeleton.parents[1:]]))
+    offsets = rot.unrotate(above_it, skeleton.offsets)
+    local = rot.multiply(rot.multiply(rot.conjugate(above_it), rotations), turns)
+    other = Motion(replace(skeleton, offsets=offsets), local, motion.translations, motion.frame_time)
+    anatomy = find_anatomy(skeleton)
+    one, same = (find_masses(each.skeleton, anatomy, rotations=each.rotations) for each in (motion, other))
+    assert one.is_human
+    np.testing.assert_allclose(same.shares, one.shares, atol=1e-12)
+    centers = [center_of_mass(forward(each), masses) for each, masses in ((motion, one), (other, same))]
+    np.testing.assert_allclose(centers[1], centers[0], atol=1e-9)
+
+
 @pytest.mark.parametrize("way", ["static root", "legs beside the spine", "root in the chest"])
 def test_the_way_the_tree_goes_does_not_matter(way):
     rows, at = BONES, (0.0, HIPS_HEIGHT, 0.0)
