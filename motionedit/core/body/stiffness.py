@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.arrays import frozen
+from motionedit.core.body.whole import whole_joints
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -24,8 +25,12 @@ CLAVICLE = 0.4
 WRIST_AND_ANKLE = 0.7
 # Of a joint that a rig has between the pelvis and one hip: a body has none there, so it turns where nothing else can.
 HIP_GIRDLE = 0.05
+# Of a joint above the hips that carries the travel: the whole body turns about its hips.
+CARRIER = 0.05
 # Of the root's shift.
 TRAVEL = 0.25
+
+_ALL_AXES = 3
 
 
 @lru_cache(maxsize=8)
@@ -42,7 +47,8 @@ def human_mobility(skeleton: Skeleton, anatomy: Anatomy, *, travel: int) -> Floa
 
 def _parts(skeleton: Skeleton, anatomy: Anatomy, travel: int) -> Iterator[tuple[int, float]]:
     """Yield joints with their mobility."""
-    chest = travel if anatomy.chest is None else anatomy.chest
+    *above, hips = _turning(skeleton, whole_joints(skeleton, anatomy, travel=travel))
+    chest = hips if anatomy.chest is None else anatomy.chest
     if anatomy.head is not None:
         for joint in skeleton.between(chest, anatomy.head):
             yield joint, NECK
@@ -53,8 +59,15 @@ def _parts(skeleton: Skeleton, anatomy: Anatomy, travel: int) -> Iterator[tuple[
     for leg in anatomy.legs or ():
         yield leg.ankle, WRIST_AND_ANKLE
     if anatomy.legs is not None:
-        left, right = (set(skeleton.between(travel, leg.thigh)[:-1]) for leg in anatomy.legs)
+        left, right = (set(skeleton.between(hips, leg.thigh)[:-1]) for leg in anatomy.legs)
         yield from ((joint, HIP_GIRDLE) for joint in sorted(left ^ right))
-    for joint in skeleton.between(travel, chest):
+    for joint in skeleton.between(hips, chest):
         yield joint, SPINE
-    yield travel, PELVIS
+    yield from ((joint, CARRIER) for joint in above)
+    yield hips, PELVIS
+
+
+def _turning(skeleton: Skeleton, whole: tuple[int, ...]) -> tuple[int, ...]:
+    """Return the joints of a whole body down to the last that turns about all axes; the first alone where none does."""
+    turning = [i for i, joint in enumerate(whole) if len(set(skeleton.rotation_axes[joint])) == _ALL_AXES]
+    return whole[: turning[-1] + 1] if turning else whole[:1]
