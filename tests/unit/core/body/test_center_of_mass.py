@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from human import BONES, ENDS, HIPS_HEIGHT, above, skeleton_of, split, standing
+from human import BONES, ENDS, HIPS_HEIGHT, above, skeleton_of, split, standing, with_axes
 
 from motionedit.core import rotations as rot
 from motionedit.core.body.center_of_mass import center_of_mass, find_masses, subtree_centers
@@ -150,12 +150,7 @@ def test_the_axes_that_joints_have_do_not_matter():
     motion = standing(skeleton, 30)
     rotations = rot.exp(0.2 * rng.normal(size=(30, len(skeleton), 3)) + 0.3 * rng.normal(size=(len(skeleton), 3)))
     motion = Motion(skeleton, rotations, motion.translations, motion.frame_time)
-    # Each joint's frame is turned by B: R' = B_parent^T R B, and what is given in a frame by B^T.
-    turns = rot.exp(2.0 * rng.normal(size=(len(skeleton), 3)))
-    above_it = np.concatenate((rot.IDENTITY[None], turns[skeleton.parents[1:]]))
-    offsets = rot.unrotate(above_it, skeleton.offsets)
-    local = rot.multiply(rot.multiply(rot.conjugate(above_it), rotations), turns)
-    other = Motion(replace(skeleton, offsets=offsets), local, motion.translations, motion.frame_time)
+    other = with_axes(motion, rot.exp(2.0 * rng.normal(size=(len(skeleton), 3))))
     anatomy = find_anatomy(skeleton)
     one, same = (find_masses(each.skeleton, anatomy, rotations=each.rotations) for each in (motion, other))
     assert one.is_human
