@@ -13,6 +13,7 @@ from motionedit.core.kinematics import forward
 from motionedit.core.motion import Motion
 
 WALK = Path(__file__).resolve().parents[2] / "data" / "walk.bvh"
+SWINGS = WALK.parent / "golf"
 ROOT_CHANNELS = ("Xposition", "Yposition", "Zposition", "Zrotation", "Yrotation", "Xrotation")
 HAND = {
     "type": "position",
@@ -75,3 +76,19 @@ def test_an_edit_is_the_one_of_the_same_body_without_it(clips, name):
         # The hips turn and the floor's root does not tilt.
         tilt = rot.rotate(rooted.clip.motion.rotations[:, 0], np.array([0.0, 1.0, 0.0]))[:, 1]
         assert np.degrees(np.arccos(np.minimum(tilt, 1.0))).max() < 0.5
+
+
+def test_strokes_are_learnt_and_edited_as_those_of_the_same_body_without_it(tmp_path):
+    swings = [SWINGS / f"swing{number:02d}.bvh" for number in range(1, 6)]
+    ball = {"at": 80, "effector": {"end_site": "Club"}, "shift": [0, 0, 8]}
+    head = {"at": 60, "effector": "Head", "shift": [0, -4, 0]}
+    paths = []
+    for turned in (lambda motion: motion, on_a_root):
+        folder = tmp_path / turned.__name__
+        folder.mkdir()
+        for swing in swings:
+            (folder / swing.name).write_bytes(new_bytes(turned(motionedit.read(swing).motion), decimals=10))
+        model = motionedit.fit_pca(motionedit.normalize(folder, {}))
+        edit = motionedit.edit_pc(folder / "swing04.bvh", model, {"goals": [ball, head], "plausibility": "off"})
+        paths.append(forward(edit.clip.motion).positions)
+    np.testing.assert_allclose(paths[1][:, 1:], paths[0], atol=0.1)

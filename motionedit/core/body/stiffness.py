@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.arrays import frozen
-from motionedit.core.body.whole import whole_joints
+from motionedit.core.body.whole import ALL_AXES, whole_joints
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -29,8 +29,6 @@ HIP_GIRDLE = 0.05
 CARRIER = 0.05
 # Of the root's shift.
 TRAVEL = 0.25
-
-_ALL_AXES = 3
 
 
 @lru_cache(maxsize=8)
@@ -69,5 +67,5 @@ def _parts(skeleton: Skeleton, anatomy: Anatomy, travel: int) -> Iterator[tuple[
 
 def _turning(skeleton: Skeleton, whole: tuple[int, ...]) -> tuple[int, ...]:
     """Return the joints of a whole body down to the last that turns about all axes; the first alone where none does."""
-    turning = [i for i, joint in enumerate(whole) if len(set(skeleton.rotation_axes[joint])) == _ALL_AXES]
+    turning = [i for i, joint in enumerate(whole) if len(set(skeleton.rotation_axes[joint])) == ALL_AXES]
     return whole[: turning[-1] + 1] if turning else whole[:1]

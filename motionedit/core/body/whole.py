@@ -9,6 +9,8 @@ if TYPE_CHECKING:
     from motionedit.core.body.anatomy import Anatomy
     from motionedit.core.skeleton import Skeleton
 
+ALL_AXES = 3
+
 
 @lru_cache(maxsize=8)
 def whole_joints(skeleton: Skeleton, anatomy: Anatomy, *, travel: int) -> tuple[int, ...]:
@@ -26,3 +28,13 @@ def whole_joints(skeleton: Skeleton, anatomy: Anatomy, *, travel: int) -> tuple[
             break
         shared.append(joints[0])
     return tuple(shared) if len(ends) > 2 else (travel,)
+
+
+def path_joint(skeleton: Skeleton, anatomy: Anatomy, *, travel: int) -> int:
+    """Return the joint whose path is the whole body's, height and all: the last that turns it that has six channels.
+
+    That of a root that walks the floor says nothing of how high the hips are.
+    """
+    channels = zip(skeleton.rotation_axes, skeleton.position_axes, strict=True)
+    free = [len(set(turns)) == ALL_AXES and len(set(ways)) == ALL_AXES for turns, ways in channels]
+    return next((j for j in reversed(whole_joints(skeleton, anatomy, travel=travel)) if free[j]), travel)
