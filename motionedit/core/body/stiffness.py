@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from motionedit.core.arrays import FloatArray
-    from motionedit.core.body.anatomy import Anatomy
+    from motionedit.core.body.anatomy import Anatomy, Leg
     from motionedit.core.skeleton import Skeleton
 
 # Mobility: a joint's share of a change goes with its square. 1 is a shoulder, an elbow, a hip or a knee.
@@ -25,6 +25,8 @@ CLAVICLE = 0.4
 WRIST_AND_ANKLE = 0.7
 # Of a joint that a rig has between the pelvis and one hip: a body has none there, so it turns where nothing else can.
 HIP_GIRDLE = 0.05
+# Of a joint that a rig has inside of a limb's bone, to share its twist: no thigh bends in its middle.
+INSIDE_BONE = 0.05
 # Of a joint above the hips that carries the travel: the whole body turns about its hips.
 CARRIER = 0.05
 # Of the root's shift.
@@ -53,8 +55,10 @@ def _parts(skeleton: Skeleton, anatomy: Anatomy, travel: int) -> Iterator[tuple[
     for arm in anatomy.arms or ():
         for joint in skeleton.between(chest, arm.shoulder)[:-1]:
             yield joint, CLAVICLE
+        yield from _inside(skeleton, arm.as_leg)
         yield arm.wrist, WRIST_AND_ANKLE
     for leg in anatomy.legs or ():
+        yield from _inside(skeleton, leg)
         yield leg.ankle, WRIST_AND_ANKLE
     if anatomy.legs is not None:
         left, right = (set(skeleton.between(hips, leg.thigh)[:-1]) for leg in anatomy.legs)
@@ -63,6 +67,13 @@ def _parts(skeleton: Skeleton, anatomy: Anatomy, travel: int) -> Iterator[tuple[
         yield joint, SPINE
     yield from ((joint, CARRIER) for joint in above)
     yield hips, PELVIS
+
+
+def _inside(skeleton: Skeleton, limb: Leg) -> Iterator[tuple[int, float]]:
+    """Yield the joints inside of a limb's two bones."""
+    for top, end in ((limb.thigh, limb.knee), (limb.knee, limb.ankle)):
+        for joint in skeleton.between(top, end)[:-1]:
+            yield joint, INSIDE_BONE
 
 
 def _turning(skeleton: Skeleton, whole: tuple[int, ...]) -> tuple[int, ...]:
