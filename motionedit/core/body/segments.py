@@ -223,7 +223,7 @@ def _hand(skeleton: Skeleton, arm: Arm, leg_length: float) -> tuple[int, float, 
     """Return the hand: on the wrist, towards the mean direction of what hangs there, else as the forearm goes."""
     ahead = sum((_unit(bone) for bone in _bones(skeleton, arm.wrist)), np.zeros(3))
     if not np.any(ahead):
-        ahead = skeleton.offsets[arm.wrist]
+        ahead = _place_below(skeleton, arm.elbow, arm.wrist)
     return arm.wrist, HAND_MASS, _HAND_CENTER * leg_length * _unit(ahead)
 
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from motionedit.core.arrays import frozen
+from motionedit.core.body.head import SAME_PLACE
 from motionedit.core.body.whole import ALL_AXES, whole_joints
 
 if TYPE_CHECKING:
@@ -53,8 +55,10 @@ def _parts(skeleton: Skeleton, anatomy: Anatomy, travel: int) -> Iterator[tuple[
         for joint in skeleton.between(chest, anatomy.head):
             yield joint, NECK
     for arm in anatomy.arms or ():
-        for joint in skeleton.between(chest, arm.shoulder)[:-1]:
-            yield joint, CLAVICLE
+        girdle = skeleton.between(chest, arm.shoulder)
+        for joint, lower in pairwise(girdle):
+            is_group = float(np.linalg.norm(skeleton.offsets[lower])) < SAME_PLACE * anatomy.height
+            yield joint, INSIDE_BONE if is_group else CLAVICLE
         yield from _inside(skeleton, arm.as_leg)
         yield arm.wrist, WRIST_AND_ANKLE
     for leg in anatomy.legs or ():
