@@ -6,6 +6,8 @@ import json
 import re
 from typing import TYPE_CHECKING, Any
 
+from motionedit.report.table import padded, width_of
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
@@ -136,8 +138,8 @@ def _tree(record: dict[str, Any]) -> list[str]:
         rows += [(f"{indent}  (end site {i})", "", _vector(site)) for i, site in enumerate(joint["end_sites"])]
     title = f"  joints      {len(record['joints'])}, {record['channels']} channels"
     rows = [("", "channels", "offset"), *rows]
-    widths = [max(len(row[column]) for row in rows) for column in range(2)]
-    lines = (f"    {name:<{widths[0]}}  {channels:<{widths[1]}}  {offset}" for name, channels, offset in rows)
+    widths = [max(width_of(row[column]) for row in rows) for column in range(2)]
+    lines = (f"    {padded(name, widths[0])}  {channels:<{widths[1]}}  {offset}" for name, channels, offset in rows)
     return [title, *(line.rstrip() for line in lines)]
 
 
