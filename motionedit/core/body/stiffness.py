@@ -30,7 +30,7 @@ HIP_GIRDLE = 0.05
 # Of a joint that a rig has inside of a limb's bone, to share its twist: no thigh bends in its middle.
 INSIDE_BONE = 0.05
 # Of a joint above the hips that carries the travel: the whole body turns about its hips.
-CARRIER = 0.05
+CARRIER = 0.01
 # Of the root's shift.
 TRAVEL = 0.25
 
