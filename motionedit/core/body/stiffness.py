@@ -67,6 +67,8 @@ def _parts(skeleton: Skeleton, anatomy: Anatomy, travel: int) -> Iterator[tuple[
     if anatomy.legs is not None:
         left, right = (set(skeleton.between(hips, leg.thigh)[:-1]) for leg in anatomy.legs)
         yield from ((joint, HIP_GIRDLE) for joint in sorted(left ^ right))
+        # One with both legs is the pelvis, too.
+        yield from ((joint, PELVIS) for joint in sorted(left & right))
     for joint in skeleton.between(hips, chest):
         yield joint, SPINE
     yield from ((joint, CARRIER) for joint in above)
