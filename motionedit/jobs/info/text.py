@@ -50,8 +50,7 @@ def _facts(record: dict[str, Any]) -> list[str]:
         *_anatomy(record["anatomy"]),
         ("hinges", _hinges(record["hinges"])),
         ("defects", _defects(record["defects"])),
-        ("quality", _quality(record["metrics"])),
-        ("feet", _feet(record["metrics"])),
+        *_quality(record["metrics"], stands=record["anatomy"]["left_leg"] is not None),
         *(("warning", warning) for warning in record["warnings"]),
     ]
     return [f"  {name:<12}{line}".rstrip() for name, text in facts for name, line in _labelled(name, text)]
@@ -83,9 +82,13 @@ def _unit(unit: dict[str, Any] | None) -> str:
     return f"likely {unit['name']} (the leg is {unit['leg']:.2f} m)"
 
 
-def _quality(metrics: dict[str, float]) -> str:
+def _quality(metrics: dict[str, float], *, stands: bool) -> Iterator[tuple[str, str]]:
+    """Yield how smooth a motion is, and how well its feet stand, where it has any."""
     jerk, slide = metrics["jerk_rms"], metrics["foot_slide_max"]
-    return f"jerk {jerk:.6g} units/s^3, planted feet slide at up to {slide:.4g} units/s"
+    feet = f", planted feet slide at up to {slide:.4g} units/s" if stands else ""
+    yield "quality", f"jerk {jerk:.6g} units/s^3{feet}"
+    if stands:
+        yield "feet", _feet(metrics)
 
 
 def _feet(metrics: dict[str, float]) -> str:
