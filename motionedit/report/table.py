@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from typing import TYPE_CHECKING, Any
+from unicodedata import combining, east_asian_width
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -18,14 +19,26 @@ def text_table(headings: Sequence[str], rows: Sequence[Sequence[object]]) -> str
     kept = [c for c in range(len(headings)) if any(row[c] for row in cells)]
     lines = [[headings[c] for c in kept], *([row[c] for c in kept] for row in cells)]
     right = [all(_is_number(row[c]) for row in cells) for c in kept]
-    widths = [max(len(line[i]) for line in lines) for i in range(len(kept))]
+    widths = [max(width_of(line[i]) for line in lines) for i in range(len(kept))]
     return "\n".join(
         "  ".join(
-            cell.rjust(width) if numeric else cell.ljust(width)
+            cell.rjust(width) if numeric else padded(cell, width)
             for cell, width, numeric in zip(line, widths, right, strict=True)
         ).rstrip()
         for line in lines
     )
+
+
+def width_of(text: str) -> int:
+    """Return how many columns of a terminal a text takes: two for each wide letter, such as those of Japanese names."""
+    if text.isascii():
+        return len(text)
+    return sum(0 if combining(letter) else 1 + (east_asian_width(letter) in "WF") for letter in text)
+
+
+def padded(text: str, width: int) -> str:
+    """Return a text with blanks after it, so that it is as wide."""
+    return text + " " * (width - width_of(text))
 
 
 def number(value: object) -> str:

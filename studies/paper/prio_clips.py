@@ -48,7 +48,9 @@ class Shown:
     def com(self) -> FloatArray:
         """The center of mass, shape (F, 3)."""
         facts = self.facts
-        return center_of_mass(facts.poses, find_masses(facts.bones, facts.anatomy))
+        return center_of_mass(
+            facts.poses, find_masses(facts.bones, facts.anatomy, rotations=facts.clip.motion.rotations[facts.first :])
+        )
 
     @cached_property
     def feet(self) -> FloatArray:

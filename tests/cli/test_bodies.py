@@ -285,6 +285,15 @@ def test_what_was_not_found_is_said_by_info_with_its_consequence(run, write):
     assert text.count("no arms found") == 1
 
 
+@pytest.mark.parametrize("legs", [True, False])
+def test_info_says_how_feet_stand_of_bodies_that_have_any(run, write, legs):
+    bones = [row for row in BONES if legs or not any(word in row[0] for word in ("Leg", "Foot", "Toe"))]
+    write("body.bvh", standing(skeleton_of(bones, scale=SCALE), at=(0.0, 98.0, 0.0)))
+    text = run("info", "body.bvh").stdout
+    assert "quality     jerk 0 units/s^3" in text
+    assert ("toes skate at" in text) == ("planted feet slide" in text) == legs
+
+
 def test_a_body_without_length_is_shown_and_an_edit_that_changes_nothing_copies_it(run, write, tmp_path):
     flat = skeleton_of(scale=0.0)
     write("flat.bvh", standing(replace(flat, end_sites=()), at=(0.0, 0.0, 0.0)))

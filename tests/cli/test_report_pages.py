@@ -47,6 +47,12 @@ def test_columns_line_up_and_empty_ones_are_left_out():
     )
 
 
+def test_letters_that_are_two_columns_wide_count_as_two_and_marks_over_letters_as_none():
+    names = ("左手", "hand", "ﾃ e\u0301 😀")
+    table = text_table(("joint", "n"), [(name, n) for n, name in enumerate(names)])
+    assert table.split("\n")[1:] == ["左手    0", "hand    1", "ﾃ e\u0301 😀  2"]
+
+
 def record(name, status="ok", **more):
     return {"clip": name, "output": None, "status": status, "message": None, **more}
 

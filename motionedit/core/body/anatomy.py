@@ -13,6 +13,7 @@ from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray, IntArray
+    from motionedit.core.skeleton import Skeleton
 
 _T = TypeVar("_T")
 Part = Literal["heel", "toe"]
@@ -30,6 +31,13 @@ class Leg:
     ankle: int
     toe: int | None
     tip: tuple[float, float, float] | None = None
+
+
+def tip_of(skeleton: Skeleton, ankle: int) -> tuple[float, float, float] | None:
+    """Return where the farthest end site of an ankle is in its frame, clip units, None where it has none."""
+    sites = [site.offset for site in skeleton.end_sites if site.joint == ankle]
+    tip = max(sites, key=lambda offset: float(np.linalg.norm(offset)), default=np.zeros(3))
+    return (float(tip[0]), float(tip[1]), float(tip[2])) if np.any(tip) else None
 
 
 @dataclass(frozen=True)

@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
 from motionedit.core.body.in_one_loop import carried, read_off
-from motionedit.core.body.segments import lay_by_length, lay_given, lay_human
-from motionedit.core.kinematics import WorldPoses
+from motionedit.core.body.segments import Laid, lay_by_length, lay_given, lay_human
+from motionedit.core.kinematics import WorldPoses, forward
+from motionedit.core.motion import Motion
 from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
@@ -21,6 +23,7 @@ if TYPE_CHECKING:
     from motionedit.core.skeleton import Skeleton
 
 _BLOCK_FRAMES = 1 << 10
+_FRAMES = 256  # at most are looked at for a clip's mean pose
 _NOT_HUMAN = (
     "the skeleton is not a human's: for the center of mass each bone weighs as much as it is long; "
     "'masses' in the spec takes kilograms by joint"
@@ -63,14 +66,23 @@ class Masses:
         return self.shares.tobytes(), self.points.tobytes()
 
 
-def find_masses(skeleton: Skeleton, anatomy: Anatomy, *, given: Mapping[int, float] | None = None) -> Masses:
+def find_masses(
+    skeleton: Skeleton,
+    anatomy: Anatomy,
+    *,
+    rotations: FloatArray | None = None,
+    given: Mapping[int, float] | None = None,
+) -> Masses:
     """Return the masses of a skeleton's joints.
 
-    On a human skeleton the segments of de Leva (1996), mean of women and men, laid on by the tree alone; names and
-    what a hand holds do not matter. On others in proportion to bone length, with a warning.
+    On a human skeleton the segments of de Leva (1996), mean of women and men, laid on by the tree and a pose alone;
+    names and what a hand holds do not matter. On others in proportion to bone length, with a warning.
 
     Parameters
     ----------
+    rotations : shape (F, J, 4), optional
+        Of a clip's frames; its mean pose tells how bones stand to each other, whatever axes its joints have. Default:
+        the skeleton's zero pose.
     given : mapping from joints to kg, optional
         Replaces the table: joints that are not in it weigh nothing. Each mass sits where the table has that joint's,
         or in the middle of the joint's bones where the table has none.
@@ -80,7 +92,11 @@ def find_masses(skeleton: Skeleton, anatomy: Anatomy, *, given: Mapping[int, flo
     ValueError
         When the given masses are negative, not finite, or all zero.
     """
-    return _masses(skeleton, anatomy, tuple((given or {}).items()))
+    by_joint = tuple((given or {}).items())
+    if rotations is None:
+        return _masses(skeleton, anatomy, by_joint)
+    turns = _mean_turns(skeleton, rotations)
+    return _weighed(skeleton, by_joint, _lay_turned(skeleton, anatomy, turns))
 
 
 @lru_cache(maxsize=4)
@@ -91,15 +107,19 @@ def scaled_masses(masses: Masses, skeleton: Skeleton, factor: float) -> Masses:
 
 @lru_cache(maxsize=8)
 def _masses(skeleton: Skeleton, anatomy: Anatomy, by_joint: tuple[tuple[int, float], ...]) -> Masses:
-    """Return `find_masses`: once for the clips that share a skeleton."""
+    """Return `find_masses` of a zero pose: once for all that share a skeleton."""
+    return _weighed(skeleton, by_joint, lay_human(skeleton, anatomy))
+
+
+def _weighed(skeleton: Skeleton, by_joint: tuple[tuple[int, float], ...], human: Laid | None) -> Masses:
+    """Return the masses of a skeleton on which a `human` is laid, None where it is none."""
     given = dict(by_joint)
-    by_length, human = lay_by_length(skeleton), lay_human(skeleton, anatomy)
-    laid = by_length if human is None else human
+    laid = lay_by_length(skeleton) if human is None else human
     if given:
         weights = np.array(list(given.values()))
         if not (np.all(np.isfinite(weights)) and np.all(weights >= 0.0) and np.any(weights > 0.0)):
             raise ValueError("masses must be 0 or more, and not 0 for all joints")
-        laid = lay_given(laid, given, elsewhere=by_length)
+        laid = lay_given(laid, given, elsewhere=lay_by_length(skeleton))
     return Masses(
         skeleton=skeleton,
         shares=frozen(laid.mass / laid.mass.sum()),
@@ -107,6 +127,24 @@ def _masses(skeleton: Skeleton, anatomy: Anatomy, by_joint: tuple[tuple[int, flo
         is_human=human is not None,
         warnings=() if human is not None or given else (_NOT_HUMAN,),
     )
+
+
+def _mean_turns(skeleton: Skeleton, rotations: FloatArray) -> FloatArray:
+    """Return how each joint's frame is turned in the mean pose of some frames, shape (J, 4)."""
+    shown = rotations[:: max(1, -(-len(rotations) // _FRAMES))]
+    means = rot.mean_of_products(shown.transpose(1, 2, 0) @ shown.transpose(1, 0, 2))
+    still = np.zeros((1, len(skeleton.translated), 3))
+    turns: FloatArray = forward(Motion(skeleton, means[None], still, 1.0)).rotations[0]
+    return turns
+
+
+def _lay_turned(skeleton: Skeleton, anatomy: Anatomy, turns: FloatArray) -> Laid | None:
+    """Return what `lay_human` does with the pose in which joints' frames are turned, (J, 4), for the zero pose."""
+    parents = np.maximum(skeleton.parents, 0)
+    offsets = rot.rotate(turns[parents], skeleton.offsets)
+    sites = tuple(replace(site, offset=rot.rotate(turns[site.joint], site.offset)) for site in skeleton.end_sites)
+    laid = lay_human(replace(skeleton, offsets=offsets, end_sites=sites), anatomy)
+    return None if laid is None else Laid(laid.mass, frozen(rot.unrotate(turns, laid.points)))
 
 
 def center_of_mass(poses: WorldPoses, masses: Masses) -> FloatArray:

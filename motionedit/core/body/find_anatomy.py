@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.arrays import median
-from motionedit.core.body.anatomy import NOTHING_GIVEN, Anatomy, Arm, GivenBody, Leg
+from motionedit.core.body.anatomy import NOTHING_GIVEN, Anatomy, Arm, GivenBody, Leg, tip_of
 from motionedit.core.body.bones import bones_of, travel_joint
 from motionedit.core.body.head import SAME_PLACE, find_head
 from motionedit.core.body.legs_and_arms import find_legs_and_arms
@@ -190,10 +190,7 @@ def _legs(tree: Tree, pair: LimbPair, given: tuple[tuple[int, ...], ...] | None)
 
 
 def _leg(tree: Tree, triple: Triple, toe: int | None) -> Leg:
-    sites = [site.offset for site in tree.skeleton.end_sites if site.joint == triple.end]
-    tip = max(sites, key=lambda offset: float(np.linalg.norm(offset)), default=np.zeros(3))
-    has_tip = toe is None and np.any(tip)
-    return Leg(*triple, toe, (float(tip[0]), float(tip[1]), float(tip[2])) if has_tip else None)
+    return Leg(*triple, toe, tip_of(tree.skeleton, triple.end) if toe is None else None)
 
 
 def _arms(tree: Tree, pair: LimbPair, given: tuple[tuple[int, ...], ...] | None) -> tuple[Arm, Arm]:

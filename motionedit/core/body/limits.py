@@ -17,6 +17,7 @@ from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
 from motionedit.core.body.bends import directions_of, mean_direction
 from motionedit.core.body.in_one_loop import read_off
+from motionedit.core.body.whole import whole_joints
 from motionedit.core.compiled import compiled
 from motionedit.dataclass import dataclass
 
@@ -191,8 +192,9 @@ _Joint = tuple[int, int, int]  # a joint, and from where to where its bone is
 
 def _regions(skeleton: Skeleton, anatomy: Anatomy, travel: int) -> Iterator[tuple[Range, list[_Joint]]]:
     """Yield regions with their joints."""
-    chest = travel if anatomy.chest is None else anatomy.chest
-    spine = skeleton.between(travel, chest)
+    hips = whole_joints(skeleton, anatomy, travel=travel)[-1]
+    chest = hips if anatomy.chest is None else anatomy.chest
+    spine = skeleton.between(hips, chest)
     if spine:
         yield SPINE, [(joint, int(skeleton.parents[joint]), joint) for joint in spine]
     neck = [] if anatomy.head is None else skeleton.between(chest, anatomy.head)

@@ -11,6 +11,7 @@ from motionedit.core import rotations as rot
 from motionedit.core.again import LastFew, Same
 from motionedit.core.arrays import frozen
 from motionedit.core.body.bones import below
+from motionedit.core.body.whole import whole_joints
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -61,8 +62,10 @@ Limb = tuple[int, int, int]  # its top, the joint that bends, its end
 def regions_of(skeleton: Skeleton, anatomy: Anatomy, *, travel: int) -> tuple[Region, ...]:
     """Return what has a range: every joint against its parent, and neck, spine, limbs against what carries them.
 
-    The joint that carries the `travel` has none, nor have those above it and beside it; knees and elbows neither.
+    The joints that turn a whole body, from the one that carries the `travel` on, have none, nor have those above and
+    beside them; knees and elbows neither.
     """
+    whole = whole_joints(skeleton, anatomy, travel=travel)
     carried, bending = below(skeleton, travel), {limb[1] for limb in limbs_of(anatomy)}
     seen = dict.fromkeys(_trunk(skeleton, anatomy), TRUNK) | dict.fromkeys(
         (limb[0] for limb in limbs_of(anatomy)), BALL
@@ -70,7 +73,7 @@ def regions_of(skeleton: Skeleton, anatomy: Anatomy, *, travel: int) -> tuple[Re
     found = {
         (j, skeleton.parents[j]): seen.get(j, MOST)
         for j in range(len(skeleton))
-        if carried[j] and j != travel and j not in bending
+        if carried[j] and j not in whole and j not in bending
     }
     for lower, upper, most in _wholes(anatomy):
         if lower is not None and upper is not None and lower != upper:

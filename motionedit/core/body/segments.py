@@ -151,9 +151,11 @@ def _slice(part: Part, low: float, high: float) -> tuple[float, float]:
     The density over the part, s from 0 to 1, is 1 + k (2 s - 1), whose centre is 1/2 + k/6.
     """
     k, width = 6.0 * part.center - 3.0, part.stop - part.start
-    s = (np.array([low, high]) - part.start) / width
-    mass = float(np.diff(s + k * (s**2 - s))[0])
-    moment = float(np.diff(0.5 * s**2 + k * (2.0 / 3.0 * s**3 - 0.5 * s**2))[0])
+    mass, moment = 0.0, 0.0
+    for place, sign in ((low, -1.0), (high, 1.0)):
+        s = (place - part.start) / width
+        mass += sign * (s + k * (s**2 - s))
+        moment += sign * (0.5 * s**2 + k * (2.0 / 3.0 * s**3 - 0.5 * s**2))
     return part.mass * mass, part.start + width * moment / mass
 
 
@@ -221,7 +223,7 @@ def _hand(skeleton: Skeleton, arm: Arm, leg_length: float) -> tuple[int, float, 
     """Return the hand: on the wrist, towards the mean direction of what hangs there, else as the forearm goes."""
     ahead = sum((_unit(bone) for bone in _bones(skeleton, arm.wrist)), np.zeros(3))
     if not np.any(ahead):
-        ahead = skeleton.offsets[arm.wrist]
+        ahead = _place_below(skeleton, arm.elbow, arm.wrist)
     return arm.wrist, HAND_MASS, _HAND_CENTER * leg_length * _unit(ahead)
 
 

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from motionedit.core.arrays import frozen
+from motionedit.core.body.head import SAME_PLACE
+from motionedit.core.body.whole import ALL_AXES, whole_joints
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from motionedit.core.arrays import FloatArray
-    from motionedit.core.body.anatomy import Anatomy
+    from motionedit.core.body.anatomy import Anatomy, Leg
     from motionedit.core.skeleton import Skeleton
 
 # Mobility: a joint's share of a change goes with its square. 1 is a shoulder, an elbow, a hip or a knee.
@@ -24,6 +27,10 @@ CLAVICLE = 0.4
 WRIST_AND_ANKLE = 0.7
 # Of a joint that a rig has between the pelvis and one hip: a body has none there, so it turns where nothing else can.
 HIP_GIRDLE = 0.05
+# Of a joint that a rig has inside of a limb's bone, to share its twist: no thigh bends in its middle.
+INSIDE_BONE = 0.05
+# Of a joint above the hips that carries the travel: the whole body turns about its hips.
+CARRIER = 0.01
 # Of the root's shift.
 TRAVEL = 0.25
 
@@ -42,19 +49,40 @@ def human_mobility(skeleton: Skeleton, anatomy: Anatomy, *, travel: int) -> Floa
 
 def _parts(skeleton: Skeleton, anatomy: Anatomy, travel: int) -> Iterator[tuple[int, float]]:
     """Yield joints with their mobility."""
-    chest = travel if anatomy.chest is None else anatomy.chest
+    *above, hips = _turning(skeleton, whole_joints(skeleton, anatomy, travel=travel))
+    chest = hips if anatomy.chest is None else anatomy.chest
     if anatomy.head is not None:
         for joint in skeleton.between(chest, anatomy.head):
             yield joint, NECK
     for arm in anatomy.arms or ():
-        for joint in skeleton.between(chest, arm.shoulder)[:-1]:
-            yield joint, CLAVICLE
+        girdle = skeleton.between(chest, arm.shoulder)
+        for joint, lower in pairwise(girdle):
+            is_group = float(np.linalg.norm(skeleton.offsets[lower])) < SAME_PLACE * anatomy.height
+            yield joint, INSIDE_BONE if is_group else CLAVICLE
+        yield from _inside(skeleton, arm.as_leg)
         yield arm.wrist, WRIST_AND_ANKLE
     for leg in anatomy.legs or ():
+        yield from _inside(skeleton, leg)
         yield leg.ankle, WRIST_AND_ANKLE
     if anatomy.legs is not None:
-        left, right = (set(skeleton.between(travel, leg.thigh)[:-1]) for leg in anatomy.legs)
+        left, right = (set(skeleton.between(hips, leg.thigh)[:-1]) for leg in anatomy.legs)
         yield from ((joint, HIP_GIRDLE) for joint in sorted(left ^ right))
-    for joint in skeleton.between(travel, chest):
+        # One with both legs is the pelvis, too.
+        yield from ((joint, PELVIS) for joint in sorted(left & right))
+    for joint in skeleton.between(hips, chest):
         yield joint, SPINE
-    yield travel, PELVIS
+    yield from ((joint, CARRIER) for joint in above)
+    yield hips, PELVIS
+
+
+def _inside(skeleton: Skeleton, limb: Leg) -> Iterator[tuple[int, float]]:
+    """Yield the joints inside of a limb's two bones."""
+    for top, end in ((limb.thigh, limb.knee), (limb.knee, limb.ankle)):
+        for joint in skeleton.between(top, end)[:-1]:
+            yield joint, INSIDE_BONE
+
+
+def _turning(skeleton: Skeleton, whole: tuple[int, ...]) -> tuple[int, ...]:
+    """Return the joints of a whole body down to the last that turns about all axes; the first alone where none does."""
+    turning = [i for i, joint in enumerate(whole) if len(set(skeleton.rotation_axes[joint])) == ALL_AXES]
+    return whole[: turning[-1] + 1] if turning else whole[:1]

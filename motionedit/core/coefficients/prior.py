@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 # Seconds: left-out residuals of six sets of real strokes correlate in time like a Gaussian of this width.
 FADE = 0.15
-# The share of a pose's variance that each column has by itself, beside how the database's poses vary together; and what
+# The share of a pose's variance that each joint has by itself, beside how the database's poses vary together; and what
 # a column that does not vary at all has, so that the root of the whole exists.
 _ALONE, _LEAST_VARIANCE = 0.5, 1e-12
 # Rad: poses of real strokes, walks and jumps vary by 7 to 28 degrees. Near copies of one motion say how a body moves
@@ -35,6 +35,7 @@ _ALONE, _LEAST_VARIANCE = 0.5, 1e-12
 _LEAST_DEVIATION = float(np.radians(5.0))
 _LEAST_TRAVEL = 0.05  # metres at leg length 0.85 m: and so far the body may then go as a whole
 _TRAVEL = 3  # columns of Theta that are no rotation's
+_EACH = 3  # columns of the travel, and of every joint
 # Beside 1 on the diagonal of K: frames next to each other are nearly one.
 _JITTER = 1e-9
 
@@ -157,8 +158,9 @@ def _root(prior: ChangePrior, projection: Projection, model: MotionModel, feet: 
 def _pose_factor(model: MotionModel, places: FloatArray, columns: IntArray) -> FloatArray:
     """Return F, shape (d, d): F F^T is how poses vary in the database within `FADE` of places on the timeline.
 
-    `_ALONE` of it goes to each column by itself: a few motions know a few ways of moving together, and a goal may ask
-    for another one. Poses that hardly vary are taken to do so by `_LEAST_DEVIATION`.
+    `_ALONE` of it goes to each joint by itself, along its own axes of the database: a few motions know a few ways of
+    moving together, and a goal may ask for another one. Poses that hardly vary are taken to do so by
+    `_LEAST_DEVIATION`.
     """
     frames = np.arange(model.timeline.frames, dtype=np.float64)
     apart = np.abs(frames[:, None] - places).min(axis=1) / model.timeline.frame_rate
@@ -166,24 +168,25 @@ def _pose_factor(model: MotionModel, places: FloatArray, columns: IntArray) -> F
     rows = model.component_rows[:, near][:, :, columns]
     rows = (rows * np.sqrt(model.components.explained_variance / len(near))[:, None, None]).reshape(-1, len(columns))
     together = rows.T @ rows
-    turning = columns >= _TRAVEL
-    times = _widening(np.diag(together)[turning])
+    turning, joints = columns >= _TRAVEL, columns // _EACH
+    same = joints[:, None] == joints
+    times = _widening((together * same)[np.ix_(turning, turning)])
     together *= times
     travel = (1.0 - 1.0 / times) * (_LEAST_TRAVEL * model.space.root_weight) ** 2
-    alone = np.diag(together) + np.where(turning, 0.0, travel)
-    mixed = (1.0 - _ALONE) * together + np.diag(_ALONE * alone + _LEAST_VARIANCE)
+    alone = together * same + np.diag(np.where(turning, 0.0, travel))
+    mixed = (1.0 - _ALONE) * together + _ALONE * alone + np.diag(np.full(len(columns), _LEAST_VARIANCE))
     return np.asarray(np.linalg.cholesky(mixed), dtype=np.float64)
 
 
-def _widening(variances: FloatArray) -> float:
-    """Return by what to multiply the variances of a pose's rotations, rad^2, by `_LEAST_DEVIATION`; 1 or more.
+def _widening(covariances: FloatArray) -> float:
+    """Return by what to multiply the covariances of joints' rotations, rad^2, by `_LEAST_DEVIATION`; 1 or more.
 
-    Their mean is weighted by themselves, for many joints hardly turn at all.
+    The mean of the variances is weighted by themselves, for many joints hardly turn at all.
     """
-    total = float(variances.sum())
+    total = float(np.trace(covariances))
     if total <= 0.0:
         return 1.0
-    spread = float(np.sqrt(variances @ variances / total))
+    spread = float(np.sqrt(np.sum(covariances * covariances) / total))
     return max(1.0, 2.0 * _LEAST_DEVIATION / spread - 1.0) ** 2
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from motionedit.core import rotations as rot
+from motionedit.core.arrays import frozen
 from motionedit.core.blocks import frame_blocks
 from motionedit.core.body.bones import below
 from motionedit.core.compiled import compiled
@@ -32,6 +33,10 @@ if TYPE_CHECKING:
     from motionedit.core.priorities.kinds.constraint import Constraint, ConstraintErrors
     from motionedit.core.priorities.settings import Body, LayeredSettings, RecruitingRule
     from motionedit.core.skeleton import Skeleton
+
+
+# A joint of less mobility hardly turns, whatever asks for it; one of so much does.
+_HARDLY, _READILY = 0.1, 0.35
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,6 +161,7 @@ def prepare(
 ) -> tuple[Run, list[Breach]]:
     """Return an edit that is ready to be solved, and the breaches of the recruiting rule; raises as `recruit`."""
     recruits, found = recruit(constraints, motion, body, rule=settings.recruiting_rule)
+    body = _with_all_that_is_asked(body, constraints, recruits)
 
     def ready(asked: Asked) -> Run:
         smoothing = settings.smoothing
@@ -165,6 +171,18 @@ def prepare(
         return solve_from_input(ready(asked)).motion
 
     return ready(with_targets(motion, constraints, recruits, body, settings, solve=solved, follows=follows)), found
+
+
+def _with_all_that_is_asked(body: Body, constraints: Sequence[Constraint], recruits: Sequence[Recruits]) -> Body:
+    """Return a body whose joints turn readily enough where a constraint recruits none that does."""
+    if body.mobility is None:
+        return body
+    mobility = body.mobility.copy()
+    for each, own in zip(constraints, recruits, strict=True):
+        joints = sorted(own.joints)
+        if joints and (each.turns or not own.root) and float(body.mobility[joints].max()) < _HARDLY:
+            mobility[joints] = _READILY
+    return body if np.array_equal(mobility, body.mobility) else replace(body, mobility=frozen(mobility))
 
 
 def edit_by_priorities(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from motionedit.core.body.whole import path_joint
 from motionedit.dataclass import dataclass, replace
 from motionedit.errors import MotionEditError, UsageError
 from motionedit.jobs.clip import resolve
@@ -95,7 +96,9 @@ class SpecCheck:
     def _refuse_joints(self, facts: ClipFacts, task: ClipTask) -> None:
         from motionedit.jobs.fit_pca.asked import excluded_joints
 
-        excluded_joints(self.loaded, facts.clip.motion, task.label)
+        skeleton = facts.clip.motion.skeleton
+        travel = path_joint(skeleton, facts.anatomy, travel=facts.travel)
+        excluded_joints(self.loaded, skeleton, task.label, travel=travel)
 
     def _refuse_goals(self, facts: ClipFacts, task: ClipTask) -> None:
         if self.model is None:

@@ -19,6 +19,7 @@ from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.body.mirrored import as_it_points
 from motionedit.core.body.rest_pose import rest_pose_frames
 from motionedit.core.body.steps import own_steps
+from motionedit.core.body.still import as_it_turns
 from motionedit.core.body.up import find_up
 from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError
@@ -229,6 +230,7 @@ def facts_of(
     (bones, heaped), world = find_bones(motion, travel), Poses(motion)
     poses = world.get()
     anatomy = find_anatomy(bones, poses=poses, given=given)
+    anatomy = as_it_turns(bones, anatomy, motion.rotations, given=given)
     first = min(rest_pose_frames(motion, anatomy), len(motion) - 1)
     anatomy = as_it_points(anatomy, poses, first=first, given=given)
     found = find_up(motion, bones, poses, anatomy, first=first, travel=travel)

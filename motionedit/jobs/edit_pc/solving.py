@@ -80,7 +80,12 @@ class Solving:
         ).motion
 
     def _stand(self, edit: CoefficientEdit, still: Collection[int], *, feet: Sequence[StandingFoot]) -> CoefficientEdit:
-        return edit_standing(edit, self._again, self.requests, self.facts, feet=feet, still=still) if feet else edit
+        travel = self.projection.travel
+        return (
+            edit_standing(edit, self._again, self.requests, self.facts, travel=travel, feet=feet, still=still)
+            if feet
+            else edit
+        )
 
     def _feet_of(self, edit: CoefficientEdit) -> list[StandingFoot]:
         """Return the feet that stand in an edit, and where; none where they are left alone."""

@@ -36,6 +36,7 @@ def edit_standing(
     requests: Sequence[GoalRequest],
     facts: ClipFacts,
     *,
+    travel: int,
     feet: Sequence[StandingFoot],
     still: Collection[int] = (),
 ) -> CoefficientEdit:
@@ -55,7 +56,7 @@ def edit_standing(
         if done:
             whole = done > _WITHOUT_PELVIS
             found = replace(found, motion=again(found.motion, asked, still if whole else standing, firm=whole))
-        kept = put_back(found.motion, motion, feet, anatomy, up=facts.up, travel=facts.travel, first=facts.first)
+        kept = put_back(found.motion, motion, feet, anatomy, up=facts.up, travel=travel, first=facts.first)
         found = replace(found, motion=kept.motion, touched=found.touched | kept.touched, moved=found.moved | kept.moved)
         off = ways_off(forward(found.motion), asked, leg=anatomy.leg_length)
         if max(off, default=0.0) < 1.0:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
+from motionedit.core.body.whole import whole_joints
 from motionedit.core.feet.path import NewPath, new_path
 from motionedit.core.priorities.kinds.constraint import Scene
 from motionedit.core.priorities.sight import sight_of
@@ -23,14 +24,15 @@ if TYPE_CHECKING:
 def asked_path(sized: SizedClip, constraints: Sequence[ClipConstraint], curve: Curve) -> NewPath | None:
     """Return where positions of the root take the body, clip units; None where none is asked for.
 
-    Those are the positions, in the world or by heading, of the joint that carries the travel or of a point fixed in it.
-    Along axes that do not count the body stays. Of several that count the same axis the last holds.
+    Those are the positions, in the world or by heading, of the joints that turn the whole body or of points fixed in
+    them. Along axes that do not count the body stays. Of several that count the same axis the last holds.
     """
     facts, travel = sized.facts, sized.facts.travel
-    before = sight_of(sized.motion, lambda: [travel], None)
+    whole = whole_joints(facts.bones, facts.anatomy, travel=travel)
+    before = sight_of(sized.motion, lambda: whole, None)
     scene, places = Scene(before, curve, dict, lambda: before), before.poses.positions[:, travel]
     asks = [each.constraint for each in constraints]
-    asks = [ask for ask in asks if not ask.stands and ask.at is not None and ask.at.joint == travel]
+    asks = [ask for ask in asks if not ask.stands and ask.at is not None and ask.at.joint in whole]
     asked = [displaced for displaced in (ask.displacement(scene) for ask in asks) if displaced is not None]
     if not asked:
         return None

@@ -106,7 +106,9 @@ def _masses(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults: F
         if index is not None:
             given[index] = kilograms
     try:
-        return find_masses(facts.bones, facts.anatomy, given=given or None)
+        return find_masses(
+            facts.bones, facts.anatomy, rotations=facts.clip.motion.rotations[facts.first :], given=given or None
+        )
     except ValueError as error:
         raise place.error(str(error)) from None
 

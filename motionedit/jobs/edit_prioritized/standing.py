@@ -8,6 +8,7 @@ import numpy as np
 
 from motionedit.core.arrays import runs
 from motionedit.core.body.contacts import Plant
+from motionedit.core.body.whole import whole_joints
 from motionedit.core.feet.goals import ground_under
 from motionedit.core.feet.keep import onto_stances, within_legs
 from motionedit.core.feet.path import carried, turned
@@ -131,7 +132,8 @@ def _floor_of_feet(sized: SizedClip, constraints: Sequence[ClipConstraint]) -> f
 
 
 def _no_path(facts: ClipFacts) -> str:
-    name = facts.clip.motion.skeleton.names[facts.travel]
+    skeleton = facts.clip.motion.skeleton
+    name = " or ".join(skeleton.names[j] for j in whole_joints(facts.bones, facts.anatomy, travel=facts.travel))
     return (
         f"footplants: at: path follows nothing, so plants stay where they are: ask for a position of {name}, "
         "in the world or by heading"

@@ -4,20 +4,23 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from motionedit.core.body.bones import travel_joint
 from motionedit.core.pca.streaming import MOST_COMPONENTS
 from motionedit.errors import ModelError
 from motionedit.jobs.clip import resolve
 
 if TYPE_CHECKING:
-    from motionedit.core.motion import Motion
+    from motionedit.core.skeleton import Skeleton
     from motionedit.errors import MotionEditError
     from motionedit.spec.fit_pca import FitPcaSpec
     from motionedit.spec.load import LoadedSpec
 
 
-def excluded_joints(loaded: LoadedSpec[FitPcaSpec] | None, motion: Motion, label: str) -> frozenset[int]:
+def excluded_joints(
+    loaded: LoadedSpec[FitPcaSpec] | None, skeleton: Skeleton, label: str, *, travel: int
+) -> frozenset[int]:
     """Return the joints that a spec leaves out of the model of a motion, which messages call `label`.
+
+    `travel` is the joint whose path is the body's.
 
     Raises
     ------
@@ -27,10 +30,9 @@ def excluded_joints(loaded: LoadedSpec[FitPcaSpec] | None, motion: Motion, label
     if loaded is None:
         return frozenset()
     place = resolve.Place(loaded, ("exclude_joints",), label)
-    found = resolve.joints(loaded.model.exclude_joints, motion.skeleton, place)
-    travel = travel_joint(motion)
+    found = resolve.joints(loaded.model.exclude_joints, skeleton, place)
     if travel in found:
-        name = motion.skeleton.names[travel]
+        name = skeleton.names[travel]
         message = f"in {label}: '{name}' carries the travel, which a model always has; leave it off the list"
         raise place.at(found.index(travel)).error(message)
     return frozenset(found)

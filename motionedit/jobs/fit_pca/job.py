@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from motionedit.core.body.bones import travel_joint
 from motionedit.core.body.find_anatomy import anatomy_of
 from motionedit.core.body.ground import axis_vector
+from motionedit.core.body.whole import path_joint
 from motionedit.core.pca.database import FitSettings, build_model, database_space
 from motionedit.core.pca.fit import AllTheSameError, ComponentCount, TooFewComponentsError
 from motionedit.core.pca.model_file import model_bytes
@@ -85,15 +86,16 @@ def fit(database: Database, loaded: LoadedSpec[FitPcaSpec] | None, *, options: R
     first = motions.first
     if loaded is not None:
         refuse_another_up(loaded, normalization.up, by=database.list_label)
+    anatomy = anatomy_of(first, given=_body(loaded, database, first.skeleton))
+    travel = path_joint(first.skeleton, anatomy, travel=travel_joint(first))
     settings = FitSettings(
         representation="centred" if spec.rotation == "centred" else "exponential",
         root_weight=spec.root_weight,
-        excluded=excluded_joints(loaded, first, database.label),
+        excluded=excluded_joints(loaded, first.skeleton, database.label, travel=travel),
         components=ComponentCount(spec.components, spec.explained_variance),
         threads=threads_within(1, options),
     )
-    leg_length = anatomy_of(first, given=_body(loaded, database, first.skeleton)).leg_length
-    space = database_space(first, travel=travel_joint(first), leg_length=leg_length, settings=settings)
+    space = database_space(first, travel=travel, leg_length=anatomy.leg_length, settings=settings)
     try:
         fitted = build_model(
             motions.vectors(space),
@@ -108,7 +110,7 @@ def fit(database: Database, loaded: LoadedSpec[FitPcaSpec] | None, *, options: R
         raise too_few_components(loaded, spec, count, error.available) from None
     except AllTheSameError as error:
         raise ModelError(f"{error}: there is nothing to learn; give clips that differ", file=database.label) from error
-    doubts = unit_doubts(leg_length, spec.unit)
+    doubts = unit_doubts(anatomy.leg_length, spec.unit)
     return Fit(fitted.model, fit_report(fitted, spec, doubts=doubts, verbosity=options.verbosity))
 
 

@@ -6,6 +6,8 @@ import json
 import re
 from typing import TYPE_CHECKING, Any
 
+from motionedit.report.table import padded, width_of
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
@@ -48,8 +50,7 @@ def _facts(record: dict[str, Any]) -> list[str]:
         *_anatomy(record["anatomy"]),
         ("hinges", _hinges(record["hinges"])),
         ("defects", _defects(record["defects"])),
-        ("quality", _quality(record["metrics"])),
-        ("feet", _feet(record["metrics"])),
+        *_quality(record["metrics"], stands=record["anatomy"]["left_leg"] is not None),
         *(("warning", warning) for warning in record["warnings"]),
     ]
     return [f"  {name:<12}{line}".rstrip() for name, text in facts for name, line in _labelled(name, text)]
@@ -81,9 +82,13 @@ def _unit(unit: dict[str, Any] | None) -> str:
     return f"likely {unit['name']} (the leg is {unit['leg']:.2f} m)"
 
 
-def _quality(metrics: dict[str, float]) -> str:
+def _quality(metrics: dict[str, float], *, stands: bool) -> Iterator[tuple[str, str]]:
+    """Yield how smooth a motion is, and how well its feet stand, where it has any."""
     jerk, slide = metrics["jerk_rms"], metrics["foot_slide_max"]
-    return f"jerk {jerk:.6g} units/s^3, planted feet slide at up to {slide:.4g} units/s"
+    feet = f", planted feet slide at up to {slide:.4g} units/s" if stands else ""
+    yield "quality", f"jerk {jerk:.6g} units/s^3{feet}"
+    if stands:
+        yield "feet", _feet(metrics)
 
 
 def _feet(metrics: dict[str, float]) -> str:
@@ -136,8 +141,8 @@ def _tree(record: dict[str, Any]) -> list[str]:
         rows += [(f"{indent}  (end site {i})", "", _vector(site)) for i, site in enumerate(joint["end_sites"])]
     title = f"  joints      {len(record['joints'])}, {record['channels']} channels"
     rows = [("", "channels", "offset"), *rows]
-    widths = [max(len(row[column]) for row in rows) for column in range(2)]
-    lines = (f"    {name:<{widths[0]}}  {channels:<{widths[1]}}  {offset}" for name, channels, offset in rows)
+    widths = [max(width_of(row[column]) for row in rows) for column in range(2)]
+    lines = (f"    {padded(name, widths[0])}  {channels:<{widths[1]}}  {offset}" for name, channels, offset in rows)
     return [title, *(line.rstrip() for line in lines)]
 
 

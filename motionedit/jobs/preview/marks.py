@@ -61,7 +61,10 @@ class Figure:
     def _center_of_mass(self, masses: Mapping[str, float]) -> FloatArray:
         skeleton = self.facts.clip.motion.skeleton
         given = {skeleton.names.index(name): float(mass) for name, mass in masses.items() if name in skeleton.names}
-        return center_of_mass(self.facts.poses, find_masses(self.facts.bones, self.facts.anatomy, given=given or None))
+        facts = self.facts
+        rotations = facts.clip.motion.rotations[facts.first :]
+        laid = find_masses(facts.bones, facts.anatomy, rotations=rotations, given=given or None)
+        return center_of_mass(facts.poses, laid)
 
     def _added(self, path: FloatArray) -> int:
         positions = np.concatenate((self.body.positions, self.on_page(path)[:, None]), axis=1)

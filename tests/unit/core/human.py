@@ -1,5 +1,7 @@
 """A made-up human of 23 joints for the tests of anatomy, ground, contacts and quality; lengths in metres, y up."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from motionedit.core import rotations as rot
@@ -78,6 +80,15 @@ def with_rotation(motion, joint, frames, vector):
     rotations = motion.rotations.copy()
     rotations[frames, motion.skeleton.names.index(joint)] = rot.exp(np.asarray(vector, dtype=float))
     return Motion(motion.skeleton, rotations, motion.translations, motion.frame_time)
+
+
+def with_axes(motion, turns):
+    """Return the same motion of a body without end sites whose joints have other axes: frames turned by (J, 4)."""
+    parents = motion.skeleton.parents
+    above_it = np.concatenate((rot.IDENTITY[None], turns[parents[1:]]))
+    skeleton = replace(motion.skeleton, offsets=rot.unrotate(above_it, motion.skeleton.offsets))
+    rotations = rot.multiply(rot.multiply(rot.conjugate(above_it), motion.rotations), turns)
+    return Motion(skeleton, rotations, motion.translations, motion.frame_time)
 
 
 def above(bones, name, *, offset=(0.0, 0.0, 0.0)):

@@ -9,13 +9,14 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.compiled import compiled
 from motionedit.core.euler import solve_angles
+from motionedit.core.kinematics import forward_of
 from motionedit.core.motion import Motion
 from motionedit.core.priorities.solver.constants import NO_DISPLACEMENT
 from motionedit.core.rotation_vectors import unwrapped
 from motionedit.core.timeline.interpolation import gaussian, low_pass
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from motionedit.core.arrays import FloatArray
     from motionedit.core.body.hinges import Hinge
@@ -29,7 +30,7 @@ def smoothed_displacement(
 ) -> Motion:
     """Return the input plus the low-passed displacement of the edit: the next pass's start and reference.
 
-    d = log(q_in^-1 q_out) per joint and the difference of translations, through a zero-phase Gaussian; of a hinge it is
+    d = log(q_in^-1 q_out) per joint and the shift in the world, through a zero-phase Gaussian; of a hinge it is
     the turn about its axis a, d = a . log(q_out q_in^-1), and of a joint of two the nearest that they can do.
 
     Parameters
@@ -41,9 +42,7 @@ def smoothed_displacement(
     use_up : bool
         The result may take the place of `after`, so that of a long clip there is one less.
     """
-    shifts = after.translations - before.translations
-    shifts[first:] = low_pass(shifts[first:], sigma=sigma)
-    translations = before.translations + shifts
+    translations = _filtered(before, after, lambda shifts: low_pass(shifts, sigma=sigma), first=first)
     kernel, taps = compiled(), gaussian(sigma, len(before) - first)
     axes = _axes(hinges, len(before.skeleton))
     if kernel is not None:
@@ -66,6 +65,22 @@ def smoothed_displacement(
     still, turned = before.rotations[:, moving], rot.exp(smooth)
     rotations[:, moving] = np.where(hinged, rot.multiply(turned, still), rot.multiply(still, turned))
     return on_channels(Motion(before.skeleton, rotations, translations, before.frame_time), hinges)
+
+
+def _filtered(before: Motion, after: Motion, smooth: Callable[[FloatArray], FloatArray], *, first: int) -> FloatArray:
+    """Return the translations of an edit whose shifts (F, 3) went through a filter from frame `first` on.
+
+    They do so along the axes of the world: what carries the travel may hang on a joint that turns.
+    """
+    skeleton, shifts = before.skeleton, after.translations - before.translations
+    for place in np.flatnonzero(shifts[first:].any(axis=(0, 2))).tolist():
+        parent, shift = int(skeleton.parents[skeleton.translated[place]]), shifts[first:, place]
+        if parent < 0:
+            shift[:] = smooth(shift)
+        else:
+            turns = forward_of(before, parent)[1][first:]
+            shift[:] = rot.unrotate(turns, smooth(rot.rotate(turns, shift)))
+    return before.translations + shifts
 
 
 def _axes(hinges: Sequence[Hinge], joints: int) -> FloatArray:
@@ -92,21 +107,10 @@ def on_channels(motion: Motion, hinges: Sequence[Hinge]) -> Motion:
     return Motion(motion.skeleton, rotations, motion.translations, motion.frame_time)
 
 
-def filtered_root(before: Motion, after: Motion, place: int, *, cutoff: float, first: int) -> Motion:
-    """Return the edit with the root's displacement through the paper's FIR low-pass.
-
-    Parameters
-    ----------
-    place : int
-        The root among the skeleton's translated joints.
-    cutoff : float
-        Hz.
-    """
-    translations = after.translations.copy()
-    shifts = (after.translations - before.translations)[first:, place]
-    translations[first:, place] = before.translations[first:, place] + fir_low_pass(
-        shifts, cutoff=cutoff * before.frame_time
-    )
+def filtered_root(before: Motion, after: Motion, *, cutoff: float, first: int) -> Motion:
+    """Return the edit with the root's displacement through the paper's FIR low-pass; `cutoff` in Hz."""
+    by = cutoff * before.frame_time
+    translations = _filtered(before, after, lambda shifts: fir_low_pass(shifts, cutoff=by), first=first)
     return Motion(after.skeleton, after.rotations, translations, after.frame_time)
 
 

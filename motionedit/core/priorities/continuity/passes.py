@@ -53,7 +53,7 @@ def solve_as_the_paper(run: Run, smoothing: PaperFilter) -> Passed:
     if not smoothing.count:
         return Passed(state, iterations)
     motion, first = run.motion, run.asked.body.first
-    filtered = filtered_root(motion, state.motion, run.place, cutoff=smoothing.cutoff, first=first)
+    filtered = filtered_root(motion, state.motion, cutoff=smoothing.cutoff, first=first)
     state = replace(state, motion=filtered)
     # What is asked for is the same: the targets are.
     still = tuple(Recruits(each.joints, root=False) for each in run.asked.recruits)

@@ -157,6 +157,8 @@ class Constraint(ABC):
     waits_for_others: ClassVar[bool] = False
     # It keeps its effector in place, or brings it there.
     places_effector: ClassVar[bool] = False
+    # It is about how its effector is turned, too: by the effector's own joint, wherever in it that is.
+    turns: ClassVar[bool] = False
     # Its place is the body's center of mass, which needs masses.
     weighs: ClassVar[bool] = False
     # Its goals come from where feet stand, which is found before the edit.

@@ -38,8 +38,7 @@ class EffectorConstraint(Constraint):
     recruit : RecruitRule
     """
 
-    # Turning the effector's own joint moves the task, wherever the effector is in it; the root's shift does.
-    turns: ClassVar[bool] = False
+    # The root's shift moves the task.
     shifts: ClassVar[bool] = True
 
     effector: Effector

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from human import BONES, ENDS, HIPS_HEIGHT, above, skeleton_of, split, standing
+from human import BONES, ENDS, HIPS_HEIGHT, above, skeleton_of, split, standing, with_axes
 
 from motionedit.core import rotations as rot
 from motionedit.core.body.center_of_mass import center_of_mass, find_masses, subtree_centers
@@ -142,6 +142,21 @@ def test_units_and_axes_do_not_matter():
     metres, inches = masses_of(skeleton_of()), masses_of(skeleton_of(turn=turn, scale=1.0 / INCH))
     np.testing.assert_allclose(inches.shares, metres.shares, atol=1e-14)
     np.testing.assert_allclose(inches.points, metres.points @ turn.T / INCH, atol=1e-12)
+
+
+def test_the_axes_that_joints_have_do_not_matter():
+    rows = [row for row in BONES if row[0] not in {"LeftHandIndex1", "RightHandIndex1"}]
+    skeleton, rng = skeleton_of(rows, {}), np.random.default_rng(3)
+    motion = standing(skeleton, 30)
+    rotations = rot.exp(0.2 * rng.normal(size=(30, len(skeleton), 3)) + 0.3 * rng.normal(size=(len(skeleton), 3)))
+    motion = Motion(skeleton, rotations, motion.translations, motion.frame_time)
+    other = with_axes(motion, rot.exp(2.0 * rng.normal(size=(len(skeleton), 3))))
+    anatomy = find_anatomy(skeleton)
+    one, same = (find_masses(each.skeleton, anatomy, rotations=each.rotations) for each in (motion, other))
+    assert one.is_human
+    np.testing.assert_allclose(same.shares, one.shares, atol=1e-12)
+    centers = [center_of_mass(forward(each), masses) for each, masses in ((motion, one), (other, same))]
+    np.testing.assert_allclose(centers[1], centers[0], atol=1e-9)
 
 
 @pytest.mark.parametrize("way", ["static root", "legs beside the spine", "root in the chest"])

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from human import skeleton_of, with_axes
 from strokes import TIMELINE, database, model_of, place, stroke
 
 from motionedit.core import kinematics
@@ -80,6 +81,21 @@ def test_a_clip_that_goes_on_beyond_the_timeline_comes_to_rest_at_its_ends_witho
     own, stopped = (np.abs(np.diff(places, 2)) for places in (views[1], part.to_timeline(frames)))
     for end in (slice(10, 50), slice(120, 158)):
         assert own[end].max() < 0.15 * stopped[end].max()
+
+
+def test_the_axes_that_joints_have_do_not_matter():
+    skeleton = skeleton_of(ends={})
+    turns = rot.exp(2.0 * np.random.default_rng(5).normal(size=(len(skeleton), 3)))
+    strokes, hits = database(skeleton=skeleton)
+    strokes = [*strokes, stroke(20, skeleton=skeleton, noise=0.002)]
+    ways = []
+    for motions in (strokes, [with_axes(each, turns) for each in strokes]):
+        motion, model = motions[-1], model_of(motions[:-1], TIMELINE, hits)
+        request = request_of(motion, 36, np.array([0.1, 0.1, -0.08]), offset=np.zeros(3))
+        solver, asked = Likeliest(0.3, None, most=0.3), projected(model, motion, 36.0)
+        edit = edit_by_coefficients(asked, model, [request], solver=solver, residual="keep", first=0)
+        ways.append(kinematics.forward(edit.motion).positions)
+    np.testing.assert_allclose(ways[1], ways[0], atol=1e-6)
 
 
 def test_no_shift_touches_nothing(model):
