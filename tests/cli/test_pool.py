@@ -137,11 +137,11 @@ def messages(monkeypatch):
     return sent
 
 
-def test_short_items_go_several_at_a_time_to_their_workers(messages):
-    assert list(results_in_order(math.isqrt, [9] * 400, options=RunOptions(jobs=2))) == [3] * 400
+def test_short_items_go_in_messages_that_are_full_but_for_the_last_ones(messages):
+    assert list(results_in_order(math.isqrt, [9] * 1600, options=RunOptions(jobs=2))) == [3] * 1600
     assert max(count for count, _ in messages) == processes._AT_ONCE
-    assert sum(count for count, _ in messages) == 400
-    assert len(messages) < 200
+    assert sum(count for count, _ in messages) == 1600
+    assert len(messages) < 1.4 * 1600 / processes._AT_ONCE
 
 
 def test_items_that_take_long_go_one_by_one(messages):

@@ -33,10 +33,12 @@ Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 # Items that are begun, for each worker, before the results of those before are taken: results that wait take memory.
-AHEAD = 16
+AHEAD = 32
 # Messages that a worker has at once: the one it works on, and the next, so that it need not wait for its parent.
 IN_HAND = 2
-_AT_ONCE = AHEAD // IN_HAND  # items of one message, at most
+# Items of one message, at most. What workers have in hand is half of what may be begun: where one is late with its
+# items, the others still get whole messages.
+_AT_ONCE = AHEAD // (2 * IN_HAND)
 # Of one message, at most: that both sides of a pipe write at once, and neither reads, must not be. And its items take
 # about so long.
 _MOST_BYTES = 1 << 15

@@ -138,7 +138,8 @@ def body(spec: BodySpec, skeleton: Skeleton, place: Where) -> GivenBody:
     """
     faults = Faults()
     for key in ("left_leg", "right_leg", "left_arm", "right_arm"):
-        joints_if_there(getattr(spec, key) or (), skeleton, place.at(key), faults)
+        if names := getattr(spec, key):
+            joints_if_there(names, skeleton, place.at(key), faults)
     if spec.head not in (None, NONE):
         joint_if_there(spec.head, skeleton, place.at("head"), faults)
     faults.raise_all(f"joints that {place.clip} lacks")
