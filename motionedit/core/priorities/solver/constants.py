@@ -4,6 +4,8 @@
 LARGEST_ERROR = 0.6
 # That of a layer that gives way: so far it pulls, and no farther, at what is out of reach.
 LARGEST_SOFT_ERROR = 0.3
+# Metres: the root is drawn back by at most this much, or what asks it to be far away would not be met.
+LARGEST_WAY_BACK = 0.3
 # Radians: no joint turns further than this in one iteration. The series of csrc's q_exp are good up to it.
 LARGEST_TURN = 0.5
 # Radians and metres: a frame is done when its largest step falls below,

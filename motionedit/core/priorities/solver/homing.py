@@ -12,7 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.priorities.solver.constants import LARGEST_FACTOR, LARGEST_TASK_SHARE, NO_CHANGE
+from motionedit.core.priorities.solver.constants import (
+    LARGEST_FACTOR,
+    LARGEST_TASK_SHARE,
+    LARGEST_WAY_BACK,
+    NO_CHANGE,
+)
 from motionedit.core.priorities.solver.layers import Descent, off_layers
 from motionedit.core.priorities.solver.points import turn_to_local
 from motionedit.dataclass import dataclass
@@ -30,7 +35,8 @@ def attraction(
 ) -> FloatArray:
     """Return z, shape (N, n): the increments that bring the column joints back to the reference.
 
-    z = log(q_ref q^-1) per joint, as world-axis increments; and the way back of the root where the reference has one.
+    z = log(q_ref q^-1) per joint, as world-axis increments; and the way back of the root where the reference has one,
+    or the first part of it.
     """
     targets = reference.rotations[frames[:, None], columns.joints]
     z = np.zeros((len(frames), columns.size))
@@ -39,6 +45,7 @@ def attraction(
     if reference.root is not None and len(columns.skeleton.translated):
         root = columns.skeleton.translation_places[columns.root]
         back = reference.root[frames] - motion.translations[:, root]
+        back *= LARGEST_WAY_BACK / np.maximum(rot.length(back), LARGEST_WAY_BACK)[:, None]
         above = int(columns.skeleton.parents[columns.root])
         z[:, -3:] = rot.rotate(poses.rotations[:, above], back) if above >= 0 else back
     return z

@@ -5,7 +5,7 @@ from itertools import pairwise, starmap
 
 import numpy as np
 import pytest
-from person import BODY, FEET, SKELETON, edited, end, joint, swaying
+from person import BODY, FEET, SKELETON, edited, end, joint, path, swaying
 
 from motionedit.core import rotations as rot
 from motionedit.core.body.bones import below
@@ -136,3 +136,15 @@ def test_a_body_that_shall_but_turn_and_reach_stays_about_where_it_is(asked):
 @pytest.mark.parametrize("more", [KINDS["com"], FLOOR, KINDS["hips"]])
 def test_where_the_body_shall_go_elsewhere_it_is_not_held_back(more):
     assert not prepare(MOTION, [ASIDE, more], HUMAN, LayeredSettings())[0].asked.pulls_root
+
+
+@pytest.mark.parametrize("ahead", [0.2, 2.0])
+def test_a_body_is_drawn_back_no_more_where_its_hand_is_wanted_farther_away(ahead):
+    low = path(MOTION, "RightHand")[0] + np.array([0.0, 0.0, ahead])
+    places = low, low + np.array([0.0, 0.3, 0.0])
+    goals = [
+        Position(name="p", effector=end("RightHand"), points=(ControlPoint("hold", 0, FRAMES - 1, place),), yields=True)
+        for place in places
+    ]
+    one, other = (each.positions for each in edited(MOTION, goals, LayeredSettings(), body=HUMAN).errors)
+    assert (np.abs(one + other - 0.3) < 0.03).all()

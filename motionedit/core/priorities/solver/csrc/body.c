@@ -167,7 +167,11 @@ static void attraction(Batch *batch)
     if (problem->pulls_root && problem->of.root >= 0) {
         V back[3];
         for (int a = 0; a < 3; a++)
-            back[a] = (batch->reference_root[a] - batch->offsets[3 * problem->of.root + a]) / shift;
+            back[a] = batch->reference_root[a] - batch->offsets[3 * problem->of.root + a];
+        const V most = all(problem->constants.largest_way_back);
+        const V part = most / larger(root_of(dot(back, back)), most);
+        for (int a = 0; a < 3; a++)
+            back[a] = part * back[a] / shift;
         turned(parent_rotation(batch, problem->of.root), back, root);
     }
 }

@@ -60,8 +60,8 @@ typedef struct {
 
 /* Those of core/priorities/solver/constants.py, where each is explained. */
 typedef struct {
-    double largest_error, largest_soft_error, largest_turn, stop_step, stop_left, stop_error, largest_ratio, gain_decay,
-        on_limit;
+    double largest_error, largest_soft_error, largest_way_back, largest_turn, stop_step, stop_left, stop_error,
+        largest_ratio, gain_decay, on_limit;
     double rank_tolerance, least_scale, limb, largest_task_share, largest_factor, no_change, no_direction, beyond_limit,
         same_error, far_error, met_without_limits, metres_per_radian, on_side;
     int64_t full_gain_iterations, hasty_iterations, annealed_iterations, stale_iterations, limit_rounds, sided_rounds;
