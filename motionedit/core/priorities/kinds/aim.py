@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.kinds.constraint import Scene, Stage
-    from motionedit.core.priorities.settings import Body
     from motionedit.core.priorities.sight import Sight
     from motionedit.core.priorities.solver.points import Point
 
@@ -100,11 +99,6 @@ class Aim(EffectorConstraint):
             since=self.since,
         )
         return Targets(first, last, positions @ self.measure.axes)
-
-    def carries(self, body: Body) -> bool:
-        """Return False: to turn is no reason."""
-        del body
-        return False
 
     def task(self, targets: Targets, stage: Stage) -> AimTask:
         """Return the task of the axis."""

@@ -92,8 +92,8 @@ class EffectorConstraint(Constraint):
         return chains if self.shifts else Recruits(chains.joints, root=False)
 
     def carries(self, body: Body) -> bool:
-        """Return whether it is about the lower body: what hangs on the chest reaches, and turns."""
-        return self.effector.joint not in body.upper
+        """Return whether it places the lower body: to turn is no reason, and what hangs on the chest reaches."""
+        return self.places_effector and self.effector.joint not in body.upper
 
     def looked_at(self) -> frozenset[int]:
         """Return the effector's joint and its base."""

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.kinds.constraint import ConstraintErrors, Scene, Stage, Symbol
-    from motionedit.core.priorities.settings import Body
     from motionedit.core.priorities.sight import Sight
     from motionedit.core.priorities.solver.points import Point
 
@@ -36,11 +35,6 @@ class Orientation(EffectorConstraint):
     def targets(self, scene: Scene) -> Targets:
         """Return the turns, over the input's own."""
         return Targets(*self.active(len(scene.before.motion)), None, turned(self, scene))
-
-    def carries(self, body: Body) -> bool:
-        """Return False: to turn is no reason."""
-        del body
-        return False
 
     def task(self, targets: Targets, stage: Stage) -> OrientationTask:
         """Return the task of the joint."""
