@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 FADE = 0.15
 # The share of a pose's variance that each joint has by itself, beside how the database's poses vary together; and what
 # a column that does not vary at all has, so that the root of the whole exists.
-_ALONE, _LEAST_VARIANCE = 0.7, 1e-12
+_ALONE, _LEAST_VARIANCE = 0.65, 1e-12
 # Rad: poses of real strokes, walks and jumps vary by 7 to 28 degrees. Near copies of one motion say how a body moves
 # together, not how far it may go: poses that vary by less than this count as varying by as much more.
 _LEAST_DEVIATION = float(np.radians(5.0))
