@@ -79,6 +79,19 @@ def test_a_lower_priority_gives_way_and_the_report_says_to_whom(edit):
     assert done.result.exit_code == 0
 
 
+@pytest.mark.parametrize(("higher", "eases"), [([76, 80], "in from frame 62 on"), ([42, 50], "out until frame 64")])
+def test_it_is_said_whose_ramp_is_over_the_points_of_a_goal(edit, higher, eases):
+    done = edit(
+        [
+            hand({"hold": [60, 66], "shift": [0, 12, 0]}, name="early"),
+            hand({"hold": higher, "shift": [5, 0, 10]}, name="late", priority=5),
+        ],
+        defaults={"ease_in": 14, "ease_out": 14},
+    )
+    assert done.constraint("early")["gave_way_to"] == ["late"]
+    assert any(line.endswith(f"priority 5 above left no freedom: late eases {eases}") for line in done.warnings)
+
+
 def test_only_the_order_of_priorities_matters(edit):
     balance = {"type": "com", "axes": ["x", "z"]}
     files = []

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import FloatArray
     from motionedit.core.priorities.edit import PrioritizedEdit
-    from motionedit.core.priorities.kinds.constraint import ConstraintErrors
+    from motionedit.core.priorities.kinds.constraint import Constraint, ConstraintErrors
     from motionedit.jobs.edit_prioritized.constraints import ClipConstraint
 
 # Errors over tolerance are told apart to this: below it is rounding, and the worst frame would be any.
@@ -104,13 +104,24 @@ def verdict(i: int, one: Measured, edit: PrioritizedEdit, settings: LayeredSetti
         if above:
             levels = order_of_layers([each.priority for each in above])
             which = f"priority {levels[0]}" if len(levels) == 1 else f"priorities {', '.join(map(str, levels))}"
-            reason = f"{which} above left no freedom"
+            reason = f"{which} above left no freedom{_ramp_over(edit.asked.constraints[i], above, edit, one.worst)}"
         else:
             alone = measured(one.each, blame.left, scale)
             reason = _reason(i, one, [each.name for each in blamed], edit, settings, is_met_alone=not alone.missed)
     status = "unreachable" if reason == _OUT_OF_REACH else "out_of_tolerance"
     reason += _rest_pose(i, one, edit, reason)
     return Verdict("ok" if one.each.may_give_way else status, tuple(names), reason)
+
+
+def _ramp_over(missed: Constraint, above: Sequence[Constraint], edit: PrioritizedEdit, frame: int) -> str:
+    """Return which of those above asks for the same, and is but in a ramp at a frame; or an empty text."""
+    count = len(edit.motion)
+    for each in above:
+        if each.about is not None and each.about == missed.about and each.share(count)[frame] < 1.0:
+            first, last = each.active(count)
+            eases = f"in from frame {first} on" if frame < each.points[0].start else f"out until frame {last}"
+            return f": {each.name} eases {eases}"
+    return ""
 
 
 def _rest_pose(i: int, one: Measured, edit: PrioritizedEdit, reason: str) -> str:
