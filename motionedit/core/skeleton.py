@@ -122,6 +122,10 @@ class Skeleton:
             tuple("XYZ".index(name[0]) for name in names if name.endswith("position")) for names in self.channels
         )
 
+    def turns_freely(self, joint: int) -> bool:
+        """Return whether a joint's channels turn it about three axes."""
+        return len(set(self.rotation_axes[joint])) == len("XYZ")
+
     @cached_property
     def rotation_groups(self) -> tuple[RotationGroup, ...]:
         """The joints with rotation channels, together where their axes are the same."""

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.arrays import frozen
-from motionedit.core.body.head import SAME_PLACE
-from motionedit.core.body.whole import ALL_AXES, whole_joints
+from motionedit.core.body.still import is_at_its_parent
+from motionedit.core.body.whole import whole_joints
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -57,8 +57,7 @@ def _parts(skeleton: Skeleton, anatomy: Anatomy, travel: int) -> Iterator[tuple[
     for arm in anatomy.arms or ():
         girdle = skeleton.between(chest, arm.shoulder)
         for joint, lower in pairwise(girdle):
-            is_group = float(np.linalg.norm(skeleton.offsets[lower])) < SAME_PLACE * anatomy.height
-            yield joint, INSIDE_BONE if is_group else CLAVICLE
+            yield joint, INSIDE_BONE if is_at_its_parent(skeleton, anatomy, lower) else CLAVICLE
         yield from _inside(skeleton, arm.as_leg)
         yield arm.wrist, WRIST_AND_ANKLE
     for leg in anatomy.legs or ():
@@ -84,5 +83,5 @@ def _inside(skeleton: Skeleton, limb: Leg) -> Iterator[tuple[int, float]]:
 
 def _turning(skeleton: Skeleton, whole: tuple[int, ...]) -> tuple[int, ...]:
     """Return the joints of a whole body down to the last that turns about all axes; the first alone where none does."""
-    turning = [i for i, joint in enumerate(whole) if len(set(skeleton.rotation_axes[joint])) == ALL_AXES]
+    turning = [i for i, joint in enumerate(whole) if skeleton.turns_freely(joint)]
     return whole[: turning[-1] + 1] if turning else whole[:1]

@@ -38,6 +38,11 @@ def as_it_turns(skeleton: Skeleton, anatomy: Anatomy, rotations: FloatArray, *, 
     return _with(anatomy, skeleton, moved) if any(joint != other for joint, other in moved.items()) else anatomy
 
 
+def is_at_its_parent(skeleton: Skeleton, anatomy: Anatomy, joint: int) -> bool:
+    """Return whether a joint stands where its parent does."""
+    return float(np.linalg.norm(skeleton.offsets[joint])) < SAME_PLACE * anatomy.height
+
+
 def _first_turning(heap: tuple[int, ...], rotations: FloatArray) -> int:
     """Return the first of some joints that turns, of none the first."""
     for joint in heap:
@@ -59,7 +64,7 @@ def _heaps(skeleton: Skeleton, anatomy: Anatomy, given: GivenBody) -> dict[int, 
     heaps = {}
     for joint in sorted(joints):
         heap, below = [joint], skeleton.children[joint]
-        while len(below) == 1 and float(np.linalg.norm(skeleton.offsets[below[0]])) < SAME_PLACE * anatomy.height:
+        while len(below) == 1 and is_at_its_parent(skeleton, anatomy, below[0]):
             heap.append(below[0])
             below = skeleton.children[below[0]]
         if len(heap) > 1:

@@ -9,8 +9,6 @@ if TYPE_CHECKING:
     from motionedit.core.body.anatomy import Anatomy
     from motionedit.core.skeleton import Skeleton
 
-ALL_AXES = 3
-
 
 @lru_cache(maxsize=8)
 def whole_joints(skeleton: Skeleton, anatomy: Anatomy, *, travel: int) -> tuple[int, ...]:
@@ -35,6 +33,7 @@ def path_joint(skeleton: Skeleton, anatomy: Anatomy, *, travel: int) -> int:
 
     That of a root that walks the floor says nothing of how high the hips are.
     """
-    channels = zip(skeleton.rotation_axes, skeleton.position_axes, strict=True)
-    free = [len(set(turns)) == ALL_AXES and len(set(ways)) == ALL_AXES for turns, ways in channels]
-    return next((j for j in reversed(whole_joints(skeleton, anatomy, travel=travel)) if free[j]), travel)
+    for joint in reversed(whole_joints(skeleton, anatomy, travel=travel)):
+        if skeleton.turns_freely(joint) and len(set(skeleton.position_axes[joint])) == len("XYZ"):
+            return joint
+    return travel

@@ -39,10 +39,7 @@ def turns_freely(skeleton: Skeleton, leg: Leg, *, left_alone: Collection[int] = 
 
     They cannot without three rotation channels, or where they are among the joints that are `left_alone`.
     """
-    return all(
-        len(set(skeleton.rotation_axes[joint])) == 3 and joint not in left_alone
-        for joint in (leg.thigh, leg.knee, leg.ankle)
-    )
+    return all(skeleton.turns_freely(joint) and joint not in left_alone for joint in (leg.thigh, leg.knee, leg.ankle))
 
 
 def legs_onto(
