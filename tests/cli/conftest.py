@@ -35,6 +35,18 @@ def clip(tmp_path):
 
 
 @pytest.fixture
+def write_motion(tmp_path):
+    """Return a writer of motions: write_motion("person.bvh", motion) makes the file and returns its path."""
+
+    def write(name, motion):
+        path = tmp_path / name
+        path.write_bytes(new_bytes(motion))
+        return path
+
+    return write
+
+
+@pytest.fixture
 def copy_spec(tmp_path):
     """Return a spec that changes nothing."""
     path = tmp_path / "copy.yaml"
