@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from operator import itemgetter
 from typing import TYPE_CHECKING
 
@@ -10,6 +11,7 @@ import numpy as np
 from motionedit.core.blocks import frame_blocks
 from motionedit.core.compiled import compiled
 from motionedit.core.motion import Motion
+from motionedit.core.priorities.drawn_to import drawn_to
 from motionedit.core.priorities.far_floors import lifted
 from motionedit.core.priorities.far_turns import parts_of
 from motionedit.core.priorities.groups import Asked, Group, groups_of, part_of, retargeted, spans_of
@@ -48,6 +50,11 @@ class Run:
     def motion(self) -> Motion:
         """The input."""
         return self.asked.motion
+
+    @cached_property
+    def drawn_to(self) -> Motion:
+        """The input as all freedom that is left has it: see `drawn_to`."""
+        return drawn_to(self.asked)
 
 
 def run_of(asked: Asked) -> Run:
@@ -114,8 +121,13 @@ def solve_frames(
     return solved
 
 
+def solve_from(run: Run, start: Motion, known: Known | None = None) -> Solved:
+    """Return the motion with every frame solved from `start`, attracted to what the input is drawn to."""
+    return solve_frames(run, start, reference=run.drawn_to, pull_root=False, known=known)
+
+
 def solve_from_input(run: Run, known: Known | None = None) -> Solved:
-    """Return the motion with every frame solved from the input, and attracted to it; far turns part by part.
+    """Return the motion with every frame solved from the input; far turns part by part.
 
     A body that is far below its floor starts from above it.
     """
@@ -124,8 +136,8 @@ def solve_from_input(run: Run, known: Known | None = None) -> Solved:
         idle = ~far if known is None else ~far | known.done
         ranks = np.zeros((len(motion), len(run.asked.levels)), dtype=np.intp)
         part = run.aimed_at(targets)
-        start = solve_frames(part, start, reference=motion, pull_root=False, known=Known(idle, ranks)).motion
-    return solve_frames(run, start, reference=motion, pull_root=False, known=known)
+        start = solve_from(part, start, Known(idle, ranks)).motion
+    return solve_from(run, start, known)
 
 
 def solve_in_order(run: Run) -> Solved:

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
     from motionedit.core.body.bends import Bend
     from motionedit.core.body.center_of_mass import Masses
+    from motionedit.core.body.gaze import Gaze
     from motionedit.core.body.hinges import Hinge
     from motionedit.core.body.limits import Limits
     from motionedit.core.priorities.trajectories.positions import Curve
@@ -59,7 +60,7 @@ class Body:
     Frames before `first` are a rest pose. `bends` are its knees and elbows, where they are known. `mobility` (J,) is
     how readily each joint turns, `root_mobility` how readily the root shifts; 1, the default, is as the paper has it.
     `limits` are the cones that joints keep to. `upper` is what hangs on the chest, arms and head: goals for it alone
-    are no reason to carry the body elsewhere.
+    are no reason to carry the body elsewhere. `gaze` is how it looks somewhere by itself, where it has a head.
     """
 
     masses: Masses
@@ -71,3 +72,4 @@ class Body:
     root_mobility: float = 1.0
     limits: Limits = NO_LIMITS
     upper: frozenset[int] = frozenset()
+    gaze: Gaze | None = None

@@ -8,6 +8,7 @@ import numpy as np
 
 from motionedit.core.body.bones import below
 from motionedit.core.body.center_of_mass import Masses, find_masses, scaled_masses
+from motionedit.core.body.gaze import gaze_of
 from motionedit.core.body.hinges import OFF_AXIS_ENERGY, Hinge, channel_hinges, find_hinges, hinge_of, with_limits_of
 from motionedit.core.body.limits import Limits, Range, given_limits, human_limits
 from motionedit.core.body.stiffness import TRAVEL, human_mobility
@@ -75,7 +76,8 @@ def sized_clip(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults
     mobility, root_mobility = _mobility(loaded, facts, faults)
     bends, hinges, limits = _ranges(loaded, facts, faults, warnings)
     upper = _upper(motion.skeleton, anatomy.chest)
-    body = Body(sized, hinges, facts.travel, facts.first, bends, mobility, root_mobility, limits, upper)
+    gaze = gaze_of(motion.skeleton, anatomy, up=facts.up)
+    body = Body(sized, hinges, facts.travel, facts.first, bends, mobility, root_mobility, limits, upper, gaze)
     return SizedClip(facts, motion, body, masses, scale, tuple(warnings))
 
 

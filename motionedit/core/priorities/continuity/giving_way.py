@@ -16,7 +16,7 @@ from motionedit.core.priorities.agreeing import overruled
 from motionedit.core.priorities.continuity.shares import shares_of
 from motionedit.core.priorities.continuity.smoothing import in_passes
 from motionedit.core.priorities.continuity.straight import bent_where_missed
-from motionedit.core.priorities.frames import Known, run_of, solve_frames, solve_from_input
+from motionedit.core.priorities.frames import Known, run_of, solve_from, solve_from_input
 from motionedit.core.priorities.ramps import ending_in
 from motionedit.core.priorities.targets import lefts_of, toward
 from motionedit.dataclass import dataclass, replace
@@ -84,8 +84,7 @@ def within_reach(run: Run, state: Solved, smoothing: Passes) -> Reached:
             state = along.pop(level)
         else:
             start = along[level].motion
-            state = solve_frames(run, start, reference=run.motion, pull_root=False)
-            state = bent_where_missed(run, state)
+            state = bent_where_missed(run, solve_from(run, start))
     return Reached(run, in_passes(run, state, smoothing), along)
 
 
@@ -132,7 +131,7 @@ def given_way(
         return run.aimed_at(toward(soft, original, shares, smooth))
 
     run = run_of(soft)
-    state = solve_from_input(run) if start is None else solve_frames(run, start, reference=motion, pull_root=False)
+    state = solve_from_input(run) if start is None else solve_from(run, start)
     state = in_passes(run, state, replace(smoothing, sigma=_SMOOTHER * further * smoothing.sigma), aimed=aimed)
     everywhere = {k: np.ceil(share) for k, share in shares.items()}
     led = ending_in(above, state.ends, shares)

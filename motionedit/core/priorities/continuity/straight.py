@@ -15,7 +15,7 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.motion import Motion
-from motionedit.core.priorities.frames import Known, Solved, solve_frames
+from motionedit.core.priorities.frames import Known, Solved, solve_from
 from motionedit.dataclass import replace
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def bent_where_missed(run: Run, state: Solved) -> Solved:
     if not again.any():
         return state
     start = Motion(state.motion.skeleton, rotations, state.motion.translations, state.motion.frame_time)
-    solved = solve_frames(run, start, reference=run.motion, pull_root=False, known=Known(~again, state.ranks))
+    solved = solve_from(run, start, Known(~again, state.ranks))
     better = again & _is_better(solved, state)
     return _mixed(solved, state, better)
 

@@ -10,7 +10,7 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.kinematics import effector_positions
 from motionedit.core.measure import Measure
-from motionedit.core.priorities.kinds.constraint import ConstraintErrors
+from motionedit.core.priorities.kinds.constraint import ConstraintErrors, Turned
 from motionedit.core.priorities.kinds.effector import EffectorConstraint
 from motionedit.core.priorities.solver.constants import NO_DIRECTION
 from motionedit.core.priorities.solver.problem import CompiledTask
@@ -20,12 +20,14 @@ from motionedit.core.units import METRES_PER_RADIAN
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Hashable
+    from collections.abc import Callable, Hashable
 
     from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.kinds.constraint import Scene, Stage
+    from motionedit.core.priorities.recruiting import Recruits
+    from motionedit.core.priorities.settings import Body
     from motionedit.core.priorities.sight import Sight
     from motionedit.core.priorities.solver.points import Point
 
@@ -104,6 +106,18 @@ class Aim(EffectorConstraint):
         """Return the task of the axis."""
         positions = targets.positions_at(stage.frames)
         return AimTask(stage.point(self.effector), self.axis, positions, stage.joint(self.base))
+
+    def by_itself(self, targets: Targets, recruits: Recruits, body: Body, before: Callable[[], Sight]) -> Turned | None:
+        """Return how a body turns that looks there with its head; None where it is no head, or all joints are alike."""
+        gaze, joint = body.gaze, self.effector.joint
+        if gaze is None or body.mobility is None or joint not in gaze.head:
+            return None
+        poses, chain = before().poses.at(targets.span), before().motion.skeleton.chain(joint).tolist()
+        weights = body.mobility[chain] ** 2 * [each in recruits.joints for each in chain]
+        looks = rot.rotate(poses.rotations[:, joint], self.axis)
+        at = Measure(base=self.base).in_world(targets.all_positions, poses)
+        goals = at - effector_positions(poses, self.effector)
+        return Turned(chain, gaze.turned(before().motion, targets.span, chain, weights, looks, goals))
 
     def reached(self, targets: Targets, after: Sight) -> Targets:
         """Return the points straight ahead, as far away as those that it shall look at."""

@@ -7,7 +7,7 @@ task, what is left of it, and its words. What it does not say stands here.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from motionedit.core.priorities.trajectories.positions import active_interval, s
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Hashable, Iterator, Mapping
+    from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
     from typing import Self
 
     from motionedit.core.arrays import FloatArray, IntArray
@@ -103,6 +103,13 @@ class Displacement:
     span: slice
     shift: FloatArray
     counted: FloatArray
+
+
+class Turned(NamedTuple):
+    """Joints and their local rotations, shape (n, k, 4), at the n frames at which a constraint is active."""
+
+    joints: Sequence[int]
+    rotations: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -251,6 +258,11 @@ class Constraint(ABC):
     def unasked(self, targets: Targets, scene: Scene) -> Targets:
         """Return where its targets would be if its points asked for nothing, as targets are."""
         return self.reached(targets, scene.before)
+
+    def by_itself(self, targets: Targets, recruits: Recruits, body: Body, before: Callable[[], Sight]) -> Turned | None:
+        """Return how a body turns by itself to meet it, where that is not the least turn; `before` is the input."""
+        del targets, recruits, body, before
+        return None
 
     def goal(self, targets: Targets) -> tuple[int, FloatArray] | None:
         """Return the joint that it puts in a place, and where, world positions (n, 3); None where it does not."""

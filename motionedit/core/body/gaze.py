@@ -1,0 +1,135 @@
+"""How a body looks somewhere by itself: about the vertical with its neck, its back and its hips, its head level.
+
+The least turn that takes a look elsewhere is about one axis, square to where it looks before and after. Where that is
+aside and up the head rolls, and the back leans with it. A body turns about the vertical, the neck twice as far as the
+back until they are near the end of their ranges, and raises or lowers what is on its chest.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from motionedit.core import rotations as rot
+from motionedit.core.body.bones import below
+from motionedit.core.body.ground import reference_axes
+from motionedit.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from motionedit.core.arrays import BoolArray, FloatArray
+    from motionedit.core.body.anatomy import Anatomy
+    from motionedit.core.motion import Motion
+    from motionedit.core.skeleton import Skeleton
+
+# The neck's share of a turn about the vertical: in takes in which heads turn, twice what the back does.
+_NECK = 2.0 / 3.0
+# Radians that neck and back turn about the vertical at most, and that the neck raises the head: others do the rest.
+_NECK_TURNS, _BACK_TURNS, _NECK_RAISES = np.radians(55.0), np.radians(40.0), np.radians(40.0)
+# Cosines of a look's height between which it begins to have a side: straight up it has none.
+_STEEP, _LEVEL = 0.2, 0.5
+# Radians aside between which it ceases to have one: what is behind may be looked at over either shoulder.
+_ASIDE, _BEHIND = np.radians(140.0), np.radians(170.0)
+_SHORTEST = 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class Gaze:
+    """What of a body looks: joints of the `head` and what is on it, of the `neck`, these among them, and the `back`.
+
+    `up` is the unit vector up, shape (3,).
+    """
+
+    head: frozenset[int]
+    neck: frozenset[int]
+    back: frozenset[int]
+    up: FloatArray
+
+    def turned(
+        self,
+        motion: Motion,
+        frames: slice,
+        chain: Sequence[int],
+        weights: FloatArray,
+        looks: FloatArray,
+        goals: FloatArray,
+    ) -> FloatArray:
+        """Return local rotations of a chain, shape (n, k, 4), by which a body looks elsewhere at n frames of a motion.
+
+        Parameters
+        ----------
+        chain : sequence of int
+            k joints, from the root to one of the head.
+        weights : shape (k,)
+            How readily each turns beside others of the neck, of the back, or of what is below it.
+        looks, goals : shape (n, 3)
+            Where it looks, and where it shall, directions in the world.
+        """
+        aside, raised = _apart(looks, goals, self.up)
+        parts = [np.array([joint in part for joint in chain]) for part in (self.neck, self.back)]
+        shares = [_shares(weights, of) for of in (*parts, ~(parts[0] | parts[1]))]
+        neck = _up_to(_NECK_TURNS, _NECK * aside)
+        back = _up_to(_BACK_TURNS, aside - neck)
+        yaw = np.stack((neck, back, aside - neck - back), axis=1) @ shares
+        neck = _up_to(_NECK_RAISES, raised)
+        pitch = np.stack((neck, raised - neck), axis=1) @ shares[:2]
+        side = rot.cross(looks, np.broadcast_to(self.up, looks.shape))
+        side /= np.maximum(np.linalg.norm(side, axis=1, keepdims=True), _SHORTEST)
+        turns = rot.multiply(
+            rot.exp(np.cumsum(yaw, axis=1)[..., None] * self.up),
+            rot.exp(np.cumsum(pitch, axis=1)[..., None] * side[:, None]),
+        )
+        world: FloatArray = motion.rotations[frames][:, chain]
+        for k in range(1, len(chain)):
+            world[:, k] = rot.multiply(world[:, k - 1], world[:, k])
+        world = rot.multiply(turns, world)
+        world[:, 1:] = rot.between(world[:, :-1], world[:, 1:])
+        return world
+
+
+def gaze_of(skeleton: Skeleton, anatomy: Anatomy, *, up: FloatArray) -> Gaze | None:
+    """Return what of a body looks; None where it has no head on a chest."""
+    head, chest, pelvis = anatomy.head, anatomy.chest, anatomy.pelvis
+    if head is None or chest is None:
+        return None
+    on_head = frozenset(np.flatnonzero(below(skeleton, head)).tolist())
+    back = [] if pelvis is None else skeleton.between(pelvis, chest)
+    return Gaze(on_head, on_head.union(skeleton.between(chest, head)), frozenset(back), up)
+
+
+def _apart(looks: FloatArray, goals: FloatArray, up: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return how far goals are aside of where it looks, and how much higher, rad, shapes (n,); 0 where that is no way.
+
+    It is none where one of them is steep, or a goal behind.
+    """
+    aside, height, flat = zip(*(_angles(directions, up) for directions in (looks, goals)), strict=True)
+    way: FloatArray = np.remainder(aside[1] - aside[0] + np.pi, 2.0 * np.pi) - np.pi
+    share = _eased(np.minimum(*flat), _STEEP, _LEVEL) * _eased(np.abs(way), _BEHIND, _ASIDE)
+    return share * way, share * (height[1] - height[0])
+
+
+def _angles(directions: FloatArray, up: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return how far aside and how high directions are, rad, and the cosine of the latter, shapes (n,)."""
+    left, height, forward = reference_axes(up) @ directions.T
+    flat = np.hypot(left, forward)
+    return np.arctan2(left, forward), np.arctan2(height, flat), flat / np.maximum(np.hypot(flat, height), _SHORTEST)
+
+
+def _shares(weights: FloatArray, part: BoolArray) -> FloatArray:
+    """Return how joints of a part share its turn, shape (k,): all of it, or none where nothing of it may turn."""
+    own = weights * part
+    return own / max(float(own.sum()), _SHORTEST)
+
+
+def _up_to(most: float, turn: FloatArray) -> FloatArray:
+    """Return a turn that comes to no more than so much, smoothly: x m / (x^4 + m^4)^(1/4)."""
+    return turn / (1.0 + (turn / most) ** 4) ** 0.25
+
+
+def _eased(value: FloatArray, start: float, stop: float) -> FloatArray:
+    """Return a share that goes smoothly from 0 to 1 between two values."""
+    share = np.clip((value - start) / (stop - start), 0.0, 1.0)
+    eased: FloatArray = share * share * (3.0 - 2.0 * share)
+    return eased

@@ -1,0 +1,67 @@
+"""What the first solve is drawn to: the input, and how a body meets what is asked by itself."""
+
+import numpy as np
+import pytest
+from person import BODY, ONCE, SKELETON, UP, end, joint, path, swaying
+
+from motionedit.core import rotations as rot
+from motionedit.core.body.find_anatomy import find_anatomy
+from motionedit.core.body.gaze import gaze_of
+from motionedit.core.body.stiffness import human_mobility
+from motionedit.core.kinematics import forward
+from motionedit.core.priorities.drawn_to import drawn_to
+from motionedit.core.priorities.edit import edit_by_priorities, prepare
+from motionedit.core.priorities.kinds import Aim
+from motionedit.core.priorities.trajectories.positions import ControlPoint
+from motionedit.dataclass import replace
+
+FRAMES = 24
+MOTION = swaying(FRAMES)
+ANATOMY = find_anatomy(SKELETON)
+LEAST = replace(BODY, mobility=human_mobility(SKELETON, ANATOMY, travel=0))
+LOOKING = replace(LEAST, gaze=gaze_of(SKELETON, ANATOMY, up=UP))
+ASIDE, ACROSS = (3.0, 3.0, 0.6), (-3.0, 2.0, 1.0)
+
+
+def looking_at(place, first=0, last=FRAMES - 1, name="Head", **more):
+    point = ControlPoint("hold", first, last, np.array(place), None)
+    return Aim(name="eyes", effector=end(name), points=(point,), **more)
+
+
+def roll(motion):
+    """Return how far the head's side is from level, degrees, shape (F,)."""
+    side = rot.rotate(forward(motion).rotations[:, joint("Head")], np.array([1.0, 0.0, 0.0]))
+    return np.degrees(np.arcsin(side @ UP))
+
+
+def referred(*constraints, body=LOOKING):
+    return drawn_to(prepare(MOTION, constraints, body, ONCE)[0].asked)
+
+
+def test_a_head_that_looks_aside_and_up_stays_level_and_the_feet_stand():
+    least, looking = (edit_by_priorities(MOTION, [looking_at(ASIDE)], body, ONCE) for body in (LEAST, LOOKING))
+    assert max(errors.angles.max() for edit in (least, looking) for errors in edit.errors) < 1e-4
+    own = roll(MOTION)
+    assert np.abs(roll(least.motion) - own).max() > 5.0
+    assert np.abs(roll(looking.motion) - own).max() < 0.5
+    moved = [
+        np.linalg.norm(path(edit.motion, "LeftFoot") - path(MOTION, "LeftFoot"), axis=1).max()
+        for edit in (least, looking)
+    ]
+    assert moved[1] < 0.5 * moved[0]
+
+
+@pytest.mark.parametrize(
+    ("body", "name"), [(LEAST, "Head"), (replace(LOOKING, mobility=None), "Head"), (LOOKING, "LeftHand")]
+)
+def test_it_is_the_input_where_a_body_has_no_way_of_its_own(body, name):
+    assert referred(looking_at(ASIDE, name=name), body=body) is MOTION
+
+
+def test_what_is_overruled_has_no_say():
+    below, above = looking_at(ASIDE), looking_at(ACROSS, 8, 15, priority=5)
+    alone, first, both = (referred(*each).rotations for each in ([below], [above], [below, above]))
+    np.testing.assert_array_equal(both[8:16], first[8:16])
+    np.testing.assert_array_equal(both[:8], alone[:8])
+    np.testing.assert_array_equal(both[16:], alone[16:])
+    assert np.abs(first[8:16] - alone[8:16]).max() > 0.1
