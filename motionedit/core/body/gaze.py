@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 
 # The neck's share of a turn about the vertical: in takes in which heads turn, twice what the back does.
 _NECK = 2.0 / 3.0
-# Radians that neck and back turn about the vertical at most, and that the neck raises the head: others do the rest.
-_NECK_TURNS, _BACK_TURNS, _NECK_RAISES = np.radians(55.0), np.radians(40.0), np.radians(40.0)
+# Radians that neck and back turn at most, aside and up: of what is more, what carries them turns the rest.
+_MOST_OF_NECK, _MOST_OF_BACK = np.radians(50.0), np.radians(40.0)
 # Cosines of a look's height between which it begins to have a side: straight up it has none.
 _STEEP, _LEVEL = 0.2, 0.5
 # Radians aside between which it ceases to have one: what is behind may be looked at over either shoulder.
@@ -70,11 +70,10 @@ class Gaze:
         aside, raised = _apart(looks, goals, self.up)
         parts = [np.array([joint in part for joint in chain]) for part in (self.neck, self.back)]
         shares = [_shares(weights, of) for of in (*parts, ~(parts[0] | parts[1]))]
-        neck = _up_to(_NECK_TURNS, _NECK * aside)
-        back = _up_to(_BACK_TURNS, aside - neck)
+        neck, up = _up_to(_MOST_OF_NECK, _NECK * aside, raised)
+        back, bent = _up_to(_MOST_OF_BACK, aside - neck, raised - up)
         yaw = np.stack((neck, back, aside - neck - back), axis=1) @ shares
-        neck = _up_to(_NECK_RAISES, raised)
-        pitch = np.stack((neck, raised - neck), axis=1) @ shares[:2]
+        pitch = np.stack((up, bent, raised - up - bent), axis=1) @ shares
         side = rot.cross(looks, np.broadcast_to(self.up, looks.shape))
         side /= np.maximum(np.linalg.norm(side, axis=1, keepdims=True), _SHORTEST)
         turns = rot.multiply(
@@ -95,8 +94,9 @@ def gaze_of(skeleton: Skeleton, anatomy: Anatomy, *, up: FloatArray) -> Gaze | N
     if head is None or chest is None:
         return None
     on_head = frozenset(np.flatnonzero(below(skeleton, head)).tolist())
-    back = [] if pelvis is None else skeleton.between(pelvis, chest)
-    return Gaze(on_head, on_head.union(skeleton.between(chest, head)), frozenset(back), up)
+    below_back = [] if pelvis is None else skeleton.chain(pelvis).tolist()
+    back = frozenset(skeleton.chain(chest).tolist()).difference(below_back)
+    return Gaze(on_head, on_head.union(skeleton.between(chest, head)), back, up)
 
 
 def _apart(looks: FloatArray, goals: FloatArray, up: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -123,9 +123,10 @@ def _shares(weights: FloatArray, part: BoolArray) -> FloatArray:
     return own / max(float(own.sum()), _SHORTEST)
 
 
-def _up_to(most: float, turn: FloatArray) -> FloatArray:
-    """Return a turn that comes to no more than so much, smoothly: x m / (x^4 + m^4)^(1/4)."""
-    return turn / (1.0 + (turn / most) ** 4) ** 0.25
+def _up_to(most: float, *turns: FloatArray) -> list[FloatArray]:
+    """Return turns that come to no more than so much together, smoothly: x m / (|x|^4 + m^4)^(1/4)."""
+    less = (1.0 + (sum(turn**2 for turn in turns) / most**2) ** 2) ** -0.25
+    return [less * turn for turn in turns]
 
 
 def _eased(value: FloatArray, start: float, stop: float) -> FloatArray:

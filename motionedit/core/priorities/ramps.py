@@ -65,8 +65,8 @@ def task_at(asked: Asked, i: int, motion: Motion, frame: int) -> Targets:
     """Return where a motion has a constraint's task at a frame, as targets of one frame."""
     if motion.is_fixed and len(motion) <= BLOCK_FRAMES:
         # It is seen already, as a whole.
-        return _task(asked, i, seen_by([asked.constraints[i]], motion, asked.body), frame)
-    return _task(asked, i, _seen(asked, [i], motion, [frame]), 0)
+        return _task(asked, i, frame, seen_by([asked.constraints[i]], motion, asked.body), frame)
+    return _task(asked, i, frame, _seen(asked, [i], motion, [frame]), 0)
 
 
 def _seen(asked: Asked, which: Collection[int], motion: Motion, frames: Sequence[int]) -> Sight:
@@ -75,8 +75,11 @@ def _seen(asked: Asked, which: Collection[int], motion: Motion, frames: Sequence
     return seen_by([asked.constraints[i] for i in which], part, asked.body)
 
 
-def _task(asked: Asked, i: int, seen: Sight, frame: int) -> Targets:
-    parts = (None if part is None else part[:1] for part in asked.targets[i].parts)
+def _task(asked: Asked, i: int, outside: int, seen: Sight, frame: int) -> Targets:
+    """Return where a constraint's task is just outside of a ramp, which is one frame of what is seen."""
+    targets = asked.targets[i]
+    nearest = slice(None, 1) if outside < targets.first else slice(-1, None)
+    parts = (None if part is None else part[nearest] for part in targets.parts)
     return asked.constraints[i].reached(Targets(frame, frame, *parts), seen)
 
 
@@ -85,7 +88,7 @@ def ends_in(asked: Asked, motion: Motion) -> Ends:
     frames = sorted({ramp.outside for ramps in asked.ramps for ramp in ramps})
     seen = _seen(asked, range(len(asked.targets)), motion, frames)
     return tuple(
-        tuple(_task(asked, i, seen, frames.index(ramp.outside)) for ramp in ramps)
+        tuple(_task(asked, i, ramp.outside, seen, frames.index(ramp.outside)) for ramp in ramps)
         for i, ramps in enumerate(asked.ramps)
     )
 

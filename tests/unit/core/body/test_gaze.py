@@ -52,8 +52,8 @@ def test_a_head_looks_at_its_goal_and_stays_level(aside, height):
 def test_the_back_turns_about_the_vertical_and_half_as_far_as_the_neck():
     found = turned(toward(15.0, 20.0))
     np.testing.assert_allclose(rot.rotate(found["Spine1"], UP), [UP], atol=0.01)
-    assert about_up(found["Spine1"]) == pytest.approx(5.0, abs=0.05)
-    assert about_up(found["Spine"]) == pytest.approx(2.5, abs=0.05)
+    assert about_up(found["Spine1"]) == pytest.approx(5.0, abs=0.2)
+    assert about_up(found["Spine"]) == pytest.approx(2.5, abs=0.1)
     assert about_up(found["Hips"]) == pytest.approx(0.0, abs=0.05)
 
 
@@ -61,7 +61,7 @@ def test_what_is_beyond_the_neck_and_the_back_is_left_to_the_hips():
     found = turned(toward(130.0, 0.0))
     hips, chest, head = (about_up(found[name])[0] for name in ("Hips", "Spine1", "Head"))
     assert head == pytest.approx(130.0)
-    assert 45.0 < head - chest < 55.0
+    assert 45.0 < head - chest < 50.0
     assert 35.0 < chest - hips < 40.0
 
 

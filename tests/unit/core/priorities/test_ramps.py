@@ -5,11 +5,12 @@ import pytest
 from person import BODY, end, held_feet, path, swaying
 
 from motionedit.core.priorities.edit import prepare
-from motionedit.core.priorities.kinds import Position
+from motionedit.core.priorities.kinds import Aim, Position
 from motionedit.core.priorities.ramps import apart, ends_in, led_frames, led_to, ramps_of
 from motionedit.core.priorities.settings import LayeredSettings
 from motionedit.core.priorities.task_targets import Targets
 from motionedit.core.priorities.trajectories.positions import ControlPoint
+from motionedit.dataclass import replace
 
 FRAMES = 80
 MOTION = swaying(FRAMES)
@@ -59,6 +60,20 @@ def test_ramps_are_led_to_where_they_end_and_points_are_left():
     np.testing.assert_allclose(led.positions[0], own.positions[0] + shift)
     np.testing.assert_array_equal(led.positions[12:], own.positions[12:])
     assert list(np.flatnonzero(led_frames(asked, ends, moved))) == list(range(22, 34))
+
+
+def test_what_is_looked_at_ends_a_ramp_as_far_away_as_it_is_beside_it():
+    going = np.linspace(0.0, 4.0, FRAMES)[:, None, None] * np.array([0.0, 0.0, 1.0])
+    walk, lamp = replace(MOTION, translations=MOTION.translations + going), np.array([2.0, 1.5, 1.0])
+    point = ControlPoint("hold", 34, 44, lamp, None)
+    look = Aim(name="look", effector=end("Head"), points=(point,), ease_in=12, ease_out=12)
+    asked = prepare(walk, [look], BODY, LayeredSettings())[0].asked
+    eyes, ramps = path(walk, "Head"), ramps_of(asked, 0)
+    assert [ramp.outside for ramp in ramps] == [21, 57]
+    for ramp, ends in zip(ramps, ends_in(asked, walk)[0], strict=True):
+        far = np.linalg.norm(lamp - eyes[ramp.outside])
+        for targets in (ramp.end, ends):
+            assert np.linalg.norm(targets.positions[0] - eyes[ramp.outside]) == pytest.approx(far, rel=0.05)
 
 
 def test_how_far_tasks_are_apart_is_the_most_of_any_of_their_parts():
