@@ -39,12 +39,13 @@ _SHORTEST = 1e-12
 class Gaze:
     """What of a body looks: joints of the `head` and what is on it, of the `neck`, these among them, and the `back`.
 
-    `up` is the unit vector up, shape (3,).
+    The `trunk` are all from the root to the head; `up` is the unit vector up, shape (3,).
     """
 
     head: frozenset[int]
     neck: frozenset[int]
     back: frozenset[int]
+    trunk: frozenset[int]
     up: FloatArray
 
     def turned(
@@ -96,7 +97,8 @@ def gaze_of(skeleton: Skeleton, anatomy: Anatomy, *, up: FloatArray) -> Gaze | N
     on_head = frozenset(np.flatnonzero(below(skeleton, head)).tolist())
     below_back = [] if pelvis is None else skeleton.chain(pelvis).tolist()
     back = frozenset(skeleton.chain(chest).tolist()).difference(below_back)
-    return Gaze(on_head, on_head.union(skeleton.between(chest, head)), back, up)
+    trunk = on_head.union(skeleton.chain(head).tolist())
+    return Gaze(on_head, on_head.union(skeleton.between(chest, head)), back, trunk, up)
 
 
 def _apart(looks: FloatArray, goals: FloatArray, up: FloatArray) -> tuple[FloatArray, FloatArray]:

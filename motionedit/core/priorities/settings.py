@@ -10,6 +10,7 @@ from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
+    from motionedit.core.body.anatomy import Leg
     from motionedit.core.body.bends import Bend
     from motionedit.core.body.center_of_mass import Masses
     from motionedit.core.body.gaze import Gaze
@@ -60,7 +61,8 @@ class Body:
     Frames before `first` are a rest pose. `bends` are its knees and elbows, where they are known. `mobility` (J,) is
     how readily each joint turns, `root_mobility` how readily the root shifts; 1, the default, is as the paper has it.
     `limits` are the cones that joints keep to. `upper` is what hangs on the chest, arms and head: goals for it alone
-    are no reason to carry the body elsewhere. `gaze` is how it looks somewhere by itself, where it has a head.
+    are no reason to carry the body elsewhere. `gaze` is how it looks somewhere by itself, where it has a head; by its
+    `legs` it goes down.
     """
 
     masses: Masses
@@ -73,3 +75,4 @@ class Body:
     limits: Limits = NO_LIMITS
     upper: frozenset[int] = frozenset()
     gaze: Gaze | None = None
+    legs: tuple[Leg, ...] = ()

@@ -76,8 +76,8 @@ def sized_clip(loaded: LoadedSpec[EditPrioritizedSpec], facts: ClipFacts, faults
     mobility, root_mobility = _mobility(loaded, facts, faults)
     bends, hinges, limits = _ranges(loaded, facts, faults, warnings)
     upper = _upper(motion.skeleton, anatomy.chest)
-    gaze = gaze_of(motion.skeleton, anatomy, up=facts.up)
-    body = Body(sized, hinges, facts.travel, facts.first, bends, mobility, root_mobility, limits, upper, gaze)
+    gaze, legs = gaze_of(motion.skeleton, anatomy, up=facts.up), anatomy.legs or ()
+    body = Body(sized, hinges, facts.travel, facts.first, bends, mobility, root_mobility, limits, upper, gaze, legs)
     return SizedClip(facts, motion, body, masses, scale, tuple(warnings))
 
 
