@@ -8,29 +8,33 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.body.bones import below
-from motionedit.core.feet.crouch import crouched
+from motionedit.core.feet.drawn_up import drawn_up
 from motionedit.core.priorities.agreeing import overruled
 from motionedit.core.priorities.groups import seen_by
 from motionedit.core.priorities.kinds.constraint import Scene, Turned
 from motionedit.dataclass import replace
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
-    from motionedit.core.arrays import FloatArray, IntArray
+    from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.body.gaze import Gaze
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.groups import Asked
+    from motionedit.core.priorities.kinds.constraint import Constraint
+
+# Metres: a foot that shall be higher by so much is so by the body as much as by its leg, as where plants are put right.
+_LITTLE = 0.03
 
 
 def drawn_to(asked: Asked) -> Motion:
     """Return the motion for which all freedom is used that constraints leave.
 
     It is the input, but for what `Constraint.by_itself` makes of it where nothing overrules the constraint, and for
-    legs: where the trunk shall go down on feet that are held they bend. The least change would lean it, back or forth
-    as it leans a little already, for straight legs hardly begin to bend.
+    legs: they bend where the trunk shall go down on feet that are held, or a foot up. The least change would lean the
+    body, back or forth as it leans a little already, or carry it up with its foot: straight legs hardly begin to bend.
     """
-    changes = [*_by_itself(asked), *_down_on_feet(asked)]
+    changes = [*_by_itself(asked), *_with_legs(asked)]
     if not changes:
         return asked.motion
     rotations = asked.motion.rotations.copy()
@@ -50,34 +54,48 @@ def _by_itself(asked: Asked) -> Iterator[tuple[IntArray, Turned]]:
             yield targets.first + asks, Turned(turned.joints, turned.rotations[asks])
 
 
-def _down_on_feet(asked: Asked) -> Iterator[tuple[IntArray, Turned]]:
-    """Yield the frames at which the trunk shall go down on its feet, and legs bent as far."""
-    motion, body = asked.motion, asked.body
-    if body.gaze is None or body.mobility is None or not body.legs:
+def _with_legs(asked: Asked) -> Iterator[tuple[IntArray, Turned]]:
+    """Yield the frames at which legs draw up, and how they do."""
+    motion, body, gaze = asked.motion, asked.body, asked.body.gaze
+    if gaze is None or body.mobility is None or not body.legs:
         return
-    down = _down(asked, body.gaze)
-    frames = np.flatnonzero(down)
+    feet = [below(motion.skeleton, leg.ankle) for leg in body.legs]
+    by = _down(asked, gaze, feet)[:, None] + _up(asked, gaze, feet)
+    frames = np.flatnonzero(by.any(axis=1))
     if len(frames):
-        low = crouched(motion.at(frames), body.legs, body.bends, down=down[frames], up=body.gaze.up)
+        drawn = drawn_up(motion.at(frames), body.legs, body.bends, by=by[frames], up=gaze.up)
         joints = [joint for leg in body.legs for joint in (leg.thigh, leg.knee, leg.ankle)]
-        yield frames, Turned(joints, low.rotations[:, joints])
+        yield frames, Turned(joints, drawn.rotations[:, joints])
 
 
-def _down(asked: Asked, gaze: Gaze) -> FloatArray:
+def _down(asked: Asked, gaze: Gaze, feet: Sequence[BoolArray]) -> FloatArray:
     """Return how far the trunk shall go down at each frame, metres, shape (F,), as far as feet are held there."""
-    motion, body = asked.motion, asked.body
-    down, held = np.zeros(len(motion)), np.zeros(len(motion))
     asks = list(zip(asked.constraints, asked.recruits, strict=True))
     lowers = [each for each, own in asks if each.at is not None and each.at.joint in gaze.trunk and own.root]
-    if not lowers:
+    down, held = -_heights(asked, lowers, gaze, np.minimum), np.zeros(len(asked.motion))
+    if not down.any():
         return down
-    before = seen_by(lowers, motion, body)
-    scene = Scene(before, asked.settings.curve, dict, lambda: before)
-    for wanted in (each.displacement(scene) for each in lowers):
-        if wanted is not None:
-            down[wanted.span] = np.maximum(down[wanted.span], -wanted.shift @ gaze.up)
-    feet = np.any([below(motion.skeleton, leg.ankle) for leg in body.legs], axis=0)
     for each, targets in zip(asked.constraints, asked.targets, strict=True):
-        if each.at is not None and each.places_effector and feet[each.at.joint]:
-            held[targets.span] = np.maximum(held, each.share(len(motion)))[targets.span]
+        if each.at is not None and each.places_effector and any(foot[each.at.joint] for foot in feet):
+            held[targets.span] = np.maximum(held, each.share(len(held)))[targets.span]
     return down * held
+
+
+def _up(asked: Asked, gaze: Gaze, feet: Sequence[BoolArray]) -> FloatArray:
+    """Return how much higher each foot shall be than it is, and than the lowest shall, metres, shape (F, L)."""
+    lifts = [[each for each in asked.constraints if each.at is not None and foot[each.at.joint]] for foot in feet]
+    rise = np.stack([_heights(asked, [e for e in lift if not e.stands], gaze, np.maximum) for lift in lifts], axis=1)
+    rise -= rise.min(axis=1, keepdims=True)
+    return rise**2 / (rise + _LITTLE)
+
+
+def _heights(asked: Asked, constraints: Sequence[Constraint], gaze: Gaze, most: np.ufunc) -> FloatArray:
+    """Return the most that constraints want their effectors higher, or lower, than they are, metres, shape (F,)."""
+    heights = np.zeros(len(asked.motion))
+    if constraints:
+        before = seen_by(constraints, asked.motion, asked.body)
+        scene = Scene(before, asked.settings.curve, dict, lambda: before)
+        for wanted in (each.displacement(scene) for each in constraints):
+            if wanted is not None:
+                heights[wanted.span] = most(heights[wanted.span], wanted.shift @ gaze.up)
+    return heights

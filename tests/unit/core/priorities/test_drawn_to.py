@@ -103,6 +103,22 @@ def test_legs_stay_where_the_trunk_need_not_go_down_on_them(asked):
     )
 
 
+def test_a_foot_that_shall_be_higher_is_so_by_its_leg():
+    foot = held("LeftFoot", FRAMES, (0.0, 0.25, 0.0), priority=5)
+    least, drawing = (edit_by_priorities(MOTION, [foot], body, ONCE) for body in (LOOKING, CROUCHING))
+    assert max(edit.errors[0].positions.max() for edit in (least, drawing)) < 1e-4
+    rises = [
+        np.linalg.norm(path(edit.motion, "Spine1") - path(MOTION, "Spine1"), axis=1).max() for edit in (least, drawing)
+    ]
+    assert rises[0] > 0.08
+    assert rises[1] < 0.5 * rises[0]
+
+
+def test_feet_that_shall_both_be_higher_take_the_body_along():
+    feet = [held(name, FRAMES, (0.0, 0.25, 0.0)) for name in ("LeftFoot", "RightFoot")]
+    assert referred(*feet, body=CROUCHING) is MOTION
+
+
 def test_legs_bend_as_far_as_feet_are_held():
     feet = [held_within(name, 12, 16, ease=6) for name in ("LeftFoot", "RightFoot")]
     low = rot.angle_between(referred(*feet, LOWER, body=CROUCHING).rotations, MOTION.rotations)[:, joint("LeftLeg")]
