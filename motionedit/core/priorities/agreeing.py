@@ -57,6 +57,17 @@ def overruled(constraints: Sequence[Constraint], targets: Sequence[Targets], fra
     return without
 
 
+def led_by_others(constraints: Sequence[Constraint], targets: Sequence[Targets], frames: int) -> BoolArray:
+    """Return at which frames ramps are overruled or agreed on with equals, shape (F, C): there nobody asks for them."""
+    led = np.zeros((frames, len(constraints)), dtype=np.bool_)
+    for which in _same_tasks(constraints):
+        together = [constraints[i] for i in which]
+        active = _active([targets[i] for i in which], frames)
+        leads, ramps = _leading(together, active), np.array([each.share(frames) for each in together]) < 1.0
+        led[:, which] = (active & ramps & (~leads | (leads.sum(axis=0) > 1))).T
+    return led
+
+
 def _same_tasks(constraints: Sequence[Constraint]) -> list[list[int]]:
     """Return the constraints that ask for a task of which there are several, task by task."""
     tasks: dict[Hashable, list[int]] = {}
