@@ -44,6 +44,14 @@ def test_equal_priorities_share_a_conflict_by_the_squares_of_their_weights(edit,
         np.testing.assert_allclose(np.linalg.norm(after - goal, axis=1), error, atol=1e-3)
     assert done.record["status"] == "out_of_tolerance"
     assert "shared by weight with b, of the same priority" in done.result.stderr
+    assert {name: done.constraint(name)["gave_way_to"] for name in "ab"} == {"a": ["b"], "b": ["a"]}
+
+
+def test_all_are_named_that_share_with_a_goal(edit):
+    shifts = {"up": [0, 12, 0], "down": [0, -12, 0], "aside": [12, 0, 0]}
+    done = edit([hand({"during": [66, 72], "shift": shift}, name=name, weight=3) for name, shift in shifts.items()])
+    assert done.constraint("aside")["gave_way_to"] == ["up", "down"]
+    assert any(line.endswith("shared by weight with up, down, of the same priority") for line in done.warnings)
 
 
 def test_of_two_goals_of_a_layer_that_give_way_the_one_of_the_larger_weight_is_nearer(edit):
