@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 import numpy as np
 
 from motionedit.core.kinematics import Effector
+from motionedit.core.measure import WORLD
 from motionedit.core.priorities.solver.points import point_of, recruited_of
 from motionedit.core.priorities.trajectories.positions import active_interval, share_of
 from motionedit.dataclass import dataclass
@@ -188,6 +189,11 @@ class Constraint(ABC):
     def at(self) -> Effector | None:
         """The effector that it is about; None where it is about no one point."""
         return None
+
+    @property
+    def axes(self) -> FloatArray:
+        """The axes along which positions and shifts of its points are, rows, shape (3, 3): in the world or its base."""
+        return WORLD.axes
 
     @property
     def one_sided(self) -> bool:

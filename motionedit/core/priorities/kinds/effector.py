@@ -51,6 +51,11 @@ class EffectorConstraint(Constraint):
         return self.effector
 
     @property
+    def axes(self) -> FloatArray:
+        """Those of its measure."""
+        return self.measure.axes
+
+    @property
     def about(self) -> Hashable:
         """The kind, the effector, and what it is measured in."""
         return self.type, self.effector.joint, self.effector.offset.tobytes(), self.measure.key
