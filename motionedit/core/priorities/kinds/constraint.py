@@ -210,6 +210,11 @@ class Constraint(ABC):
         """What its targets are the targets of, equal to another's that asks for the same task; None where none can."""
         return None
 
+    @property
+    def subjects(self) -> frozenset[Hashable]:
+        """What it says where it shall be or how turned, along whichever axes; none where that is told by no other."""
+        return frozenset() if self.about is None else frozenset((self.about,))
+
     def carries(self, body: Body) -> bool:
         """Return whether meeting it may be a reason to carry the whole body elsewhere."""
         del body

@@ -61,6 +61,12 @@ class EffectorConstraint(Constraint):
         return self.type, self.effector.joint, self.effector.offset.tobytes(), self.measure.key
 
     @property
+    def subjects(self) -> frozenset[Hashable]:
+        """Its effector's place, its joint's turn, or both, beside its task."""
+        place, turn = ("place", self.effector.joint, self.effector.offset.tobytes()), ("turn", self.effector.joint)
+        return super().subjects | frozenset((place,) * self.places_effector + (turn,) * self.turns)
+
+    @property
     def base(self) -> int | None:
         """The joint in whose frame targets are."""
         return self.measure.base

@@ -5,6 +5,7 @@ import pytest
 from person import BODY, edited, end, held, path, swaying
 
 from motionedit.core import rotations as rot
+from motionedit.core.measure import Measure
 from motionedit.core.priorities.agreeing import agreed, led_by_others, overruled
 from motionedit.core.priorities.edit import prepare
 from motionedit.core.priorities.kinds import Aim, CenterOfMass, Distance, Orientation, Pose, Position
@@ -156,14 +157,30 @@ def test_what_is_missed_of_one_is_no_error_of_another_that_has_its_ramp_there(pr
     np.testing.assert_allclose(met.places, hand[met.first : met.first + len(met.places)], atol=1e-4)
 
 
-def test_a_ramp_is_led_by_others_where_these_are_active_and_no_further():
+def pose_of(one):
+    return Pose(**{key: value for key, value in vars(one).items() if key in Pose.__dataclass_fields__})
+
+
+def along_the_ground(one):
+    return type(one)(**{**vars(one), "measure": Measure(counted=(0, 2))})
+
+
+@pytest.mark.parametrize("other", [lambda one: one, pose_of, along_the_ground])
+def test_a_ramp_is_led_by_others_where_these_are_active_and_no_further(other):
     high, low = with_priorities(2, 1)
+    high = other(high)
     targets = prepare(MOTION, [high, low], BODY, LayeredSettings())[0].asked.targets
     led = led_by_others([high, low], targets, FRAMES)
     assert not led[:, 0].any()
     # Up to its points, and after them to where the other's ramp ends; its own goes on.
     assert np.flatnonzero(led[:, 1]).tolist() == [*range(26, SPANS[1][0]), *range(SPANS[1][1] + 1, 51)]
     assert targets[1].last > 51
+
+
+def test_a_place_leads_no_turn():
+    place, turn = constraints_of(Position)[0], constraints_of(Orientation)[1]
+    targets = prepare(MOTION, [place, turn], BODY, LayeredSettings())[0].asked.targets
+    assert not led_by_others([place, turn], targets, FRAMES).any()
 
 
 def test_an_aim_that_is_overruled_does_not_throw_the_body_about():
