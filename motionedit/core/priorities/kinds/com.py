@@ -64,6 +64,11 @@ class CenterOfMass(Constraint):
         return self.type, self.measure.key
 
     @property
+    def subjects(self) -> frozenset[Hashable]:
+        """The center of mass, along whichever axes."""
+        return frozenset((self.type,))
+
+    @property
     def members(self) -> tuple[int, ...]:
         """The support that it goes with."""
         return self.support if self.relative_to == "support" else ()

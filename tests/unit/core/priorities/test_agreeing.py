@@ -177,6 +177,15 @@ def test_a_ramp_is_led_by_others_where_these_are_active_and_no_further(other):
     assert targets[1].last > 51
 
 
+def test_a_center_of_mass_is_led_by_one_along_other_axes():
+    low, high = constraints_of(CenterOfMass)
+    high = CenterOfMass(**{**vars(along_the_ground(high)), "priority": 2})
+    targets = prepare(MOTION, [low, high], BODY, LayeredSettings())[0].asked.targets
+    led = led_by_others([low, high], targets, FRAMES)
+    assert led[SPANS[0][1] + 1, 0]
+    assert not led[:, 1].any()
+
+
 def test_a_place_leads_no_turn():
     place, turn = constraints_of(Position)[0], constraints_of(Orientation)[1]
     targets = prepare(MOTION, [place, turn], BODY, LayeredSettings())[0].asked.targets
