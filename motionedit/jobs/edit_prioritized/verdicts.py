@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 # Errors over tolerance are told apart to this: below it is rounding, and the worst frame would be any.
 _DIGITS = 6
+# Seconds after a rest pose within which goals give way to it: paths are blended over 0.3 s, and passes reach as far.
+_FELT = 0.6
 _OUT_OF_REACH = "out of reach of the joints it recruits"
 _FILTERED = "the low-pass on the root moved it (smoothing: paper)"
 _SMOOTHED = "within reach at that frame by itself, but not along a smooth path"
@@ -126,7 +128,8 @@ def _ramp_over(missed: Constraint, above: Sequence[Constraint], edit: Prioritize
 def _rest_pose(i: int, one: Measured, edit: PrioritizedEdit, reason: str) -> str:
     """Return that a constraint is missed as it begins within the rest pose, or an empty text."""
     first = edit.asked.body.first
-    in_the_way = reason == _SMOOTHED or (reason == _OUT_OF_REACH and one.worst < first)
+    since = (one.worst - first) * edit.motion.frame_time
+    in_the_way = since < 0.0 if reason == _OUT_OF_REACH else reason == _SMOOTHED and since < _FELT
     if not in_the_way or not begins_within(edit.asked.constraints[i], first):
         return ""
     return f"; its points begin within {rest_pose_words(first)}: begin at frame {first}"
