@@ -68,7 +68,7 @@ _NORMALIZED_CLIP = {
     **MESSAGE,
     **UNIT,
     "frames": list_of(INTEGER, "frames before and after", 2),
-    "first_frame": count("the input's first frame after a rest pose"),
+    "first_frame": count("the first frame of the input that counts, after a rest pose or by from:"),
     "clip_sha256": text("SHA-256 of the normalized clip"),
     "events": map_of(NUMBER, "each event's frame in the input, to a part of a frame"),
     **WARNINGS,
