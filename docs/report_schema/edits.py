@@ -105,7 +105,9 @@ _PC_CLIP = {
                     ),
                     "in order",
                 ),
-                "apart_max": number_or_null("how far they are left apart, clip units; null where no grip was kept"),
+                "apart_max": number_or_null(
+                    "how far the left is left from where the right had it, clip units; null where no grip was kept"
+                ),
             },
         ),
         "where hands: keep looked for them, else null",
