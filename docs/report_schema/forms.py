@@ -98,14 +98,20 @@ def measures(about: str, form: Callable[[str], Schema], *, step: str) -> Schema:
     return obj(
         about,
         {
-            "foot_slide_max": form("the fastest horizontal speed of a planted ankle or toe, clip units per second"),
-            "foot_skate_mean": form("mean speed of toes below 5 cm, m/s at leg length 0.85 m"),
-            "foot_skate_ratio": form("share of frames with a toe below 5 cm in which it is faster than 0.2 m/s"),
-            "foot_sliding_share": form("share of planted frames in which the toe moves by more than 1 cm/s"),
-            "foot_drift_max": form("how far a planted point is from its mean place, m at leg length 0.85 m"),
+            "foot_slide_max": form(
+                "a held ankle's or toe's fastest way on the ground from frame to frame, clip units per second"
+            ),
+            "foot_skate_mean": form(
+                "mean speed of toes from a frame to the next, both below 5 cm, m/s at leg length 0.85 m"
+            ),
+            "foot_skate_ratio": form("share of such steps of a toe that are faster than 0.2 m/s"),
+            "foot_sliding_share": form("share of a held toe's steps from frame to frame that are faster than 1 cm/s"),
+            "foot_drift_max": form("how far a held point is from its mean place, m at leg length 0.85 m"),
             "floor_penetration_share": form("share of frames in which a heel or toe is more than 1 cm below up = 0"),
             "floor_penetration_max": form("how deep below up = 0, m at leg length 0.85 m"),
-            "foot_floating_max": form("how high above up = 0 the highest planted toe is, m at leg length 0.85 m"),
+            "foot_floating_max": form(
+                "the mean height above up = 0 of the held toe that is highest, m at leg length 0.85 m"
+            ),
             "jerk_rms": form("root mean square third difference of all joints over time, clip units per second cubed"),
             "step_max": form(f"the largest turn of {step} from frame to frame, degrees in a sixtieth of a second"),
             "step_frame": or_null(INTEGER, "the frame into which it steps; null where nothing does"),

@@ -40,14 +40,14 @@ MODEL: Schema = {
         "each clip left out in turn and looked for by the others",
         {
             "share": number("share of an unseen clip that the database does not explain, 0 to 1"),
-            "furthest": text("the clip that is furthest from the others"),
+            "furthest": text("the clip of which the others leave the most"),
             "clips": list_of(
                 obj(
                     "a clip of the database",
                     {
                         "clip": text("its name"),
                         "share": number("share of it that the others do not explain, 0 to 1"),
-                        "times": number("how far it is from them, over the median of all"),
+                        "times": number("how much of it they leave, as a length, over the median of all"),
                     },
                 ),
                 "in the database's order",
@@ -68,7 +68,7 @@ _NORMALIZED_CLIP = {
     **MESSAGE,
     **UNIT,
     "frames": list_of(INTEGER, "frames before and after", 2),
-    "first_frame": count("the input's first frame after a rest pose"),
+    "first_frame": count("the first frame of the input that counts, after a rest pose or by from:"),
     "clip_sha256": text("SHA-256 of the normalized clip"),
     "events": map_of(NUMBER, "each event's frame in the input, to a part of a frame"),
     **WARNINGS,
@@ -83,8 +83,10 @@ _HINGE = obj(
     "A joint that bends about one axis.",
     {
         "joint": text("its name"),
-        "axis": point("about which it bends"),
-        "limits": list_of(NUMBER, "between which angles it bends in the clip, degrees", 2),
+        "axis": point("about which it bends, in its parent's frame"),
+        "limits": list_of(
+            NUMBER, "to which angles hinges: auto lets it bend, degrees: 3 and 150, or as far as the clip bends it", 2
+        ),
     },
 )
 _DEFECT = obj(
@@ -104,8 +106,8 @@ _CONTACT = obj(
         "part": word("of it", "heel", "toe"),
         "joint": text("its ankle or toe; the ankle where its end site is the toe"),
         "frames": list_of(INTEGER, "from, to, both in", 2),
-        "seconds": number("how long, seconds"),
-        "height": number("where it stands along up, clip units"),
+        "seconds": number("how long: as many frames, seconds"),
+        "height": number("where it stands along up, the median, clip units"),
     },
 )
 _SPAN = list_of(INTEGER, "from, to, both in", 2)
@@ -114,7 +116,7 @@ _PLANT = obj(
     {
         "foot": word("which", "left", "right"),
         "frames": _SPAN,
-        "seconds": number("how long, seconds"),
+        "seconds": number("how long: as many frames, seconds"),
         "heel": list_of(_SPAN, "the phases in which its heel stands"),
         "toe": list_of(_SPAN, "the phases in which its toe stands"),
         "held": obj(
@@ -149,7 +151,7 @@ _SHOWN_CLIP = {
     "rest_pose_frames": count("frames of a rest pose in front of the take"),
     "travel_joint": text("the joint whose translation carries the travel"),
     "leg_length": number("from the top of a leg to its ankle, clip units"),
-    "height": number("of the skeleton, clip units"),
+    "height": number("the skeleton's longest way from end to end along its bones, clip units"),
     "unit": or_null(_UNIT, "null where the skeleton has no length"),
     "anatomy": map_of(
         {"anyOf": [map_of({"type": ["string", "null"]}, "the joint of each part"), STRING, {"type": "null"}]},

@@ -70,7 +70,9 @@ class LayeredSolver(SpecModel):
     """Settings of the layered solver, section 3."""
 
     max_iterations: int = spec_key(
-        kinds.whole(at_least=1, largest=100_000), default=40, description="Iterations at most for each frame and pass."
+        kinds.whole(at_least=1, largest=100_000),
+        default=40,
+        description="Iterations at most for each frame and pass; as many again where joints are beyond their limits.",
     )
 
 

@@ -155,7 +155,7 @@ def test_info_says_how_feet_stand_of_bodies_that_have_any(run, write_motion, leg
     write_motion("body.bvh", standing(skeleton_of(bones, scale=SCALE), at=(0.0, 98.0, 0.0)))
     text = run("info", "body.bvh").stdout
     assert "quality     jerk 0 units/s^3" in text
-    assert ("toes skate at" in text) == ("planted feet slide" in text) == legs
+    assert ("toes near the floor" in text) == ("planted feet slide" in text) == legs
 
 
 def test_a_body_without_length_is_shown_and_an_edit_that_changes_nothing_copies_it(run, write_motion, tmp_path):

@@ -1,5 +1,8 @@
 """edit-prioritized on the walk and the swings of data/: what a spec asks for is in the file that is written."""
 
+import json
+import re
+
 import numpy as np
 import pytest
 from prioritized_edits import ARM_ONLY, DATA, FEET, FEET_AS_CAPTURED, RAISED, WALK, columns_of, hand, rows
@@ -44,6 +47,14 @@ def test_equal_priorities_share_a_conflict_by_the_squares_of_their_weights(edit,
         np.testing.assert_allclose(np.linalg.norm(after - goal, axis=1), error, atol=1e-3)
     assert done.record["status"] == "out_of_tolerance"
     assert "shared by weight with b, of the same priority" in done.result.stderr
+    assert {name: done.constraint(name)["gave_way_to"] for name in "ab"} == {"a": ["b"], "b": ["a"]}
+
+
+def test_all_are_named_that_share_with_a_goal(edit):
+    shifts = {"up": [0, 12, 0], "down": [0, -12, 0], "aside": [12, 0, 0]}
+    done = edit([hand({"during": [66, 72], "shift": shift}, name=name, weight=3) for name, shift in shifts.items()])
+    assert done.constraint("aside")["gave_way_to"] == ["up", "down"]
+    assert any(line.endswith("shared by weight with up, down, of the same priority") for line in done.warnings)
 
 
 def test_of_two_goals_of_a_layer_that_give_way_the_one_of_the_larger_weight_is_nearer(edit):
@@ -231,6 +242,34 @@ def test_a_place_in_a_joints_frame_goes_with_the_joint(edit):
     between = (poses.positions[:, names.index("RightForeArm")] - poses.positions[:, spine])[40:101]
     seen = rot.rotate(rot.conjugate(poses.rotations[40:101, spine]), between)
     np.testing.assert_allclose(seen, np.tile([-26, -5, 8], (61, 1)), atol=1e-3)
+
+
+def test_windows_in_the_world_and_in_the_heading_ask_for_the_same(edit):
+    swing = DATA / "golf" / "swing04.bvh"
+    heading, path = facts_of(read_clip(swing)).heading_frame(), effector_path(swing, "LeftHand")
+    places = path[40] + [0.0, 8.0, 0.0], path[52] + [5.0, 0.0, 5.0]
+    files = []
+    for frame, given in (("world", places[0]), ("heading", heading.points(places[0]))):
+        one = hand({"hold": [40, 44], "position": list(given)}, frame=frame, name="one")
+        other = hand({"hold": [52, 55], "position": list(places[1])}, name="other")
+        done = edit([one, other], clip=swing, defaults={"ease_in": 10, "ease_out": 10})
+        assert max(done.constraint(name)["error_max"] for name in ("one", "other")) < 1e-3
+        files.append(effector_path(done.path, "LeftHand"))
+    np.testing.assert_allclose(*files, atol=1e-3)
+
+
+@pytest.mark.parametrize("axes", [["x", "y", "z"], ["y", "z"]])
+def test_a_dry_run_says_places_and_shifts_in_the_world(edit, axes):
+    swing = DATA / "golf" / "swing04.bvh"
+    heading = facts_of(read_clip(swing)).heading_frame()
+    place, shift = np.array([20.0, 110.0, 50.0]), np.array([0.0, 5.0, 20.0])
+    points = {"at": 40, "position": list(place)}, {"at": 60, "shift": list(shift)}
+    done = edit([hand(*points, frame="heading", axes=axes)], "--dry-run", clip=swing)
+    told = re.findall(r"(position|shift) (\[.*?\])", done.result.stdout)
+    wanted = {"position": heading.world_points(place), "shift": shift @ heading.axes}
+    assert {key for key, _ in told} == set(wanted)
+    for key, text in told:
+        np.testing.assert_allclose(json.loads(text), wanted[key], rtol=1e-3, atol=1e-3)
 
 
 def test_heading_is_the_characters_own_wherever_it_faces(edit):

@@ -29,6 +29,13 @@ def test_a_goal_that_is_missed_as_it_begins_within_a_rest_pose_says_so(edit, res
     assert from_the_take.record["status"] == "ok"
 
 
+def test_what_is_missed_long_after_a_rest_pose_is_not_laid_to_it(edit, rested):
+    later = [{"at": frame, "shift": [0, 0, 5]} for frame in (80, 100)]
+    done = edit([hand({"during": [0, 10]}, *later, tolerance=0.1, recruit={"levels": 2})], clip=rested)
+    assert done.constraint("hand")["frame"] > 60
+    assert done.record["message"].endswith(SMOOTHED)
+
+
 def test_a_rest_pose_that_is_moved_is_warned_of_once_and_one_that_is_left_is_not(edit, rested):
     box = {"name": "box", "type": "distance", "effector": "LeftHand", "to": "RightHand", "priority": 5}
     moved = edit([{**box, "points": [{"hold": [0, "100%"], "distance": 32}]}], clip=rested)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from motionedit.core.body.find_anatomy import anatomy_of
 from motionedit.core.bvh import read_clip
 from motionedit.core.kinematics import forward
 
@@ -59,7 +60,8 @@ def test_a_head_that_turns_at_once_is_rough_and_strict_counts_it(edit, tmp_path)
     assert (record["status"], result.exit_code) == ("rough", 3)
     assert record["constraints"][0]["status"] == "ok"
     step, frame = re.match(
-        r"Head: its change steps by (\S+) degrees at frame (\d+) \(10 would", record["message"]
+        r"Head: its change steps by (\S+) degrees in a sixtieth of a second at frame (\d+) \(10 would",
+        record["message"],
     ).groups()
     change = scipy(WALK, "Head").inv() * scipy(tmp_path / "e.bvh", "Head")
     steps = np.degrees((change[:-1].inv() * change[1:]).magnitude()) * 24.0 / 60.0
@@ -103,6 +105,20 @@ def test_a_hand_that_shakes_is_rough_by_its_jerk(edit):
     told = re.search(r"the body's jerk is (\S+) times the input's \(2 would be seen\)", record["message"])
     assert float(told.group(1)) == pytest.approx(times, rel=1e-2)
     assert times > 2.0
+
+
+def test_jerk_in_a_clip_that_stands_still_is_told_as_a_multiple_of_the_least_that_counts(edit, tmp_path):
+    lines = WALK.read_text().splitlines()
+    first = next(i for i, line in enumerate(lines) if line.startswith("Frame Time")) + 1
+    still = tmp_path / "still.bvh"
+    still.write_text("\n".join([*lines[:first], *[lines[first + 30]] * (len(lines) - first), ""]))
+    hand = {"type": "position", "effector": "LeftHand", "ease_in": 4, "ease_out": 4}
+    hand["points"] = [{"hold": [40, 50], "shift": [0, 40, 20]}]
+    record = edit([hand], clip=still, limits="off")[1]
+    told = re.search(r"the body's jerk is (\S+) times the least that counts, 30 m/s\^3 at a leg", record["message"])
+    clip = read_clip(WALK)
+    leg = anatomy_of(clip.motion).leg_length
+    assert float(told.group(1)) == pytest.approx(record["metrics"]["after"]["jerk_rms"] * 0.85 / leg / 30.0, rel=1e-2)
 
 
 def test_a_goal_that_is_missed_is_the_worse_verdict_and_its_warning_the_first(edit):

@@ -57,6 +57,23 @@ def overruled(constraints: Sequence[Constraint], targets: Sequence[Targets], fra
     return without
 
 
+def led_by_others(constraints: Sequence[Constraint], targets: Sequence[Targets], frames: int) -> BoolArray:
+    """Return at which frames ramps are led by others, shape (F, C): there nobody asks for what they do.
+
+    Others of the same or a higher priority are active there that say where the same point is, or how the same joint
+    is turned, be it along other axes or in another's frame.
+    """
+    led = np.zeros((len(constraints), frames), dtype=np.bool_)
+    active = _active(targets, frames)
+    for i, one in enumerate(constraints):
+        for k, other in enumerate(constraints):
+            if k != i and other.priority >= one.priority and not one.subjects.isdisjoint(other.subjects):
+                led[i] |= active[k]
+        if led[i].any():
+            led[i] &= active[i] & (one.share(frames) < 1.0)
+    return led.T
+
+
 def _same_tasks(constraints: Sequence[Constraint]) -> list[list[int]]:
     """Return the constraints that ask for a task of which there are several, task by task."""
     tasks: dict[Hashable, list[int]] = {}

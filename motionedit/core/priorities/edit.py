@@ -12,6 +12,7 @@ from motionedit.core.arrays import frozen
 from motionedit.core.blocks import frame_blocks
 from motionedit.core.body.bones import below
 from motionedit.core.compiled import compiled
+from motionedit.core.priorities.agreeing import led_by_others
 from motionedit.core.priorities.continuity.passes import solve
 from motionedit.core.priorities.continuity.switching import eased_from_others
 from motionedit.core.priorities.frames import run_of, solve_from_input
@@ -20,7 +21,7 @@ from motionedit.core.priorities.ramps import led_to
 from motionedit.core.priorities.recruiting import Breach, Reach, Recruits, breaches, expanded
 from motionedit.core.priorities.settings import Passes
 from motionedit.core.priorities.solver.constants import NO_DISPLACEMENT
-from motionedit.core.priorities.targets import NOBODY, Follows, errors_of, with_targets
+from motionedit.core.priorities.targets import NOBODY, Follows, errors_of, toward, with_targets
 from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
@@ -50,7 +51,7 @@ class PrioritizedEdit:
     touched : shape (F, J), moved : shape (F,)
         Joints whose rotations, frames at which the root's translation changed.
     errors : tuple of ConstraintErrors
-        In the order of the constraints.
+        In the order of the constraints; 0 in ramps that others lead, for which nobody asks.
     iterations : shape (F,)
         Of the first solve.
     converged : shape (F,)
@@ -222,7 +223,7 @@ def edit_by_priorities(
         motion=state.motion,
         touched=touched,
         moved=moved,
-        errors=errors_of(asked, state.motion, poses=state.poses),
+        errors=errors_of(_asked_by_anybody(asked, state.motion), state.motion, poses=state.poses),
         iterations=passed.iterations,
         converged=state.converged,
         ranks=state.ranks,
@@ -231,6 +232,13 @@ def edit_by_priorities(
         breaches=tuple(found),
         asked=asked,
     )
+
+
+def _asked_by_anybody(asked: Asked, motion: Motion) -> Asked:
+    """Return what is asked with the targets of ramps that others lead where a motion has them: they count as met."""
+    led = led_by_others(asked.constraints, asked.targets, len(asked.motion))
+    shares = {int(i): led[:, i].astype(np.float64) for i in np.flatnonzero(led.any(axis=0))}
+    return replace(asked, targets=toward(asked, asked.targets, shares, motion)) if shares else asked
 
 
 def changes(before: Motion, after: Motion, travel: int) -> tuple[BoolArray, BoolArray]:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from motionedit.core import rotations as rot
-from motionedit.core.arrays import frozen
 from motionedit.core.measure import WORLD, Measure
 from motionedit.dataclass import dataclass
 
@@ -21,30 +20,39 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class GivenAxes:
-    """The axes of the heading frame, or the world's (or those of a joint's frame)."""
+    """The axes of the heading frame, or the world's (or those of a joint's frame), of which some are `counted`.
+
+    Where all of them count, what is along the heading's is measured along the world's: it is the same then.
+    """
 
     heading: Frame | None
+    counted: tuple[int, ...] = WORLD.counted
 
     @classmethod
-    def of(cls, facts: ClipFacts, frame: Literal["world", "heading"]) -> GivenAxes:
+    def of(
+        cls, facts: ClipFacts, frame: Literal["world", "heading"], *, counted: tuple[int, ...] = WORLD.counted
+    ) -> GivenAxes:
         """Return the axes that a spec names."""
-        return cls(facts.heading_frame() if frame == "heading" else None)
+        return cls(facts.heading_frame() if frame == "heading" else None, counted)
 
     @property
     def rows(self) -> FloatArray:
-        """The axes in the world, rows of shape (3, 3)."""
-        return frozen(np.eye(3)) if self.heading is None else self.heading.axes
+        """The axes that are measured along, in the world, rows of shape (3, 3)."""
+        return WORLD.axes if self.heading is None or self.counted == WORLD.counted else self.heading.axes
 
-    def measure(self, *, counted: tuple[int, ...], base: int | None) -> Measure:
+    def measure(self, *, base: int | None) -> Measure:
         """Return what positions are measured in: these axes of which some count, or a joint's frame."""
-        if self.heading is None and counted == WORLD.counted and base is None:
-            return WORLD
-        return Measure(self.rows, counted, base)
+        return WORLD if self.counted == WORLD.counted and base is None else Measure(self.rows, self.counted, base)
 
     def position(self, given: Sequence[float]) -> FloatArray:
-        """Return a position along these axes, from the world's origin."""
+        """Return a position along the axes that are measured along, from the world's origin."""
         position = np.array(given)
         return position if self.heading is None else self.rows @ self.heading.world_points(position)
+
+    def shift(self, given: Sequence[float]) -> FloatArray:
+        """Return a shift along the axes that are measured along."""
+        shift = np.array(given)
+        return shift if self.heading is None else self.rows @ self.heading.axes.T @ shift
 
     def rotation(self, q: FloatArray) -> FloatArray:
         """Return a rotation in the world."""

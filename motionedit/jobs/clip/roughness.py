@@ -80,8 +80,8 @@ def _stepping(facts: ClipFacts, steps: Steps) -> str | None:
         return None
     worst = int(seen[np.argmax(steps.degrees[seen])])
     return (
-        f"{facts.clip.motion.skeleton.names[worst]}: its change steps by {steps.degrees[worst]:.3g} degrees at frame "
-        f"{steps.frames[worst]} ({limits[worst]:.3g} would be seen){_others(len(seen))}"
+        f"{facts.clip.motion.skeleton.names[worst]}: its change steps by {steps.degrees[worst]:.3g} degrees in a "
+        f"sixtieth of a second at frame {steps.frames[worst]} ({limits[worst]:.3g} would be seen){_others(len(seen))}"
     )
 
 
@@ -92,7 +92,8 @@ def _jerk(facts: ClipFacts, before: Trace, after: Trace) -> str | None:
         return None
     joint, frame = after.jerk_at
     name = facts.clip.motion.skeleton.names[joint]
-    return f"{name}: jerks at frame {frame}; the body's jerk is {times:.3g} times the input's ({_JERK:g} would be seen)"
+    least = "the input's" if before.jerk_rms >= still else f"the least that counts, {STILL:g} m/s^3 at a leg of 0.85 m"
+    return f"{name}: jerks at frame {frame}; the body's jerk is {times:.3g} times {least} ({_JERK:g} would be seen)"
 
 
 def _beyond(facts: ClipFacts, after: Motion, bends: Sequence[Bend], touched: BoolArray) -> list[str]:

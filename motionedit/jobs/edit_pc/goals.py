@@ -106,11 +106,11 @@ def _request(goal: PcGoal, facts: ClipFacts, place: Place, *, frame: int, poses:
     base = None
     if goal.relative_to is not None:
         base = resolve.joint(goal.relative_to, skeleton, place.at("relative_to"))
-    axes = GivenAxes.of(facts, goal.frame)
-    measure = axes.measure(counted=goal.axes, base=base)
+    axes = GivenAxes.of(facts, goal.frame, counted=goal.axes)
+    measure = axes.measure(base=base)
     position = None if goal.position is None else axes.position(goal.position)
     if goal.shift is not None:
-        position = seen(poses, frame, effector, measure)[0] + np.array(goal.shift)
+        position = seen(poses, frame, effector, measure)[0] + axes.shift(goal.shift)
     rotation = None if goal.orientation is None else axes.rotation(resolve.orientation(goal.orientation))
     if goal.turn is not None:
         turn = axes.turn(resolve.orientation(goal.turn))

@@ -16,6 +16,7 @@ from motionedit.jobs.clip import resolve
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from motionedit.core.arrays import FloatArray
     from motionedit.core.priorities.kinds.constraint import Constraint
     from motionedit.core.priorities.recruiting import Breach
     from motionedit.core.priorities.trajectories.positions import ControlPoint
@@ -138,20 +139,20 @@ def _constraint_line(constraint: Constraint, recruits: Recruits, sized: SizedCli
     first, last = constraint.active(len(facts.clip.motion))
     parts = [f"{constraint.name}: {constraint.words(skeleton.names)}, frames {first} to {last}"]
     if constraint.points:
-        parts.append(", ".join(_point_words(point, sized.scale) for point in constraint.points))
+        parts.append(", ".join(_point_words(point, constraint.axes, sized.scale) for point in constraint.points))
     if constraint.weight != 1.0:
         parts.append(f"weight {constraint.weight:g}")
     moved = ", ".join(recruited_names(recruits, facts))
     return f"{'; '.join(parts)}; recruits {moved or 'nothing'}"
 
 
-def _point_words(point: ControlPoint, scale: float) -> str:
-    """Return a point's time and what is asked there, lengths in clip units: places in the world, shifts as given."""
+def _point_words(point: ControlPoint, axes: FloatArray, scale: float) -> str:
+    """Return a point's time and what is asked there, places and shifts in the world or `relative_to`, clip units."""
     words = [point.text]
     for key in ("position", "shift"):
         value = getattr(point, key)
         if value is not None:
-            words.append(f"{key} [{', '.join(f'{part / scale + 0.0:.4g}' for part in value)}]")
+            words.append(f"{key} [{', '.join(f'{part / scale + 0.0:.4g}' for part in value @ axes)}]")
     if isinstance(point, LengthPoint) and point.length is not None:
         words.append(f"{point.bound} {point.length / scale:.4g}")
     words += [key for key in ("orientation", "turn") if getattr(point, key) is not None]

@@ -11,7 +11,7 @@ import numpy as np
 
 from motionedit.core.body.bones import below
 from motionedit.core.kinematics import Effector
-from motionedit.core.measure import Level
+from motionedit.core.measure import WORLD, Level
 from motionedit.core.priorities.kinds import KINDS
 from motionedit.core.priorities.kinds.constraint import Movable
 from motionedit.core.priorities.recruiting import NotOnTheWayError, RecruitRule
@@ -58,12 +58,16 @@ class Resolver:
         place = resolve.Place(self.loaded, spec.keys, self.facts.clip.label)
         frame_time = self.facts.clip.motion.frame_time
         own = {each.key: each for each in spec.own_values()}
-        axes = GivenAxes.of(self.facts, own["frame"].value if "frame" in own else "world")
-        points = self._points(spec.points, axes, place)
         given = {key: self._value(each, place) for key, each in own.items()}
         measured = {key: given.pop(key) for key in spec.measure_keys}
+        axes = GivenAxes.of(
+            self.facts,
+            own["frame"].value if "frame" in own else "world",
+            counted=measured.get("axes", WORLD.counted),
+        )
+        points = self._points(spec.points, axes, place)
         if measured:
-            given["measure"] = axes.measure(counted=measured.get("axes", (0, 1, 2)), base=measured.get("relative_to"))
+            given["measure"] = axes.measure(base=measured.get("relative_to"))
         found = KINDS[spec.type].several(
             name=str(spec.name),
             priority=spec.priority,
@@ -196,7 +200,7 @@ class Resolver:
             start=start,
             stop=stop,
             position=None if point.position is None else axes.position(point.position) * self.scale,
-            shift=None if point.shift is None else np.array(point.shift) * self.scale,
+            shift=None if point.shift is None else axes.shift(point.shift) * self.scale,
             orientation=None if point.orientation is None else axes.rotation(resolve.orientation(point.orientation)),
             turn=None if point.turn is None else axes.turn(resolve.orientation(point.turn)),
             tension=point.tension,

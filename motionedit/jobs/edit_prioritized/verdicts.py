@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 # Errors over tolerance are told apart to this: below it is rounding, and the worst frame would be any.
 _DIGITS = 6
+# Seconds after a rest pose within which goals give way to it: paths are blended over 0.3 s, and passes reach as far.
+_FELT = 0.6
 _OUT_OF_REACH = "out of reach of the joints it recruits"
 _FILTERED = "the low-pass on the root moved it (smoothing: paper)"
 _SMOOTHED = "within reach at that frame by itself, but not along a smooth path"
@@ -99,15 +101,14 @@ def verdict(i: int, one: Measured, edit: PrioritizedEdit, settings: LayeredSetti
         blame = blame_of(edit.asked, i, one.worst)
         priority = edit.asked.constraints[i].priority
         blamed = [edit.asked.constraints[k] for k in blame.by]
-        above = [each for each in blamed if each.priority > priority]
-        names = [each.name for each in above]
+        names, above = [each.name for each in blamed], [each for each in blamed if each.priority > priority]
         if above:
             levels = order_of_layers([each.priority for each in above])
             which = f"priority {levels[0]}" if len(levels) == 1 else f"priorities {', '.join(map(str, levels))}"
             reason = f"{which} above left no freedom{_ramp_over(edit.asked.constraints[i], above, edit, one.worst)}"
         else:
             alone = measured(one.each, blame.left, scale)
-            reason = _reason(i, one, [each.name for each in blamed], edit, settings, is_met_alone=not alone.missed)
+            reason = _reason(i, one, names, edit, settings, is_met_alone=not alone.missed)
     status = "unreachable" if reason == _OUT_OF_REACH else "out_of_tolerance"
     reason += _rest_pose(i, one, edit, reason)
     return Verdict("ok" if one.each.may_give_way else status, tuple(names), reason)
@@ -127,7 +128,8 @@ def _ramp_over(missed: Constraint, above: Sequence[Constraint], edit: Prioritize
 def _rest_pose(i: int, one: Measured, edit: PrioritizedEdit, reason: str) -> str:
     """Return that a constraint is missed as it begins within the rest pose, or an empty text."""
     first = edit.asked.body.first
-    in_the_way = reason == _SMOOTHED or (reason == _OUT_OF_REACH and one.worst < first)
+    since = (one.worst - first) * edit.motion.frame_time
+    in_the_way = since < 0.0 if reason == _OUT_OF_REACH else reason == _SMOOTHED and since < _FELT
     if not in_the_way or not begins_within(edit.asked.constraints[i], first):
         return ""
     return f"; its points begin within {rest_pose_words(first)}: begin at frame {first}"
@@ -150,7 +152,7 @@ def _reason(
     if settings.recruiting_rule == "ignore" and movers:
         return f"{min(movers, key=lambda mover: mover.priority).name} moves it by joints it does not recruit"
     if beside:
-        return f"shared by weight with {beside[0]}, of the same priority"
+        return f"shared by weight with {', '.join(beside)}, of the same priority"
     if isinstance(settings.smoothing, PaperFilter) and settings.smoothing.count and edit.recruits[i].root:
         return _FILTERED
     if not edit.converged[one.first : one.last + 1][one.excess > 1.0].any():

@@ -45,7 +45,7 @@ def _facts(record: dict[str, Any]) -> list[str]:
         ("up", record["up"]),
         ("heading", _heading(record)),
         ("travel", f"carried by {record['travel_joint']}"),
-        ("leg length", f"{record['leg_length']:.6g} (height {record['height']:.6g})"),
+        ("leg length", f"{record['leg_length']:.6g} (end to end {record['height']:.6g})"),
         ("unit", _unit(record["unit"])),
         *_anatomy(record["anatomy"]),
         ("hinges", _hinges(record["hinges"])),
@@ -97,7 +97,7 @@ def _feet(metrics: dict[str, float]) -> str:
     sliding, drift = metrics["foot_sliding_share"], metrics["foot_drift_max"]
     under, depth = metrics["floor_penetration_share"], metrics["floor_penetration_max"]
     return (
-        f"toes skate at {100.0 * mean:.3g} cm/s, in {100.0 * ratio:.3g} % of frames; plants slide in "
+        f"toes near the floor go at {100.0 * mean:.3g} cm/s, skate in {100.0 * ratio:.3g} %; plants slide in "
         f"{100.0 * sliding:.3g} %, drift by {100.0 * drift:.2g} cm; below the floor in {100.0 * under:.3g} %, "
         f"by {100.0 * depth:.2g} cm (leg 0.85 m)"
     )

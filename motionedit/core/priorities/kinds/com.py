@@ -54,9 +54,19 @@ class CenterOfMass(Constraint):
     recruit: RecruitRule = EVERYTHING
 
     @property
+    def axes(self) -> FloatArray:
+        """Those of its measure."""
+        return self.measure.axes
+
+    @property
     def about(self) -> Hashable:
         """The center of mass, along the axes that count."""
         return self.type, self.measure.key
+
+    @property
+    def subjects(self) -> frozenset[Hashable]:
+        """The center of mass, along whichever axes."""
+        return frozenset((self.type,))
 
     @property
     def members(self) -> tuple[int, ...]:

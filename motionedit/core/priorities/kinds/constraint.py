@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
 import numpy as np
 
 from motionedit.core.kinematics import Effector
+from motionedit.core.measure import WORLD
 from motionedit.core.priorities.solver.points import point_of, recruited_of
 from motionedit.core.priorities.trajectories.positions import active_interval, share_of
 from motionedit.dataclass import dataclass
@@ -197,6 +198,11 @@ class Constraint(ABC):
         return None
 
     @property
+    def axes(self) -> FloatArray:
+        """The axes along which positions and shifts of its points are, rows, shape (3, 3): in the world or its base."""
+        return WORLD.axes
+
+    @property
     def one_sided(self) -> bool:
         """Whether its task is a limit, met on all of one side: see `WeightedTask`."""
         return False
@@ -210,6 +216,11 @@ class Constraint(ABC):
     def about(self) -> Hashable:
         """What its targets are the targets of, equal to another's that asks for the same task; None where none can."""
         return None
+
+    @property
+    def subjects(self) -> frozenset[Hashable]:
+        """What it says where it shall be or how turned, along whichever axes; none where that is told by no other."""
+        return frozenset() if self.about is None else frozenset((self.about,))
 
     def carries(self, body: Body) -> bool:
         """Return whether meeting it may be a reason to carry the whole body elsewhere."""

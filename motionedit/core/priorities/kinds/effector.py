@@ -51,9 +51,20 @@ class EffectorConstraint(Constraint):
         return self.effector
 
     @property
+    def axes(self) -> FloatArray:
+        """Those of its measure."""
+        return self.measure.axes
+
+    @property
     def about(self) -> Hashable:
         """The kind, the effector, and what it is measured in."""
         return self.type, self.effector.joint, self.effector.offset.tobytes(), self.measure.key
+
+    @property
+    def subjects(self) -> frozenset[Hashable]:
+        """Its effector's place, its joint's turn, or both, beside its task."""
+        place, turn = ("place", self.effector.joint, self.effector.offset.tobytes()), ("turn", self.effector.joint)
+        return super().subjects | frozenset((place,) * self.places_effector + (turn,) * self.turns)
 
     @property
     def base(self) -> int | None:

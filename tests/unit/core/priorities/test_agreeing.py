@@ -5,10 +5,12 @@ import pytest
 from person import BODY, edited, end, held, path, swaying
 
 from motionedit.core import rotations as rot
-from motionedit.core.priorities.agreeing import agreed, overruled
+from motionedit.core.measure import Measure
+from motionedit.core.priorities.agreeing import agreed, led_by_others, overruled
 from motionedit.core.priorities.edit import prepare
 from motionedit.core.priorities.kinds import Aim, CenterOfMass, Distance, Orientation, Pose, Position
 from motionedit.core.priorities.settings import LayeredSettings
+from motionedit.core.priorities.targets import errors_of
 from motionedit.core.priorities.trajectories.lengths import LengthPoint
 from motionedit.core.priorities.trajectories.positions import ControlPoint
 
@@ -52,8 +54,9 @@ def constraints_of(kind):
 
 
 def left_of(constraints):
-    """Return what an edit leaves of constraints, metres or radians: the largest of each."""
-    errors = edited(MOTION, constraints, LayeredSettings()).errors
+    """Return what an edit leaves of constraints, their ramps too, metres or radians: the largest of each."""
+    done = edited(MOTION, constraints, LayeredSettings())
+    errors = errors_of(done.asked, done.motion)
     return [max(part.max() for part in (each.positions, each.angles) if part is not None) for each in errors]
 
 
@@ -128,13 +131,65 @@ def test_the_less_important_is_not_solved_for_where_the_other_is_active(prioriti
 
 
 def test_the_less_important_asks_for_the_way_of_the_other_in_its_ramp():
-    errors = edited(MOTION, with_priorities(1, 2), LayeredSettings()).errors
+    done = edited(MOTION, with_priorities(1, 2), LayeredSettings())
+    errors = errors_of(done.asked, done.motion)
     assert errors[1].positions.max() < 1e-4
     left, (_, stop) = errors[0], SPANS[0]
     assert left.positions[: 26 - left.first].max() < 1e-4
     # The ramp of the other begins at 26: it has the last frames of its points, but not what comes after them.
     assert left.positions[stop - left.first] > 0.01
     assert left.positions[stop + 1 - left.first :].max() < 1e-4
+
+
+@pytest.mark.parametrize("priorities", [(2, 1), (1, 1)])
+def test_what_is_missed_of_one_is_no_error_of_another_that_has_its_ramp_there(priorities):
+    high, near = with_priorities(*priorities)
+    # Three metres up, under a pelvis that stays: out of reach.
+    far = ControlPoint("during", *SPANS[0], shift=np.array([0.0, 3.0, 0.0]))
+    near = type(near)(**{**vars(near), "points": (ControlPoint("during", 56, 62, shift=SHIFTS[1]),), "ease_in": 26})
+    given = [type(high)(**{**vars(high), "points": (far,)}), near, held("Hips", FRAMES, priority=3)]
+    done = edited(MOTION, given, LayeredSettings())
+    missed, met, _ = done.errors
+    assert missed.positions[SPANS[0][0] - missed.first] > 0.5
+    np.testing.assert_allclose(met.positions, 0.0, atol=1e-4)
+    # In its ramp over the other it is wanted where it is, after that where it asks to be.
+    hand = path(done.motion, "RightHand")
+    np.testing.assert_allclose(met.places, hand[met.first : met.first + len(met.places)], atol=1e-4)
+
+
+def pose_of(one):
+    return Pose(**{key: value for key, value in vars(one).items() if key in Pose.__dataclass_fields__})
+
+
+def along_the_ground(one):
+    return type(one)(**{**vars(one), "measure": Measure(counted=(0, 2))})
+
+
+@pytest.mark.parametrize("other", [lambda one: one, pose_of, along_the_ground])
+def test_a_ramp_is_led_by_others_where_these_are_active_and_no_further(other):
+    high, low = with_priorities(2, 1)
+    high = other(high)
+    targets = prepare(MOTION, [high, low], BODY, LayeredSettings())[0].asked.targets
+    led = led_by_others([high, low], targets, FRAMES)
+    assert not led[:, 0].any()
+    # Up to its points, and after them to where the other's ramp ends; its own goes on.
+    assert np.flatnonzero(led[:, 1]).tolist() == [*range(26, SPANS[1][0]), *range(SPANS[1][1] + 1, 51)]
+    assert targets[1].last > 51
+
+
+def test_a_center_of_mass_is_led_by_one_along_other_axes():
+    low, high = constraints_of(CenterOfMass)
+    high = CenterOfMass(**{**vars(along_the_ground(high)), "priority": 2})
+    targets = prepare(MOTION, [low, high], BODY, LayeredSettings())[0].asked.targets
+    led = led_by_others([low, high], targets, FRAMES)
+    assert led[SPANS[0][1] + 1, 0]
+    assert not led[:, 1].any()
+
+
+def test_a_place_leads_no_turn():
+    place, turn = constraints_of(Position)[0], constraints_of(Orientation)[1]
+    targets = prepare(MOTION, [place, turn], BODY, LayeredSettings())[0].asked.targets
+    assert not led_by_others([place, turn], targets, FRAMES).any()
 
 
 def test_an_aim_that_is_overruled_does_not_throw_the_body_about():
