@@ -17,7 +17,7 @@ from motionedit.dataclass import replace
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from motionedit.core.arrays import BoolArray, FloatArray, IntArray
+    from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.body.gaze import Gaze
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.groups import Asked
@@ -59,7 +59,7 @@ def _with_legs(asked: Asked) -> Iterator[tuple[IntArray, Turned]]:
     motion, body, gaze = asked.motion, asked.body, asked.body.gaze
     if gaze is None or body.mobility is None or not body.legs:
         return
-    feet = [below(motion.skeleton, leg.ankle) for leg in body.legs]
+    feet = [frozenset(np.flatnonzero(below(motion.skeleton, leg.ankle)).tolist()) for leg in body.legs]
     by = _down(asked, gaze, feet)[:, None] + _up(asked, gaze, feet)
     frames = np.flatnonzero(by.any(axis=1))
     if len(frames):
@@ -68,25 +68,30 @@ def _with_legs(asked: Asked) -> Iterator[tuple[IntArray, Turned]]:
         yield frames, Turned(joints, drawn.rotations[:, joints])
 
 
-def _down(asked: Asked, gaze: Gaze, feet: Sequence[BoolArray]) -> FloatArray:
+def _down(asked: Asked, gaze: Gaze, feet: Sequence[frozenset[int]]) -> FloatArray:
     """Return how far the trunk shall go down at each frame, metres, shape (F,), as far as feet are held there."""
     asks = list(zip(asked.constraints, asked.recruits, strict=True))
-    lowers = [each for each, own in asks if each.at is not None and each.at.joint in gaze.trunk and own.root]
+    lowers = [each for each, own in asks if own.root and _moves(each, gaze.trunk)]
     down, held = -_heights(asked, lowers, gaze, np.minimum), np.zeros(len(asked.motion))
     if not down.any():
         return down
     for each, targets in zip(asked.constraints, asked.targets, strict=True):
-        if each.at is not None and each.places_effector and any(foot[each.at.joint] for foot in feet):
+        if each.at is not None and each.places_effector and any(each.at.joint in foot for foot in feet):
             held[targets.span] = np.maximum(held, each.share(len(held)))[targets.span]
     return down * held
 
 
-def _up(asked: Asked, gaze: Gaze, feet: Sequence[BoolArray]) -> FloatArray:
+def _up(asked: Asked, gaze: Gaze, feet: Sequence[frozenset[int]]) -> FloatArray:
     """Return how much higher each foot shall be than it is, and than the lowest shall, metres, shape (F, L)."""
-    lifts = [[each for each in asked.constraints if each.at is not None and foot[each.at.joint]] for foot in feet]
-    rise = np.stack([_heights(asked, [e for e in lift if not e.stands], gaze, np.maximum) for lift in lifts], axis=1)
+    lifts = [[each for each in asked.constraints if _moves(each, foot)] for foot in feet]
+    rise = np.stack([_heights(asked, lift, gaze, np.maximum) for lift in lifts], axis=1)
     rise -= rise.min(axis=1, keepdims=True)
     return rise**2 / (rise + _LITTLE)
+
+
+def _moves(constraint: Constraint, joints: frozenset[int]) -> bool:
+    """Return whether a constraint's points may want one of the joints elsewhere."""
+    return bool(constraint.points) and constraint.at is not None and constraint.at.joint in joints
 
 
 def _heights(asked: Asked, constraints: Sequence[Constraint], gaze: Gaze, most: np.ufunc) -> FloatArray:
