@@ -36,6 +36,7 @@ def mean_clip(model: MotionModel) -> Clip:
         places=np.arange(timeline.frames, dtype=np.float64),
         rows=mean,
         coefficients=np.zeros(len(model.components.explained_variance)),
+        deviation=np.zeros_like(mean),
         residual=0.0,
         seconds=(timeline.frames - 1) / timeline.frame_rate,
     )

@@ -77,7 +77,7 @@ def test_a_real_serve_is_edited_sideways_and_ten_centimetres_up_are_said_to_be_f
         elif direction[1] > 0.0:
             # The arm is stretched: the body has to rise, which no serve of the database does so far.
             assert edit.record["status"] in {"far", "unreachable"}
-            assert edit.record["change"]["norm"] > 0.8 * edit.record["change"]["bound"]
+            assert edit.record["change"]["norm"] > 0.7 * edit.record["change"]["bound"]
 
 
 def test_a_real_golf_swings_hit_is_found(tmp_path):

@@ -24,6 +24,7 @@ from motionedit.core.coefficients.goal_chains import columns_behind, columns_of,
 from motionedit.core.coefficients.goals import stacked_errors
 from motionedit.core.coefficients.likeliest import likeliest_change
 from motionedit.core.coefficients.methods import GaussNewton, Likeliest
+from motionedit.core.coefficients.one_more import change_of_alpha, with_one_more
 from motionedit.core.coefficients.prior import FADE, change_prior, interpolated
 from motionedit.core.coefficients.projection import Projection, with_rows
 from motionedit.core.coefficients.solver import CoefficientSolution, solve_goals
@@ -111,7 +112,7 @@ class Change:
     Attributes
     ----------
     solution : CoefficientSolution
-        Its `change` is beta.
+        Its `change` is beta, with that of `with_one_more` where the clip counts as one more motion.
     reasons : mapping of int to str
         Why it stopped, for each request by its place; ``stood`` of one that was met but for feet that stand.
     frames : tuple of int
@@ -159,6 +160,7 @@ def edit_by_coefficients(
     frames = sorted({request.frame for request in requests})
     groups = [[i for i in places if requests[i].frame == frame] for frame in frames] if per_goal else [places]
     columns = columns_behind(projection, requests)
+    known = joined = model
     if isinstance(solver, Likeliest):
         together = 1 if per_goal else len(frames)
         if together * model.space.size <= MOST_UNKNOWNS:
@@ -166,6 +168,8 @@ def edit_by_coefficients(
         columns = columns[~np.isin(columns, columns_of(projection, solver.still))]
         if together > 1 and residual == "keep":
             smoothing = SMOOTHING_OF_SEVERAL
+        if solver.one_more:
+            model = joined = with_one_more(known, projection.deviation)
         if frames:
             model = components_about(
                 model,
@@ -189,7 +193,7 @@ def edit_by_coefficients(
         touched=touched,
         moved=changed[:, 0],
         changes=changes,
-        coefficients=frozen(projection.coefficients + changes[0].solution.change),
+        coefficients=frozen(projection.coefficients + change_of_alpha(changes[0].solution.change, known, joined)),
     )
 
 
@@ -246,7 +250,7 @@ def _displacement(given: _Given, changes: Sequence[Change]) -> FloatArray:
 def _solve(given: _Given, requests: Sequence[GoalRequest], group: Sequence[int]) -> Change:
     """Return the change that meets some of the requests, by their places."""
     projection, model, solver = given.projection, given.model, given.solver
-    size = len(projection.coefficients)
+    size = len(model.components.explained_variance)
     if not group:
         return Change(CoefficientSolution(np.zeros(size), 0, (0.0,), "converged"), {}, ())
     frames = tuple(sorted({requests[i].frame for i in group}))

@@ -26,6 +26,8 @@ class Likeliest:
         Joints that the residual leaves alone.
     believed, heading, position
         Of the components, as of `components_about`.
+    one_more : bool
+        Whether the clip counts as one more motion of the database, as of `with_one_more`.
     most : float or None
         The largest g that goals at several frames may speak for, by `likeliest_share`; None: g is `share`.
     """
@@ -37,6 +39,7 @@ class Likeliest:
     believed: float = 1.0
     heading: bool = False
     position: bool = False
+    one_more: bool = False
     most: float | None = None
 
 

@@ -51,6 +51,8 @@ class Projection:
         Theta of every frame.
     coefficients : shape (m,)
         alpha_0 of the clip.
+    deviation : shape (F on the timeline, n)
+        The clip on the timeline, less the mean motion.
     residual : float
         The sum of squares of what the components leave of it on the timeline.
     seconds : float
@@ -64,6 +66,7 @@ class Projection:
     places: FloatArray
     rows: FloatArray
     coefficients: FloatArray
+    deviation: FloatArray
     residual: float
     seconds: float
 
@@ -119,11 +122,23 @@ def project_resampled(
     travel = int(joint_map[model.travel])
     joints = clip_joints(model.space, joint_map)
     rows = _rows(resampled, model, travel=travel, joints=joints, alignment=alignment, places=places)
-    off = rows.ravel() - model.components.mean
+    deviation = rows - model.mean_rows
+    off = deviation.ravel()
     coefficients = model.components.components @ off
     residual = max(float(off @ off - coefficients @ coefficients), 0.0)
     seconds = float(warp.source[-1] - warp.source[0]) * motion.frame_time
-    return Projection(resampled, travel, joints, alignment, places, rows, frozen(coefficients), residual, seconds)
+    return Projection(
+        motion=resampled,
+        travel=travel,
+        joints=joints,
+        alignment=alignment,
+        places=places,
+        rows=rows,
+        coefficients=frozen(coefficients),
+        deviation=frozen(deviation),
+        residual=residual,
+        seconds=seconds,
+    )
 
 
 def _rows(

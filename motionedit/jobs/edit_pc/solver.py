@@ -46,6 +46,7 @@ def chosen_solver(
         believed=_believed(share),
         heading=astray and align["heading"],
         position=astray and align["position"],
+        one_more=spec.residual == "keep",
         most=max(share, _MOST_OF_SEVERAL) if spec.residual_share == "auto" else None,
     )
 
