@@ -81,7 +81,7 @@ def case(clip: Path, spec: dict[str, Any], scratch: Path) -> Case:
     path.write_text(json.dumps({"schema": "motionedit/edit-prioritized/v1", **spec}))
     work = EditByPriorities(load_spec(path, "edit-prioritized"), (clip.name,))
     read = read_clip(clip)
-    sized, constraints = work.resolved(read, ClipTask(clip, clip.name, None, clip.name))
+    sized, constraints, _ = work.ready(read, ClipTask(clip, clip.name, None, clip.name))
     return Case(sized.motion, [each.constraint for each in constraints], sized.body, work.settings(read))
 
 

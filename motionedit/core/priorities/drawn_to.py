@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import partial
+from functools import lru_cache, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,10 +18,12 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from motionedit.core.arrays import FloatArray, IntArray
+    from motionedit.core.body.anatomy import Leg
     from motionedit.core.body.gaze import Gaze
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.groups import Asked
     from motionedit.core.priorities.kinds.constraint import Constraint
+    from motionedit.core.skeleton import Skeleton
 
 # Metres: a foot that shall be higher by so much is so by the body as much as by its leg, as where plants are put right.
 _LITTLE = 0.03
@@ -59,13 +61,21 @@ def _with_legs(asked: Asked) -> Iterator[tuple[IntArray, Turned]]:
     motion, body, gaze = asked.motion, asked.body, asked.body.gaze
     if gaze is None or body.mobility is None or not body.legs:
         return
-    feet = [frozenset(np.flatnonzero(below(motion.skeleton, leg.ankle)).tolist()) for leg in body.legs]
+    feet = _feet(motion.skeleton, body.legs)
+    if not any(_moves(each, joints) for each in asked.constraints for joints in (gaze.trunk, *feet)):
+        return
     by = _down(asked, gaze, feet)[:, None] + _up(asked, gaze, feet)
     frames = np.flatnonzero(by.any(axis=1))
     if len(frames):
         drawn = drawn_up(motion.at(frames), body.legs, body.bends, by=by[frames], up=gaze.up)
         joints = [joint for leg in body.legs for joint in (leg.thigh, leg.knee, leg.ankle)]
         yield frames, Turned(joints, drawn.rotations[:, joints])
+
+
+@lru_cache(maxsize=8)
+def _feet(skeleton: Skeleton, legs: tuple[Leg, ...]) -> tuple[frozenset[int], ...]:
+    """Return the joints of each leg's foot."""
+    return tuple(frozenset(np.flatnonzero(below(skeleton, leg.ankle)).tolist()) for leg in legs)
 
 
 def _down(asked: Asked, gaze: Gaze, feet: Sequence[frozenset[int]]) -> FloatArray:
