@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core import rotations as rot
+from motionedit.core.blocks import frame_blocks
 from motionedit.core.body.bones import below
 from motionedit.core.body.ground import reference_axes
 from motionedit.dataclass import dataclass
@@ -68,6 +69,21 @@ class Gaze:
         looks, goals : shape (n, 3)
             Where it looks, and where it shall, directions in the world.
         """
+        chain, local = list(chain), motion.rotations[frames]
+        found: FloatArray = np.empty((len(looks), len(chain), 4))
+        # Of a long motion no turns are made that are not needed yet.
+        for block in frame_blocks(len(looks)):
+            turns = self._turns(chain, weights, looks[block], goals[block])
+            world = local[block][:, chain]
+            for k in range(1, len(chain)):
+                world[:, k] = rot.multiply(world[:, k - 1], world[:, k])
+            world = rot.multiply(turns, world)
+            world[:, 1:] = rot.between(world[:, :-1], world[:, 1:])
+            found[block] = world
+        return found
+
+    def _turns(self, chain: list[int], weights: FloatArray, looks: FloatArray, goals: FloatArray) -> FloatArray:
+        """Return how far a chain's joints are turned in the world, shape (n, k, 4)."""
         aside, raised = _apart(looks, goals, self.up)
         parts = [np.array([joint in part for joint in chain]) for part in (self.neck, self.back)]
         shares = [_shares(weights, of) for of in (*parts, ~(parts[0] | parts[1]))]
@@ -77,16 +93,10 @@ class Gaze:
         pitch = np.stack((up, bent, raised - up - bent), axis=1) @ shares
         side = rot.cross(looks, np.broadcast_to(self.up, looks.shape))
         side /= np.maximum(np.linalg.norm(side, axis=1, keepdims=True), _SHORTEST)
-        turns = rot.multiply(
+        return rot.multiply(
             rot.exp(np.cumsum(yaw, axis=1)[..., None] * self.up),
             rot.exp(np.cumsum(pitch, axis=1)[..., None] * side[:, None]),
         )
-        world: FloatArray = motion.rotations[frames][:, chain]
-        for k in range(1, len(chain)):
-            world[:, k] = rot.multiply(world[:, k - 1], world[:, k])
-        world = rot.multiply(turns, world)
-        world[:, 1:] = rot.between(world[:, :-1], world[:, 1:])
-        return world
 
 
 def gaze_of(skeleton: Skeleton, anatomy: Anatomy, *, up: FloatArray) -> Gaze | None:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from functools import lru_cache, partial
+from itertools import chain
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.blocks import frame_blocks
 from motionedit.core.body.bones import below
 from motionedit.core.feet.drawn_up import drawn_up
 from motionedit.core.priorities.agreeing import overruled
@@ -36,13 +38,11 @@ def drawn_to(asked: Asked) -> Motion:
     legs: they bend where the trunk shall go down on feet that are held, or a foot up. The least change would lean the
     body, back or forth as it leans a little already, or carry it up with its foot: straight legs hardly begin to bend.
     """
-    changes = [*_by_itself(asked), *_with_legs(asked)]
-    if not changes:
-        return asked.motion
-    rotations = asked.motion.rotations.copy()
-    for frames, turned in changes:
+    rotations = asked.motion.rotations
+    for frames, turned in chain(_by_itself(asked), _with_legs(asked)):
+        rotations = rotations.copy() if rotations is asked.motion.rotations else rotations
         rotations[frames[:, None], turned.joints] = turned.rotations
-    return replace(asked.motion, rotations=rotations)
+    return asked.motion if rotations is asked.motion.rotations else replace(asked.motion, rotations=rotations)
 
 
 def _by_itself(asked: Asked) -> Iterator[tuple[IntArray, Turned]]:
@@ -65,10 +65,11 @@ def _with_legs(asked: Asked) -> Iterator[tuple[IntArray, Turned]]:
     if not any(_moves(each, joints) for each in asked.constraints for joints in (gaze.trunk, *feet)):
         return
     by = _down(asked, gaze, feet)[:, None] + _up(asked, gaze, feet)
-    frames = np.flatnonzero(by.any(axis=1))
-    if len(frames):
+    there = np.flatnonzero(by.any(axis=1))
+    joints = [joint for leg in body.legs for joint in (leg.thigh, leg.knee, leg.ankle)]
+    for block in frame_blocks(len(there)):
+        frames = there[block]
         drawn = drawn_up(motion.at(frames), body.legs, body.bends, by=by[frames], up=gaze.up)
-        joints = [joint for leg in body.legs for joint in (leg.thigh, leg.knee, leg.ankle)]
         yield frames, Turned(joints, drawn.rotations[:, joints])
 
 
