@@ -15,6 +15,7 @@ from motionedit.core import rotations as rot
 from motionedit.core.blocks import frame_blocks
 from motionedit.core.body.bones import below
 from motionedit.core.body.ground import reference_axes
+from motionedit.core.smooth import no_more_than, smooth_step
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -87,8 +88,8 @@ class Gaze:
         aside, raised = _apart(looks, goals, self.up)
         parts = [np.array([joint in part for joint in chain]) for part in (self.neck, self.back)]
         shares = [_shares(weights, of) for of in (*parts, ~(parts[0] | parts[1]))]
-        neck, up = _up_to(_MOST_OF_NECK, _NECK * aside, raised)
-        back, bent = _up_to(_MOST_OF_BACK, aside - neck, raised - up)
+        neck, up = no_more_than(_MOST_OF_NECK, _NECK * aside, raised)
+        back, bent = no_more_than(_MOST_OF_BACK, aside - neck, raised - up)
         yaw = np.stack((neck, back, aside - neck - back), axis=1) @ shares
         pitch = np.stack((up, bent, raised - up - bent), axis=1) @ shares
         side = rot.cross(looks, np.broadcast_to(self.up, looks.shape))
@@ -135,14 +136,6 @@ def _shares(weights: FloatArray, part: BoolArray) -> FloatArray:
     return own / max(float(own.sum()), _SHORTEST)
 
 
-def _up_to(most: float, *turns: FloatArray) -> list[FloatArray]:
-    """Return turns that come to no more than so much together, smoothly: x m / (|x|^4 + m^4)^(1/4)."""
-    less = (1.0 + (sum(turn**2 for turn in turns) / most**2) ** 2) ** -0.25
-    return [less * turn for turn in turns]
-
-
 def _eased(value: FloatArray, start: float, stop: float) -> FloatArray:
     """Return a share that goes smoothly from 0 to 1 between two values."""
-    share = np.clip((value - start) / (stop - start), 0.0, 1.0)
-    eased: FloatArray = share * share * (3.0 - 2.0 * share)
-    return eased
+    return smooth_step(np.clip((value - start) / (stop - start), 0.0, 1.0))

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from motionedit.core import rotations as rot
 from motionedit.core.feet.knees import knee_of
 from motionedit.core.feet.legs import LegGoal, legs_onto, turns_freely
 from motionedit.core.kinematics import forward
+from motionedit.core.smooth import no_more_than
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,7 +20,6 @@ if TYPE_CHECKING:
 
 # Of a leg that is straight: no ankle comes nearer to the hip's height, and one that should does less and less of it.
 _NEAREST = 0.4
-_TINY = 1e-12
 
 
 def drawn_up(motion: Motion, legs: Sequence[Leg], bends: Sequence[Bend], *, by: FloatArray, up: FloatArray) -> Motion:
@@ -42,8 +40,7 @@ def drawn_up(motion: Motion, legs: Sequence[Leg], bends: Sequence[Bend], *, by: 
             continue
         hip, knee, ankle = (poses.positions[:, joint] for joint in (leg.thigh, leg.knee, leg.ankle))
         length = rot.length(knee - hip) + rot.length(ankle - knee)
-        most = np.maximum((hip - ankle) @ up - _NEAREST * length, 0.0)
-        rise = wanted * most / np.maximum((wanted**4 + most**4) ** 0.25, _TINY)
+        (rise,) = no_more_than((hip - ankle) @ up - _NEAREST * length, wanted)
         bend = knee_of(motion.skeleton, poses, leg, knees[leg.knee])
         goals.append(LegGoal(leg, bend, ankle + rise[:, None] * up, poses.rotations[:, leg.ankle]))
     return legs_onto(motion, poses, goals)

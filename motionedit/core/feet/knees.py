@@ -9,7 +9,7 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.feet.correction import eased
 from motionedit.core.feet.pelvis import smooth_cover
-from motionedit.core.timeline.interpolation import smooth_step
+from motionedit.core.smooth import smooth_step
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from motionedit.core.feet.knees import knee_of
 from motionedit.core.feet.legs import LegGoal, legs_onto, turns_freely
 from motionedit.core.kinematics import forward
 from motionedit.core.motion import Motion
-from motionedit.core.timeline.interpolation import smooth_step
+from motionedit.core.smooth import smooth_step
 from motionedit.core.units import STANDARD_LEG
 from motionedit.dataclass import dataclass
 

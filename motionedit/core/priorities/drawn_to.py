@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.again import once
 from motionedit.core.blocks import frame_blocks
 from motionedit.core.body.bones import below
 from motionedit.core.feet.drawn_up import drawn_up
@@ -48,11 +49,11 @@ def drawn_to(asked: Asked) -> Motion:
 def _by_itself(asked: Asked) -> Iterator[tuple[IntArray, Turned]]:
     """Yield frames and what a constraint makes of the body there, of those that nothing overrules."""
     motion, body = asked.motion, asked.body
+    without = once(lambda: overruled(asked.constraints, asked.targets, len(motion)))
     for i, (each, targets, recruits) in enumerate(zip(asked.constraints, asked.targets, asked.recruits, strict=True)):
         turned = each.by_itself(targets, recruits, body, partial(seen_by, [each], motion, body))
         if turned is not None:
-            without = overruled(asked.constraints, asked.targets, len(motion))[targets.span, i]
-            asks = np.flatnonzero(~without)
+            asks = np.flatnonzero(~without()[targets.span, i])
             yield targets.first + asks, Turned(turned.joints, turned.rotations[asks])
 
 

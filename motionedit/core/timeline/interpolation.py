@@ -1,4 +1,4 @@
-"""Curves: a smooth step, a monotone cubic, a natural cubic spline on a uniform grid, and a Gaussian low-pass.
+"""Curves: a monotone cubic, a natural cubic spline on a uniform grid, and a Gaussian low-pass.
 
 scipy has both splines, but takes longer to import than a whole edit lasts; the tests hold ours against it.
 """
@@ -20,12 +20,6 @@ if TYPE_CHECKING:
 KERNEL_RADIUS = 3.0
 # Frames: a narrower one weighs the frames beside the middle by less than a number's last digit, or by nothing at all.
 NARROWEST = 0.1
-
-
-def smooth_step(t: FloatArray) -> FloatArray:
-    """Return what goes from 0 to 1 as `t` does, level at both."""
-    share: FloatArray = t * t * (3.0 - 2.0 * t)
-    return share
 
 
 def monotone_cubic(x: FloatArray, y: FloatArray, at: FloatArray) -> FloatArray:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from motionedit.core.priorities.trajectories.positions import ControlPoint, active_interval
-from motionedit.core.timeline.interpolation import smooth_step
+from motionedit.core.smooth import smooth_step
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:

@@ -14,8 +14,8 @@ import numpy as np
 
 from motionedit.core.blocks import BLOCK_FRAMES
 from motionedit.core.priorities.trajectories.splines import Basis, basis_of, kochanek_bartels
+from motionedit.core.smooth import smooth_step
 from motionedit.core.timeline import round_half_up
-from motionedit.core.timeline.interpolation import smooth_step
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.priorities.trajectories.positions import active_interval, eased, share_of
 from motionedit.core.rotation_vectors import least_turned
-from motionedit.core.timeline.interpolation import smooth_step
+from motionedit.core.smooth import smooth_step
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
