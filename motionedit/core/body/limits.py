@@ -2,7 +2,7 @@
 
 A joint's rotation against its centre, q_rel = q_c^-1 q, is a swing of the bone v, by the angle between v and q_rel v,
 after a twist about it, 2 atan2(v . vec(q_rel), w). Rigs disagree about where a joint's zero is; a clip shows it: the
-centre is the clip's own mean.
+centre is the clip's own mean, of a back, which bends forward farther than back, so much forward of it.
 """
 
 from __future__ import annotations
@@ -33,17 +33,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Range:
-    """Half of a range of motion: how far a bone swings, and how far it twists, degrees."""
+    """Half of a range of motion: how far a bone swings, to its back no farther than `back`, and twists, degrees."""
 
     swing: float
     twist: float
+    back: float | None = None
 
 
 # Half ranges of regions: D. A. Neumann, Kinesiology of the Musculoskeletal System,
 # and the American Academy of Orthopaedic Surgeons' tables, rounded; a forearm's pronation is in its wrist, for elbows
 # are hinges.
 NECK = Range(65.0, 90.0)
-SPINE = Range(90.0, 70.0)
+SPINE = Range(90.0, 70.0, back=35.0)
 CLAVICLE = Range(45.0, 50.0)
 SHOULDER = Range(165.0, 180.0)
 HIP = Range(135.0, 80.0)
@@ -85,30 +86,36 @@ NO_LIMITS = Limits(np.zeros(0, dtype=np.intp), np.zeros((0, 4)), np.zeros((0, 3)
 
 def human_limits(motion: Motion, poses: WorldPoses, anatomy: Anatomy, *, travel: int, first: int) -> Limits:
     """Return the limits of neck, spine, clavicles, shoulders, hips, wrists and ankles that were found."""
-    joints, bones, halves = _wanted(motion.skeleton, anatomy, travel)
+    joints, bones, sides, halves = _wanted(motion.skeleton, anatomy, travel)
     found = []
     # A few joints at a time: those of a long motion all at once would take several times its memory.
     together = len(joints) if compiled() else max(_BLOCK_POSES // len(motion), 1)
     for start in range(0, len(joints), max(together, 1)):
         some = slice(start, start + together)
-        along = directions_of(poses, bones[some], first=first)
-        found.append(_limits(motion, joints[some], along, halves[some], first))
+        along, left = (directions_of(poses, ways[some], first=first) for ways in (bones, sides))
+        found.append(_limits(motion, joints[some], along, halves[some], first, left=left))
     return _together(found)
 
 
 @lru_cache(maxsize=8)
-def _wanted(skeleton: Skeleton, anatomy: Anatomy, travel: int) -> tuple[IntArray, IntArray, FloatArray]:
-    """Return the n joints that have limits, (n,), their bones as `directions_of`, (n, 3), and half ranges, (n, 2)."""
-    wanted: dict[int, tuple[int, int, float, float]] = {}
+def _wanted(skeleton: Skeleton, anatomy: Anatomy, travel: int) -> tuple[IntArray, IntArray, IntArray, FloatArray]:
+    """Return the n joints that have limits, (n,), and their half ranges, swing, twist, and swing to the back, (n, 3).
+
+    Between them their bones and the ways to the body's left, both as `directions_of`, (n, 3).
+    """
+    left, right = (leg.thigh for leg in anatomy.left_first(anatomy.legs)) if anatomy.legs else (0, 0)
+    wanted: dict[int, tuple[int, int, float, float, float]] = {}
     for region, joints in _regions(skeleton, anatomy, travel):
         # Of a region that n joints share each may do more than its nth part: not all of them are always asked.
-        share = 1.0 / np.sqrt(len(joints))
-        half = math.radians(share * region.swing), math.radians(share * region.twist)
+        share = math.radians(1.0 / math.sqrt(len(joints)))
+        back = region.swing if region.back is None or left == right else region.back
+        half = share * region.swing, share * region.twist, share * back
         wanted.update({joint: (top, end, *half) for joint, top, end in joints})
     rows = sorted((joint, *its) for joint, its in wanted.items())
     which = np.array([row[0] for row in rows], dtype=np.int64)
     bones = np.array([(top, end, joint) for joint, top, end, *_ in rows], dtype=np.int64).reshape(-1, 3)
-    return frozen(which), frozen(bones), frozen(np.array([row[3:] for row in rows]).reshape(-1, 2))
+    sides = np.array([(right, left, row[0]) for row in rows], dtype=np.int64).reshape(-1, 3)
+    return frozen(which), frozen(bones), frozen(sides), frozen(np.array([row[3:] for row in rows]).reshape(-1, 3))
 
 
 def given_limits(motion: Motion, poses: WorldPoses, given: Mapping[int, Range], *, first: int) -> Limits:
@@ -116,7 +123,7 @@ def given_limits(motion: Motion, poses: WorldPoses, given: Mapping[int, Range], 
     found = []
     for joint in sorted(given):
         along = _bone(motion.skeleton, poses, joint, first)
-        halves = np.radians([[given[joint].swing, given[joint].twist]])
+        halves = np.radians([[given[joint].swing, given[joint].twist, given[joint].swing]])
         found.append(_limits(motion, np.array([joint]), along[None], halves, first))
     return _together(found)
 
@@ -141,13 +148,28 @@ def _bone(skeleton: Skeleton, poses: WorldPoses, joint: int, first: int) -> Floa
     return middle / length if length > _OPPOSITE else ways[0]
 
 
-def _limits(motion: Motion, joints: IntArray, along: FloatArray, halves: FloatArray, first: int) -> Limits:
+def _limits(
+    motion: Motion,
+    joints: IntArray,
+    along: FloatArray,
+    halves: FloatArray,
+    first: int,
+    *,
+    left: FloatArray | None = None,
+) -> Limits:
     """Return the limits of n joints about their means in a clip after frame `first`.
 
-    Their bones are `along`, (n, 3); they are no tighter than half ranges (n, 2), rad, and than what the clip does.
+    Their bones are `along`, (n, 3); they are no tighter than half ranges, swing, twist and swing to the back, (n, 3),
+    rad, and than what the clip does. Unless all swing alike to the back, `left` are the ways there, (n, 3).
     """
-    centers, widest = _cones(motion, joints, along, first)
-    swing, twist = frozen(np.maximum(halves, widest).T)
+    swing, twist, back = halves.T
+    bent = np.tile(rot.IDENTITY, (len(joints), 1))
+    if left is not None:
+        across = left - rot.dot(left, along)[:, None] * along
+        across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), np.finfo(float).tiny)
+        bent = rot.exp(((swing - back) / 2.0)[:, None] * across)
+    centers, widest = _cones(motion, joints, along, bent, first)
+    swing, twist = frozen(np.maximum(((swing + back) / 2.0, twist), widest.T))
     return Limits(joints, frozen(centers), frozen(along), swing, twist)
 
 
@@ -171,20 +193,23 @@ def swing_and_twist(q: FloatArray, along: FloatArray) -> tuple[FloatArray, Float
     return swing, twist
 
 
-def _cones(motion: Motion, joints: IntArray, along: FloatArray, first: int) -> tuple[FloatArray, FloatArray]:
-    """Return the means of n joints' rotations, (n, 4), and how far these swing and twist bones (n, 3) there, (n, 2).
+def _cones(
+    motion: Motion, joints: IntArray, along: FloatArray, bent: FloatArray, first: int
+) -> tuple[FloatArray, FloatArray]:
+    """Return the centers of n joints' rotations, (n, 4), and how far these swing and twist bones (n, 3) there, (n, 2).
 
-    A mean is the first eigenvector of sum q q^T, signed as the first frame's.
+    A center is the mean and then a turn `bent`, (n, 4). A mean is the first eigenvector of sum q q^T, signed as the
+    first frame's.
     """
     q = motion.rotations
-    cones = read_off("cones", None, q, joints, along, shape=(len(joints), 6), first=first)
+    cones = read_off("cones", None, q, joints, along, bent, shape=(len(joints), 6), first=first)
     if cones is not None:
         return cones[:, :4], cones[:, 4:]
     means = rot.mean_of_products(np.einsum("fni,fnj->nij", q[first:, joints], q[first:, joints]))
     signs = np.sum(means * q[first, joints], axis=-1, keepdims=True)
-    means = np.where(signs < 0.0, -means, means)
-    swing, twist = swing_and_twist(rot.between(means, q[first:, joints]), along)
-    return means, np.stack((swing.max(axis=0), np.abs(twist).max(axis=0)), axis=1)
+    centers = rot.multiply(np.where(signs < 0.0, -means, means), bent)
+    swing, twist = swing_and_twist(rot.between(centers, q[first:, joints]), along)
+    return centers, np.stack((swing.max(axis=0), np.abs(twist).max(axis=0)), axis=1)
 
 
 _Joint = tuple[int, int, int]  # a joint, and from where to where its bone is

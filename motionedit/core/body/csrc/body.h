@@ -83,10 +83,11 @@ static inline const double *joint_turn(const Poses *poses, int64_t frame, int64_
    vectors, (n, 3). */
 void find_directions(const Poses *poses, int64_t first, const int64_t *triples, int64_t count, double *out);
 
-/* The cones of n joints with the bones `along` (n, 3): the mean of a joint's rotations from frame `first` on is its
-   cone's center, and how far it swings its bone from there, and twists about it, at most, its ranges: (n, 6), rad. */
-void find_cones(
-    const Poses *poses, int64_t first, const int64_t *joints, const double *along, int64_t count, double *out);
+/* The cones of n joints with the bones `along` (n, 3): the mean of a joint's rotations from frame `first` on and then a
+   turn `bent` (n, 4) are its cone's center, and how far it swings its bone from there, and twists about it, at most, its
+   ranges: (n, 6), rad. */
+void find_cones(const Poses *poses, int64_t first, const int64_t *joints, const double *along, const double *bent,
+    int64_t count, double *out);
 
 /* Where points (n, 3) in the frames of n joints are in the world at each frame: shape (F, n, 3). */
 void carry(const Poses *poses, const int64_t *joints, const double *points, int64_t count, double *out);

@@ -102,7 +102,7 @@ static void directions_work(
 static void cones_work(
     const Poses *poses, int64_t first, const int64_t *joints, const double **arrays, int64_t count, double *out)
 {
-    find_cones(poses, first, joints, arrays[0], count, out);
+    find_cones(poses, first, joints, arrays[0], arrays[1], count, out);
 }
 
 static void back_work(
@@ -134,7 +134,7 @@ static PyObject *directions(PyObject *self, PyObject *arguments)
 static PyObject *cones(PyObject *self, PyObject *arguments)
 {
     (void)self;
-    return on_joints(&(const OnJoints){cones_work, 1, {3}, 6, 0, 0, 0, 1}, arguments);
+    return on_joints(&(const OnJoints){cones_work, 1, {3, 4}, 6, 0, 0, 0, 1}, arguments);
 }
 
 static PyObject *bent_back(PyObject *self, PyObject *arguments)

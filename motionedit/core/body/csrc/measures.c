@@ -99,11 +99,13 @@ static void find_widest(
     widest[0] = atan2(swing.sine, swing.cosine), widest[1] = one > other ? one : other;
 }
 
-void find_cones(
-    const Poses *poses, int64_t first, const int64_t *joints, const double *along, int64_t count, double *out)
+void find_cones(const Poses *poses, int64_t first, const int64_t *joints, const double *along, const double *bent,
+    int64_t count, double *out)
 {
-    for (int64_t i = 0; i < count; i++, along += 3, out += 6) {
-        find_mean(poses, first, joints[i], out);
+    for (int64_t i = 0; i < count; i++, along += 3, bent += 4, out += 6) {
+        double mean[4];
+        find_mean(poses, first, joints[i], mean);
+        q_multiply(mean, bent, out);
         find_widest(poses, first, joints[i], out, along, out + 4);
     }
 }

@@ -103,11 +103,12 @@ def test_so_few_frames_have_no_jerk(frames):
 @pytest.mark.skipif(solver_name() == "numpy", reason="nothing compiled here")
 def test_joints_and_arrays_that_are_none_are_an_error_and_no_crash():
     turns, places = np.zeros((5, 2, 4)), np.zeros((5, 2, 3))
+    bone, bent = np.ones(3), np.ones(4)
     for joints in ([2], [-1]):
         with pytest.raises(ValueError, match=f"no joint {joints[0]}"):
-            read_off("cones", None, turns, np.array(joints), np.ones(3), shape=(1, 6))
+            read_off("cones", None, turns, np.array(joints), bone, bent, shape=(1, 6))
     with pytest.raises(ValueError, match="results has 8 bytes instead of"):
-        read_off("cones", None, turns, np.array([0]), np.ones(3), shape=(1,))
+        read_off("cones", None, turns, np.array([0]), bone, bent, shape=(1,))
     with pytest.raises(ValueError, match="results has 24 bytes instead of"):
         read_off("center", places, turns, np.array([0]), np.ones(3), np.ones(1), shape=(1, 3))
     with pytest.raises(ValueError, match="numbers has 16 bytes instead of"):
@@ -121,7 +122,7 @@ def test_joints_and_arrays_that_are_none_are_an_error_and_no_crash():
     with pytest.raises(ValueError, match="results has 8 bytes instead of"):
         compiled().jerks(places, 5, 2, np.zeros(1))
     with pytest.raises(ValueError, match="no such frames"):
-        read_off("cones", None, turns, np.array([0]), np.ones(3), shape=(1, 6), first=5)
+        read_off("cones", None, turns, np.array([0]), bone, bent, shape=(1, 6), first=5)
     limbs, how = np.zeros((1, 4), int), (1, 0.1, 0.2, 0.1, 2)
     out = [np.zeros((1, 5), bool), *map(np.zeros, (3, 6, 15, 10))]
     for given, first in (((places, None), 0), ((places, turns), -1)):

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from motionedit.core import rotations as rot
 from motionedit.core.body.find_anatomy import find_anatomy
-from motionedit.core.body.limits import NECK, Range, given_limits, human_limits, swing_and_twist
+from motionedit.core.body.limits import NECK, SPINE, Range, given_limits, human_limits, swing_and_twist
 from motionedit.core.kinematics import forward
 from motionedit.dataclass import replace
 
@@ -59,6 +59,23 @@ def test_a_limit_is_never_tighter_than_what_the_clip_does_and_a_rest_pose_does_n
     assert wide.swing == pytest.approx(swing_and_twist(q, wide.along)[0].max(), abs=1e-12)
     assert wide.swing > plain.swing
     assert limits_of(nodding, first=6)["Head"].swing == plain.swing
+
+
+SPINES = [name for name in SKELETON.names if name.startswith("Spine")]
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.9, 3.0])
+def test_a_back_bends_forward_farther_than_back(turn):
+    standing_so = with_rotation(standing(SKELETON), "Hips", slice(None), (0.0, turn, 0.0))
+    found, share = limits_of(standing_so), 1.0 / np.sqrt(len(SPINES))
+    assert SPINES
+    for name in SPINES:
+        limit = found[name]
+        # The body faces along z, and its joints as the world where it does not turn: forward is about x.
+        for end, beyond in ((share * SPINE.swing, 0.1), (-share * SPINE.back, -0.1)):
+            bends = np.radians([[end - beyond], [end + beyond]]) * np.array([1.0, 0.0, 0.0])
+            swings, _ = swing_and_twist(rot.between(limit.center, rot.exp(bends)), limit.along)
+            assert swings[0] < limit.swing < swings[1]
 
 
 def test_given_limits_are_of_the_joints_that_are_named():
