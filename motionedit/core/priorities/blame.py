@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
+from typing import TYPE_CHECKING
 
 from motionedit.core.priorities.frames import run_of, solve_frames
 from motionedit.core.priorities.targets import errors_of
@@ -14,10 +11,8 @@ from motionedit.dataclass import dataclass, replace
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from motionedit.core.arrays import FloatArray
     from motionedit.core.priorities.groups import Asked
     from motionedit.core.priorities.kinds.constraint import ConstraintErrors
-    from motionedit.core.priorities.task_targets import Targets
 
 # Nearer is nearer by this share of the error, and by this many metres or radians: less is rounding, or no help.
 _SHARE = 0.1
@@ -50,10 +45,10 @@ def blame_of(asked: Asked, i: int, frame: int) -> Blame:
     everything = [k for k, each in enumerate(asked.targets) if each.first <= frame <= each.last]
     rivals = [k for k in everything if _is_rival(asked, k, i)]
     left = _left(here, everything, i)
-    with_all = _size(left)
+    with_all = float(left.largest.max())
 
     def helps(gone: Sequence[int]) -> bool:
-        without = _size(_left(here, [k for k in everything if k not in gone], i))
+        without = float(_left(here, [k for k in everything if k not in gone], i).largest.max())
         return with_all - without > max(_LEAST, _SHARE * with_all)
 
     if not rivals or not helps(rivals):
@@ -74,35 +69,17 @@ def _is_rival(asked: Asked, other: int, i: int) -> bool:
 
 def _at(asked: Asked, frame: int) -> Asked:
     """Return what is asked of a motion that is one of its frames alone."""
-    motion, rows = asked.motion, slice(frame, frame + 1)
-    still = motion.at(rows)
-    targets = tuple(_targets_at(each, frame) for each in asked.targets)
-    return replace(asked, motion=still, targets=targets, arcs=(None,) * len(targets), ramps=((),) * len(targets))
-
-
-def _targets_at(targets: Targets, frame: int) -> Targets:
-    """Return the targets of a frame as those of the first of a motion; as they are where they do not have it."""
-    if not targets.first <= frame <= targets.last:
-        return targets
-    arrays = {each.name: getattr(targets, each.name) for each in fields(targets) if each.name not in {"first", "last"}}
-    row = frame - targets.first
-    one = {name: None if rows is None else rows[row : row + 1] for name, rows in arrays.items()}
-    return replace(targets, first=0, last=0, **one)
+    span = slice(frame, frame + 1)
+    # Targets that do not have the frame are not asked for: they stay as they are.
+    targets = tuple(
+        each.within(span).since(frame) if each.first <= frame <= each.last else each for each in asked.targets
+    )
+    none, no_ramps = (None,) * len(targets), ((),) * len(targets)
+    return replace(asked, motion=asked.motion.at(span), targets=targets, arcs=none, ramps=no_ramps)
 
 
 def _left(here: Asked, keep: Sequence[int], i: int) -> ConstraintErrors:
     """Return what is left of a constraint where some of them are asked for in a motion of one frame."""
-    told: dict[str, Any] = {each.name: getattr(here, each.name) for each in fields(here)}
-    # What is told constraint by constraint stands in tuples.
-    kept: dict[str, Any] = {
-        name: tuple(values[k] for k in keep) for name, values in told.items() if isinstance(values, tuple)
-    }
-    asked = replace(here, **kept)
+    asked = here.only(keep)
     solved = solve_frames(run_of(asked), here.motion, reference=here.motion, pull_root=False)
     return errors_of(asked, solved.motion)[list(keep).index(i)]
-
-
-def _size(errors: ConstraintErrors) -> float:
-    """Return an error as one number, metres and radians."""
-    parts: list[FloatArray] = [part for part in (errors.positions, errors.angles) if part is not None]
-    return float(np.max(np.concatenate(parts), initial=0.0))

@@ -188,9 +188,7 @@ def _nothing_is_wanted(asked: Asked) -> BoolArray:
         errors = constraint.errors(
             targets.within(slice(targets.first, min(targets.last + 1, first))), seen, reference=rest
         )
-        for left in (errors.positions, errors.angles):
-            if left is not None:
-                wanted[targets.first :][: len(left)] |= left > NO_DISPLACEMENT
+        wanted[targets.first :][: len(errors.largest)] |= errors.largest > NO_DISPLACEMENT
     return ~wanted
 
 

@@ -113,8 +113,7 @@ def lefts_of(asked: Asked, motion: Motion) -> list[FloatArray]:
     lefts = []
     for errors, targets in zip(errors_of(asked, motion), asked.targets, strict=True):
         left = np.zeros(len(motion))
-        parts = [part for part in (errors.positions, errors.angles) if part is not None]
-        left[targets.span] = np.max(parts, axis=0)
+        left[targets.span] = errors.largest
         lefts.append(left)
     return lefts
 

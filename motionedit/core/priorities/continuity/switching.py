@@ -11,7 +11,7 @@ from motionedit.core.priorities.continuity.passes import solve_in_passes
 from motionedit.core.priorities.frames import run_of
 from motionedit.core.priorities.ramps import ramps_of, task_at
 from motionedit.core.priorities.solver.constants import NO_DISPLACEMENT
-from motionedit.core.priorities.targets import errors_of, reached
+from motionedit.core.priorities.targets import lefts_of, reached
 from motionedit.core.priorities.task_targets import moved
 from motionedit.dataclass import replace
 
@@ -85,9 +85,5 @@ def _others(asked: Asked, i: int, ramp: Ramp, members: Members) -> Members:
 
 def _wanted(asked: Asked, motion: Motion) -> BoolArray:
     """Return at which frames constraints want anything that a motion does not do already, shape (F,)."""
-    wanted = np.zeros(len(motion), dtype=np.bool_)
-    for errors, targets in zip(errors_of(asked, motion), asked.targets, strict=True):
-        for left in (errors.positions, errors.angles):
-            if left is not None:
-                wanted[targets.span] |= left > NO_DISPLACEMENT
+    wanted: BoolArray = np.max(lefts_of(asked, motion), axis=0) > NO_DISPLACEMENT
     return wanted

@@ -60,6 +60,12 @@ class ConstraintErrors:
     angles: FloatArray | None
     places: FloatArray | None = None
 
+    @property
+    def largest(self) -> FloatArray:
+        """How much is left, the larger of both, shape (n,), metres or radians."""
+        parts = [part for part in (self.positions, self.angles) if part is not None]
+        return parts[0] if len(parts) == 1 else np.maximum(*parts)
+
 
 @dataclass(frozen=True, eq=False)
 class Scene:
