@@ -110,8 +110,7 @@ def _heights(asked: Asked, constraints: Sequence[Constraint], gaze: Gaze, most: 
     """Return the most that constraints want their effectors higher, or lower, than they are, metres, shape (F,)."""
     heights = np.zeros(len(asked.motion))
     if constraints:
-        before = seen_by(constraints, asked.motion, asked.body)
-        scene = Scene(before, asked.settings.curve, dict, lambda: before)
+        scene = Scene.of_input(seen_by(constraints, asked.motion, asked.body), asked.settings.curve)
         for wanted in (each.displacement(scene) for each in constraints):
             if wanted is not None:
                 heights[wanted.span] = most(heights[wanted.span], wanted.shift @ gaze.up)

@@ -58,8 +58,8 @@ def with_targets(
     stays = not any(each.carries(body) for each in constraints)
     free = [i for i, each in enumerate(constraints) if not each.waits_for_others]
     # Most follow the same motion.
-    scenes = {id(each): Scene(each, settings.curve, dict, lambda: before) for each in (before, theirs)}
-    found = {i: _ramped(constraints[i], scenes[id(seen[i])], here) for i in free}
+    scenes = {each: Scene.of_input(each, settings.curve) for each in (before, theirs)}
+    found = {i: _ramped(constraints[i], scenes[seen[i]], here) for i in free}
 
     def others() -> Sight:
         """Return what is seen of the motion that those which do not wait ask for, solved once."""

@@ -29,8 +29,8 @@ def asked_path(sized: SizedClip, constraints: Sequence[ClipConstraint], curve: C
     """
     facts, travel = sized.facts, sized.facts.travel
     whole = whole_joints(facts.bones, facts.anatomy, travel=travel)
-    before = sight_of(sized.motion, lambda: whole, None)
-    scene, places = Scene(before, curve, dict, lambda: before), before.poses.positions[:, travel]
+    scene = Scene.of_input(sight_of(sized.motion, lambda: whole, None), curve)
+    places = scene.before.poses.positions[:, travel]
     asks = [each.constraint for each in constraints]
     asks = [ask for ask in asks if not ask.stands and ask.at is not None and ask.at.joint in whole]
     asked = [displaced for displaced in (ask.displacement(scene) for ask in asks) if displaced is not None]

@@ -39,8 +39,7 @@ def refuse_floors_out_of_reach(
             if each.priority <= floor.priority or each.waits_for_others:
                 continue
             if scene is None:
-                before = seen_by(constraints, sized.input, sized.body)
-                scene = Scene(before, curve, dict, lambda before=before: before)  # type: ignore[misc]
+                scene = Scene.of_input(seen_by(constraints, sized.input, sized.body), curve)
             goal = each.goal(each.targets(scene))
             above = 0.0 if goal is None or level is None else -float(level.above(goal[1]).min())
             if above > length:

@@ -89,6 +89,11 @@ class Scene:
     goals: Callable[[], Mapping[int, FloatArray]]
     others: Callable[[], Sight]
 
+    @classmethod
+    def of_input(cls, before: Sight, curve: Curve) -> Scene:
+        """Return the scene of the input alone: no goals, and others make nothing of it."""
+        return cls(before, curve, dict, lambda: before)
+
 
 @dataclass(frozen=True, eq=False)
 class Displacement:
