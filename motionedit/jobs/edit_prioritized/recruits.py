@@ -139,7 +139,9 @@ def _constraint_line(constraint: Constraint, recruits: Recruits, sized: SizedCli
     first, last = constraint.active(len(facts.clip.motion))
     parts = [f"{constraint.name}: {constraint.words(skeleton.names)}, frames {first} to {last}"]
     if constraint.points:
-        parts.append(", ".join(_point_words(point, constraint.axes, sized.scale) for point in constraint.points))
+        parts.append(
+            ", ".join(_point_words(point, constraint.measure.axes, sized.scale) for point in constraint.points)
+        )
     if constraint.weight != 1.0:
         parts.append(f"weight {constraint.weight:g}")
     moved = ", ".join(recruited_names(recruits, facts))

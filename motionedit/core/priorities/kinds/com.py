@@ -38,8 +38,6 @@ class CenterOfMass(Constraint):
         The joints of the set A; none: the input's own path.
     relative_to : {"support", "world"}
         ``world`` is the input's own path whatever the support does.
-    measure : Measure
-        The axes of shifts, and which count.
     recruit : RecruitRule
     """
 
@@ -50,13 +48,7 @@ class CenterOfMass(Constraint):
 
     support: tuple[int, ...] = ()
     relative_to: Literal["support", "world"] = "support"
-    measure: Measure = WORLD
     recruit: RecruitRule = EVERYTHING
-
-    @property
-    def axes(self) -> FloatArray:
-        """Those of its measure."""
-        return self.measure.axes
 
     @property
     def about(self) -> Hashable:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.body.center_of_mass import Masses
-    from motionedit.core.measure import Level
+    from motionedit.core.measure import Level, Measure
     from motionedit.core.motion import Motion
     from motionedit.core.priorities.recruiting import Recruits
     from motionedit.core.priorities.settings import Body
@@ -160,7 +160,9 @@ class Constraint(ABC):
     name, priority, weight
         Larger priorities are more important; only their order matters.
     points : tuple of ControlPoint
-        When and where; none: as in the input, the whole clip. Positions along the measuring axes.
+        When and where; none: as in the input, the whole clip.
+    measure : Measure
+        What positions, shifts and rotations are measured in.
     ease_in, ease_out : float
         Frames.
     since : int
@@ -192,6 +194,7 @@ class Constraint(ABC):
     priority: int = 1
     weight: float = 1.0
     points: tuple[ControlPoint, ...] = ()
+    measure: Measure = WORLD
     ease_in: float = 0.0
     ease_out: float = 0.0
     since: int = 0
@@ -207,11 +210,6 @@ class Constraint(ABC):
     def at(self) -> Effector | None:
         """The effector that it is about; None where it is about no one point."""
         return None
-
-    @property
-    def axes(self) -> FloatArray:
-        """The axes along which positions and shifts of its points are, rows, shape (3, 3): in the world or its base."""
-        return WORLD.axes
 
     @property
     def one_sided(self) -> bool:

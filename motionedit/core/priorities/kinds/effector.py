@@ -33,8 +33,6 @@ class EffectorConstraint(Constraint):
     Attributes
     ----------
     effector : Effector
-    measure : Measure
-        What its positions and rotations are measured in.
     recruit : RecruitRule
     """
 
@@ -42,18 +40,12 @@ class EffectorConstraint(Constraint):
     shifts: ClassVar[bool] = True
 
     effector: Effector
-    measure: Measure = WORLD
     recruit: RecruitRule = EVERYTHING
 
     @property
     def at(self) -> Effector:
         """The effector."""
         return self.effector
-
-    @property
-    def axes(self) -> FloatArray:
-        """Those of its measure."""
-        return self.measure.axes
 
     @property
     def about(self) -> Hashable:
