@@ -56,6 +56,11 @@ class NotOnTheWayError(ValueError):
         self.joint, self.way = joint, way
 
 
+def start_of(skeleton: Skeleton, joint: int, *, itself: bool) -> int:
+    """Return where recruiting for a point of a joint starts: at the joint, where that moves it, else at its parent."""
+    return joint if itself else max(int(skeleton.parents[joint]), 0)
+
+
 @lru_cache(maxsize=256)
 def recruit_chain(skeleton: Skeleton, rule: RecruitRule, *, start: int, travel: int) -> Recruits:
     """Return what a constraint on an effector recruits: the same for all clips that share a skeleton.
@@ -63,7 +68,7 @@ def recruit_chain(skeleton: Skeleton, rule: RecruitRule, *, start: int, travel: 
     Parameters
     ----------
     start : int
-        Where recruiting starts: the effector's parent, or its joint itself where that moves it.
+        Where recruiting starts, `start_of` the effector.
     travel : int
         The joint that carries the travel. A static root above it is never recruited.
 

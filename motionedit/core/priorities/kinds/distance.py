@@ -10,7 +10,7 @@ from motionedit.core.kinematics import Effector, effector_positions
 from motionedit.core.measure import Measure
 from motionedit.core.priorities.kinds.constraint import ConstraintErrors
 from motionedit.core.priorities.kinds.effector import EffectorConstraint
-from motionedit.core.priorities.recruiting import Recruits, recruit_chains
+from motionedit.core.priorities.recruiting import Recruits, recruit_chains, start_of
 from motionedit.core.priorities.solver.constants import NO_DIRECTION
 from motionedit.core.priorities.solver.points import moved_by
 from motionedit.core.priorities.solver.problem import CompiledTask
@@ -67,7 +67,7 @@ class Distance(EffectorConstraint):
     def recruits(self, movable: Movable) -> Recruits:
         """Return the chains of both ends, as far as the user lets them, without what moves both alike."""
         skeleton = movable.skeleton
-        starts = [end.joint if np.any(end.offset) else max(int(skeleton.parents[end.joint]), 0) for end in self._ends]
+        starts = [start_of(skeleton, end.joint, itself=end.is_off) for end in self._ends]
         asked = recruit_chains(skeleton, self.recruit, starts=starts, travel=movable.travel)
         moved = self.moved_by(movable)
         return Recruits(asked.joints & moved.joints, asked.root and moved.root)
@@ -75,7 +75,7 @@ class Distance(EffectorConstraint):
     def moved_by(self, movable: Movable) -> Recruits:
         """Return the ancestors of one end alone, and whether the root's translation moves one end alone."""
         skeleton = movable.skeleton
-        one, other = (moved_by(skeleton, end.joint, itself=bool(np.any(end.offset))) for end in self._ends)
+        one, other = (moved_by(skeleton, end.joint, itself=end.is_off) for end in self._ends)
         shifted = [movable.travel in skeleton.chain(end.joint) for end in self._ends].count(True) == 1
         return Recruits(frozenset(map(int, np.flatnonzero(one ^ other))), shifted)
 

@@ -9,9 +9,8 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.kinematics import Effector, effector_positions
-from motionedit.core.measure import WORLD, Measure
 from motionedit.core.priorities.kinds.constraint import Constraint, ConstraintErrors, Displacement, Movable
-from motionedit.core.priorities.recruiting import EVERYTHING, RecruitRule, Recruits, recruit_chain
+from motionedit.core.priorities.recruiting import EVERYTHING, RecruitRule, Recruits, recruit_chain, start_of
 from motionedit.core.priorities.solver.points import moved_by
 from motionedit.core.priorities.task_targets import Targets
 from motionedit.dataclass import dataclass
@@ -20,6 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Hashable
 
     from motionedit.core.arrays import FloatArray
+    from motionedit.core.motion import Motion
     from motionedit.core.priorities.kinds.constraint import Scene
     from motionedit.core.priorities.settings import Body
     from motionedit.core.priorities.sight import Sight
@@ -80,9 +80,8 @@ class EffectorConstraint(Constraint):
 
     def recruits(self, movable: Movable) -> Recruits:
         """Return the chain from the effector up, as far as the user lets it."""
-        joint, skeleton = self.effector.joint, movable.skeleton
-        start = joint if self.own_joint_moves_it else max(int(skeleton.parents[joint]), 0)
-        return recruit_chain(skeleton, self.recruit, start=start, travel=movable.travel)
+        start = start_of(movable.skeleton, self.effector.joint, itself=self.own_joint_moves_it)
+        return recruit_chain(movable.skeleton, self.recruit, start=start, travel=movable.travel)
 
     def moved_by(self, movable: Movable) -> Recruits:
         """Return the ancestors of the effector and of its base, and whether the root's translation moves it."""
@@ -136,8 +135,15 @@ class EffectorConstraint(Constraint):
         wanted = self.measure.aimed(self.measure.positions(here, then), targets.all_positions)
         return Displacement(places, targets.span, self.measure.in_world(wanted, then) - here, self.measure.rows)
 
-    def left(self, targets: Targets, after: Sight) -> ConstraintErrors:
+    def goal(self, targets: Targets) -> tuple[int, FloatArray] | None:
+        """Return the joint and its places in the world, where the effector is a joint and all of its place is asked."""
+        if not self.places_effector or not self.measure.is_whole or self.effector.is_off:
+            return None
+        return self.effector.joint, targets.all_positions @ self.measure.axes
+
+    def errors(self, targets: Targets, after: Sight, *, reference: Motion) -> ConstraintErrors:
         """Return how far the effector is from its targets' positions, and its joint from their rotations."""
+        del reference
         if targets.positions is not None and targets.rotations is None and self.is_plain:
             # Most are: a joint's place in the world is its position.
             place = after.poses.positions[targets.first : targets.last + 1, self.effector.joint]

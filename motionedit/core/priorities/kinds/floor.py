@@ -9,7 +9,7 @@ import numpy as np
 from motionedit.core.kinematics import Effector, effector_positions
 from motionedit.core.measure import Measure
 from motionedit.core.priorities.kinds.constraint import Constraint, ConstraintErrors, Movable
-from motionedit.core.priorities.recruiting import EVERYTHING, RecruitRule, Recruits, recruit_chains
+from motionedit.core.priorities.recruiting import EVERYTHING, RecruitRule, Recruits, recruit_chains, start_of
 from motionedit.core.priorities.solver.points import moved_by
 from motionedit.core.priorities.solver.problem import CompiledTask
 from motionedit.core.priorities.task_targets import Targets
@@ -55,18 +55,15 @@ class Floor(Constraint):
 
     def recruits(self, movable: Movable) -> Recruits:
         """Return the chains of all points, as far as the user lets them."""
-        skeleton = movable.skeleton
-        starts = [each.joint if np.any(each.offset) else int(skeleton.parents[each.joint]) for each in self.effector]
-        return recruit_chains(
-            skeleton, self.recruit, starts=sorted({max(each, 0) for each in starts}), travel=movable.travel
-        )
+        starts = {start_of(movable.skeleton, each.joint, itself=each.is_off) for each in self.effector}
+        return recruit_chains(movable.skeleton, self.recruit, starts=sorted(starts), travel=movable.travel)
 
     def moved_by(self, movable: Movable) -> Recruits:
         """Return the ancestors of all points, and whether the root's translation moves any."""
         skeleton = movable.skeleton
         moved = np.zeros(len(skeleton), dtype=np.bool_)
         for each in self.effector:
-            moved |= moved_by(skeleton, each.joint, itself=bool(np.any(each.offset)))
+            moved |= moved_by(skeleton, each.joint, itself=each.is_off)
         shifted = any(movable.travel in skeleton.chain(each.joint) for each in self.effector)
         return Recruits(frozenset(map(int, np.flatnonzero(moved))), shifted)
 

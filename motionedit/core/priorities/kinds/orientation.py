@@ -17,9 +17,7 @@ from motionedit.dataclass import dataclass
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.kinematics import WorldPoses
-    from motionedit.core.motion import Motion
-    from motionedit.core.priorities.kinds.constraint import ConstraintErrors, Scene, Stage, Symbol
-    from motionedit.core.priorities.sight import Sight
+    from motionedit.core.priorities.kinds.constraint import Scene, Stage, Symbol
     from motionedit.core.priorities.solver.points import Point
 
 
@@ -39,11 +37,6 @@ class Orientation(EffectorConstraint):
     def task(self, targets: Targets, stage: Stage) -> OrientationTask:
         """Return the task of the joint."""
         return orientation_task(self, targets, stage)
-
-    def errors(self, targets: Targets, after: Sight, *, reference: Motion) -> ConstraintErrors:
-        """Return the joint's angle from its targets."""
-        del reference
-        return self.left(targets, after)
 
 
 def turned(constraint: EffectorConstraint, scene: Scene) -> FloatArray:

@@ -8,16 +8,14 @@ import numpy as np
 
 from motionedit.core.priorities.kinds.effector import EffectorConstraint
 from motionedit.core.priorities.kinds.orientation import OrientationTask, orientation_task, turned
-from motionedit.core.priorities.kinds.position import PositionTask, joint_goal, placed, position_task
+from motionedit.core.priorities.kinds.position import PositionTask, placed, position_task
 from motionedit.core.priorities.task_targets import Targets
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.kinematics import WorldPoses
-    from motionedit.core.motion import Motion
-    from motionedit.core.priorities.kinds.constraint import ConstraintErrors, Scene, Stage
-    from motionedit.core.priorities.sight import Sight
+    from motionedit.core.priorities.kinds.constraint import Scene, Stage
     from motionedit.core.priorities.solver.problem import CompiledTask
 
 
@@ -33,18 +31,9 @@ class Pose(EffectorConstraint):
         """Return trajectory and turns, over the input's own."""
         return Targets(*self.active(len(scene.before.motion)), placed(self, scene), turned(self, scene))
 
-    def goal(self, targets: Targets) -> tuple[int, FloatArray] | None:
-        """Return the joint and its places, where the effector is a joint."""
-        return joint_goal(self, targets)
-
     def task(self, targets: Targets, stage: Stage) -> PoseTask:
         """Return the task of the point and its joint."""
         return PoseTask(position_task(self, targets, stage), orientation_task(self, targets, stage))
-
-    def errors(self, targets: Targets, after: Sight, *, reference: Motion) -> ConstraintErrors:
-        """Return the point's distance and the joint's angle from their targets."""
-        del reference
-        return self.left(targets, after)
 
 
 @dataclass(frozen=True, eq=False)

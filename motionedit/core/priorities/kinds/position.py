@@ -17,9 +17,7 @@ from motionedit.dataclass import dataclass
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray, IntArray
     from motionedit.core.kinematics import WorldPoses
-    from motionedit.core.motion import Motion
-    from motionedit.core.priorities.kinds.constraint import ConstraintErrors, Scene, Stage
-    from motionedit.core.priorities.sight import Sight
+    from motionedit.core.priorities.kinds.constraint import Scene, Stage
     from motionedit.core.priorities.solver.points import Point
 
 
@@ -34,18 +32,9 @@ class Position(EffectorConstraint):
         """Return the trajectory, over the input's own."""
         return Targets(*self.active(len(scene.before.motion)), placed(self, scene))
 
-    def goal(self, targets: Targets) -> tuple[int, FloatArray] | None:
-        """Return the joint and its places, where the effector is a joint and its whole place is asked for."""
-        return joint_goal(self, targets)
-
     def task(self, targets: Targets, stage: Stage) -> PositionTask:
         """Return the task of the point."""
         return position_task(self, targets, stage)
-
-    def errors(self, targets: Targets, after: Sight, *, reference: Motion) -> ConstraintErrors:
-        """Return the point's distance from its targets."""
-        del reference
-        return self.left(targets, after)
 
 
 def placed(constraint: EffectorConstraint, scene: Scene) -> FloatArray:
@@ -60,14 +49,6 @@ def placed(constraint: EffectorConstraint, scene: Scene) -> FloatArray:
         since=constraint.since,
         curve=scene.curve,
     )[1]
-
-
-def joint_goal(constraint: EffectorConstraint, targets: Targets) -> tuple[int, FloatArray] | None:
-    """Return a constraint's joint and its places in the world, where its whole place is what is asked for."""
-    measure, effector = constraint.measure, constraint.effector
-    if targets.positions is None or not measure.is_whole or np.any(effector.offset):
-        return None
-    return effector.joint, targets.positions @ measure.axes
 
 
 def position_task(constraint: EffectorConstraint, targets: Targets, stage: Stage) -> PositionTask:

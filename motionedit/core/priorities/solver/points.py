@@ -99,9 +99,8 @@ class Point:
 
     def position_rows(self, poses: WorldPoses) -> FloatArray:
         """Return d(position)/d(unknowns), shape (N, 3, n): e_a x (p_e - p_j), the identity for the root."""
-        offset = bool(np.any(self.effector.offset))
         levers = self.position(poses)[:, None] - poses.positions[:, self.columns.joints]
-        return lever_rows(levers, self._mask(itself=offset), root=self.moves_with_root)
+        return lever_rows(levers, self._mask(itself=self.effector.is_off), root=self.moves_with_root)
 
     def rotation_rows(self, poses: WorldPoses) -> FloatArray:
         """Return d(world-axis increment of the rotation)/d(unknowns), shape (N, 3, n): the identity per ancestor."""
