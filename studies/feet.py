@@ -80,7 +80,7 @@ def measured(before: ClipFacts, after: ClipFacts, seconds: float) -> list[float]
         )
         for poses in (one, other)
     )
-    legs = {j for leg in before.anatomy.legs or () for j in (leg.thigh, leg.knee, leg.ankle)}
+    legs = {j for leg in before.anatomy.legs or () for j in leg.joints}
     skeleton = before.clip.motion.skeleton
     body = [j for j in range(len(skeleton)) if not legs & set(map(int, skeleton.chain(j)))]
     moved = scale * 100.0 * np.linalg.norm(other.positions[first:, body] - one.positions[first:, body], axis=-1)

@@ -32,6 +32,11 @@ class Leg:
     toe: int | None
     tip: tuple[float, float, float] | None = None
 
+    @property
+    def joints(self) -> tuple[int, int, int]:
+        """Thigh, knee and ankle: those that turn it."""
+        return self.thigh, self.knee, self.ankle
+
 
 def tip_of(skeleton: Skeleton, ankle: int) -> tuple[float, float, float] | None:
     """Return where the farthest end site of an ankle is in its frame, clip units, None where it has none."""
@@ -65,9 +70,14 @@ class Arm:
     wrist: int
 
     @property
+    def joints(self) -> tuple[int, int, int]:
+        """Shoulder, elbow and wrist: those that turn it."""
+        return self.shoulder, self.elbow, self.wrist
+
+    @property
     def as_leg(self) -> Leg:
         """Its joints as those of a leg: what solves two bones does not mind which."""
-        return Leg(self.shoulder, self.elbow, self.wrist, None)
+        return Leg(*self.joints, None)
 
 
 @dataclass(frozen=True)
@@ -122,6 +132,11 @@ class Anatomy:
         if self.head is None:
             lines.append("no head found: up is found without it; body: in a spec says which joint is the head")
         return tuple(lines)
+
+    @property
+    def limbs(self) -> tuple[tuple[int, int, int], ...]:
+        """The top, the joint that bends and the end of each leg, then of each arm, left before right."""
+        return tuple(limb.joints for limb in (*(self.legs or ()), *(self.arms or ())))
 
     @cached_property
     def sole_points(self) -> tuple[SolePoint, ...]:

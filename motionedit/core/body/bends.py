@@ -117,9 +117,7 @@ def _as_toes_say(bend: Bend, skeleton: Skeleton, poses: WorldPoses, anatomy: Ana
 @lru_cache(maxsize=8)
 def _limbs_of(skeleton: Skeleton, anatomy: Anatomy) -> NDArray[np.int64]:
     """Return the joints of n limbs, shape (n, 4): the top, the one that bends, the end, and where the second hangs."""
-    limbs = [(leg.thigh, leg.knee, leg.ankle) for leg in anatomy.legs or ()]
-    limbs += [(arm.shoulder, arm.elbow, arm.wrist) for arm in anatomy.arms or ()]
-    parents = [(*limb, skeleton.parents[limb[1]]) for limb in limbs]
+    parents = [(*limb, skeleton.parents[limb[1]]) for limb in anatomy.limbs]
     return frozen(np.array(parents, dtype=np.int64).reshape(-1, 4))
 
 

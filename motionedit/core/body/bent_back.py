@@ -10,7 +10,7 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
 from motionedit.core.body.in_one_loop import read_off
-from motionedit.core.body.ranges import Beyond, Limb, limbs_of, product
+from motionedit.core.body.ranges import Beyond, Limb, product
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -30,7 +30,7 @@ def bent_back(
 ) -> list[Beyond]:
     """Return the knees and elbows that an edit bends back further than the input does, by more than `BACK`."""
     axes = {bend.joint: bend.axis for bend in bends}
-    asked = [limb for limb in limbs_of(anatomy) if limb[1] in axes and touched[_turning(before.skeleton, limb)].any()]
+    asked = [limb for limb in anatomy.limbs if limb[1] in axes and touched[_turning(before.skeleton, limb)].any()]
     found = []
     for limb in _back_at_all(after, tuple(asked), axes, first):
         joint = limb[1]

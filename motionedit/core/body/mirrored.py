@@ -50,6 +50,6 @@ def _points_back(anatomy: Anatomy, poses: WorldPoses, first: int) -> bool:
 
 def _ahead(poses: WorldPoses, leg: Leg) -> FloatArray:
     """Return where a leg's toe and knee point, shape (F, 3): a straight leg's knee says nothing."""
-    thigh, knee, ankle = (poses.positions[:, joint] for joint in (leg.thigh, leg.knee, leg.ankle))
+    thigh, knee, ankle = (poses.positions[:, joint] for joint in leg.joints)
     toes, ahead = way_to_toes(poses, leg), 2.0 * knee - thigh - ankle
     return ahead if toes is None else ahead + toes

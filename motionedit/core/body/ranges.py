@@ -66,10 +66,8 @@ def regions_of(skeleton: Skeleton, anatomy: Anatomy, *, travel: int) -> tuple[Re
     beside them; knees and elbows neither.
     """
     whole = whole_joints(skeleton, anatomy, travel=travel)
-    carried, bending = below(skeleton, travel), {limb[1] for limb in limbs_of(anatomy)}
-    seen = dict.fromkeys(_trunk(skeleton, anatomy), TRUNK) | dict.fromkeys(
-        (limb[0] for limb in limbs_of(anatomy)), BALL
-    )
+    carried, bending = below(skeleton, travel), {limb[1] for limb in anatomy.limbs}
+    seen = dict.fromkeys(_trunk(skeleton, anatomy), TRUNK) | dict.fromkeys((limb[0] for limb in anatomy.limbs), BALL)
     found = {
         (j, skeleton.parents[j]): seen.get(j, MOST)
         for j in range(len(skeleton))
@@ -109,13 +107,6 @@ def beyond_range(
             if degrees[i] > region.most
         ]
     return found
-
-
-@lru_cache(maxsize=8)
-def limbs_of(anatomy: Anatomy) -> tuple[Limb, ...]:
-    """Return the legs and arms of a body."""
-    legs = [(leg.thigh, leg.knee, leg.ankle) for leg in anatomy.legs or ()]
-    return (*legs, *((arm.shoulder, arm.elbow, arm.wrist) for arm in anatomy.arms or ()))
 
 
 def _largest_changes(before: Motion, after: Motion, first: int, touched: BoolArray) -> FloatArray:

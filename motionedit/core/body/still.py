@@ -56,9 +56,9 @@ def _heaps(skeleton: Skeleton, anatomy: Anatomy, given: GivenBody) -> dict[int, 
     """Return the joints that stand where one of the anatomy's does and carry all that hangs on it, that one first."""
     joints: set[int] = set()
     if given.legs is None:
-        joints |= {joint for leg in anatomy.legs or () for joint in (leg.thigh, leg.knee, leg.ankle)}
+        joints |= {joint for leg in anatomy.legs or () for joint in leg.joints}
     if given.arms is None:
-        joints |= {joint for arm in anatomy.arms or () for joint in (arm.shoulder, arm.elbow, arm.wrist)}
+        joints |= {joint for arm in anatomy.arms or () for joint in arm.joints}
     if given.head is None and anatomy.head is not None:
         joints.add(anatomy.head)
     heaps = {}

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from motionedit.core import rotations as rot
 from motionedit.core.feet.knees import knee_of
 from motionedit.core.feet.legs import LegGoal, legs_onto, turns_freely
+from motionedit.core.feet.reach import stretch
 from motionedit.core.kinematics import forward
 from motionedit.core.smooth import no_more_than
 
@@ -38,8 +38,8 @@ def drawn_up(motion: Motion, legs: Sequence[Leg], bends: Sequence[Bend], *, by: 
     for leg, wanted in zip(legs, by.T, strict=True):
         if leg.knee not in knees or not turns_freely(motion.skeleton, leg):
             continue
-        hip, knee, ankle = (poses.positions[:, joint] for joint in (leg.thigh, leg.knee, leg.ankle))
-        length = rot.length(knee - hip) + rot.length(ankle - knee)
+        hip, ankle = poses.positions[:, leg.thigh], poses.positions[:, leg.ankle]
+        _, length = stretch(poses, leg)
         (rise,) = no_more_than((hip - ankle) @ up - _NEAREST * length, wanted)
         bend = knee_of(motion.skeleton, poses, leg, knees[leg.knee])
         goals.append(LegGoal(leg, bend, ankle + rise[:, None] * up, poses.rotations[:, leg.ankle]))

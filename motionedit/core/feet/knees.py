@@ -79,7 +79,7 @@ def knee_of(skeleton: Skeleton, poses: WorldPoses, leg: Leg, bend: Bend) -> Knee
 
     u . R v = (u . a)(v . a) + C cos x + S sin x, with u, v the bones, a the axis; it is longest at x = atan2(S, C).
     """
-    hip, knee, ankle = (poses.positions[:, j] for j in (leg.thigh, leg.knee, leg.ankle))
+    hip, knee, ankle = (poses.positions[:, j] for j in leg.joints)
     upper, lower = knee - hip, ankle - knee
     axis = rot.rotate(poses.rotations[:, skeleton.parents[leg.knee]], np.broadcast_to(bend.axis, upper.shape))
     along = rot.dot(upper, axis) * rot.dot(lower, axis)

@@ -39,7 +39,7 @@ def turns_freely(skeleton: Skeleton, leg: Leg, *, left_alone: Collection[int] = 
 
     They cannot without three rotation channels, or where they are among the joints that are `left_alone`.
     """
-    return all(skeleton.turns_freely(joint) and joint not in left_alone for joint in (leg.thigh, leg.knee, leg.ankle))
+    return all(skeleton.turns_freely(joint) and joint not in left_alone for joint in leg.joints)
 
 
 def legs_onto(
@@ -66,7 +66,7 @@ def legs_onto(
     parents = motion.skeleton.parents
     for goal in goals:
         leg, turns = goal.leg, goal.turns
-        hip, middle, ankle = (poses.positions[:, j] for j in (leg.thigh, leg.knee, leg.ankle))
+        hip, middle, ankle = (poses.positions[:, j] for j in leg.joints)
         wanted = goal.places - hip - (0.0 if shift is None else shift)
         upper, lower = middle - hip, ankle - middle
         knee = goal.knee
@@ -75,7 +75,7 @@ def legs_onto(
             knee.axis, (angle if goal.back is None else np.where(goal.back, -angle, angle)) - knee.angle
         )
         swing = _smallest_turn(upper + rot.rotate(flexion, lower), wanted)
-        above = {j: poses.rotations[:, parents[j]] for j in (leg.thigh, leg.knee, leg.ankle)}
+        above = {j: poses.rotations[:, parents[j]] for j in leg.joints}
         world = rot.multiply(swing, poses.rotations[:, leg.thigh])
         rotations[:, leg.thigh] = rot.between(above[leg.thigh], world)
         bent = rot.multiply(flexion, poses.rotations[:, leg.knee])

@@ -92,7 +92,7 @@ def _legs_of(anatomy: Anatomy) -> tuple[NDArray[np.int64], FloatArray]:
     joints, toes = [], []
     for foot in feet_of(anatomy):
         joint, offset = (-1, (0.0, 0.0, 0.0)) if foot.toe is None else (foot.toe.joint, foot.toe.offset)
-        joints.append((foot.leg.thigh, foot.leg.knee, foot.leg.ankle, joint))
+        joints.append((*foot.leg.joints, joint))
         toes.append(offset)
     return frozen(np.array(joints, np.int64).reshape(-1, 4)), frozen(np.array(toes, np.float64).reshape(-1, 3))
 

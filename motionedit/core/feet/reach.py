@@ -12,6 +12,7 @@ from motionedit.dataclass import replace
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray
+    from motionedit.core.body.anatomy import Leg
     from motionedit.core.feet.knees import Knee
     from motionedit.core.feet.stance import Foot, Stance
     from motionedit.core.kinematics import WorldPoses
@@ -33,15 +34,15 @@ _ABOUT_THEN = 0.05  # s before and after
 _MOST = float(np.radians(60.0))  # rad: a knee that is bent so far is calm
 
 
-def stretch(poses: WorldPoses, foot: Foot) -> tuple[FloatArray, FloatArray]:
-    """Return the way from hip to ankle, and the leg's length, shape (F,) each."""
-    hip, knee, ankle = (poses.positions[:, j] for j in (foot.leg.thigh, foot.leg.knee, foot.leg.ankle))
+def stretch(poses: WorldPoses, leg: Leg) -> tuple[FloatArray, FloatArray]:
+    """Return how far it is from hip to ankle, and how long the leg is, shape (F,) each."""
+    hip, knee, ankle = (poses.positions[:, j] for j in leg.joints)
     return rot.length(ankle - hip), rot.length(knee - hip) + rot.length(ankle - knee)
 
 
 def reach_of(poses: WorldPoses, foot: Foot) -> FloatArray:
     """Return how far from its hip an ankle may be, shape (F,): a share of the leg, or as far as it is already."""
-    way, length = stretch(poses, foot)
+    way, length = stretch(poses, foot.leg)
     return np.maximum(REACH * length, way)
 
 
@@ -51,7 +52,7 @@ def reach_bent(poses: WorldPoses, foot: Foot, knee: Knee, places: FloatArray) ->
     But no farther than leaves a knee 5 degrees: closer to straight it would shake, or bend back. That brings it nearer
     to the hip by no more than the ankle is off its place: one that is there may be as straight as it is.
     """
-    way, _ = stretch(poses, foot)
+    way, _ = stretch(poses, foot.leg)
     off = rot.length(places - poses.positions[:, foot.leg.ankle])
     bent = knee.way(np.full(len(way), _LEAST))
     reach: FloatArray = np.minimum(reach_of(poses, foot), np.maximum(bent, way - off))
@@ -73,7 +74,7 @@ def reach_calm(
     calms : float
         Of a leg: so much nearer to the hip than it would be, at most.
     """
-    way, length = stretch(poses, foot)
+    way, length = stretch(poses, foot.leg)
     far = rot.length(stance.heel_place - poses.positions[:, foot.leg.thigh])
     off = rot.length(stance.heel_place - poses.positions[:, foot.leg.ankle])
     stands = stance.heel[1:] & stance.heel[:-1] & (stance.whole[1:] == stance.whole[:-1])

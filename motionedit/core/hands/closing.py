@@ -11,6 +11,7 @@ from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
 from motionedit.core.feet.knees import knee_of
 from motionedit.core.feet.legs import LegGoal, legs_onto, turns_freely
+from motionedit.core.feet.reach import stretch
 from motionedit.core.kinematics import forward
 from motionedit.core.motion import Motion
 from motionedit.core.smooth import smooth_step
@@ -137,9 +138,8 @@ def close_grips(
 
 def _slack(poses: WorldPoses, arm: Leg) -> FloatArray:
     """Return how far an arm is from straight, a share of its length, shape (F,); never 0."""
-    shoulder, elbow, wrist = (poses.positions[:, j] for j in (arm.thigh, arm.knee, arm.ankle))
-    length = rot.length(elbow - shoulder) + rot.length(wrist - elbow)
-    slack: FloatArray = np.maximum(1.0 - rot.length(wrist - shoulder) / np.maximum(length, _TINY), _LEAST_SLACK)
+    way, length = stretch(poses, arm)
+    slack: FloatArray = np.maximum(1.0 - way / np.maximum(length, _TINY), _LEAST_SLACK)
     return slack
 
 

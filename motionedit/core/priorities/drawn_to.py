@@ -67,7 +67,7 @@ def _with_legs(asked: Asked) -> Iterator[tuple[IntArray, Turned]]:
         return
     by = _down(asked, gaze, feet)[:, None] + _up(asked, gaze, feet)
     there = np.flatnonzero(by.any(axis=1))
-    joints = [joint for leg in body.legs for joint in (leg.thigh, leg.knee, leg.ankle)]
+    joints = [joint for leg in body.legs for joint in leg.joints]
     for block in frame_blocks(len(there)):
         frames = there[block]
         drawn = drawn_up(motion.at(frames), body.legs, body.bends, by=by[frames], up=gaze.up)

@@ -1,9 +1,8 @@
 """How far a heel may be from its hip: as far as its leg reaches, and its knee bends without a kick."""
 
-from types import SimpleNamespace
-
 import numpy as np
 
+from motionedit.core.body.anatomy import Leg
 from motionedit.core.feet.knees import Knee
 from motionedit.core.feet.reach import handed_on, reach_bent, reach_calm
 from motionedit.core.feet.stance import Foot, Stance
@@ -20,7 +19,7 @@ def standing(place):
     hip = WAY[:, None] * UP
     knee = 0.5 * hip + np.sqrt(1.0 - 0.25 * WAY**2)[:, None] * np.array([0.0, 0.0, 1.0])
     poses = WorldPoses(np.stack((hip, knee, np.zeros((40, 3))), axis=1), np.zeros((40, 3, 4)))
-    foot = Foot("left", SimpleNamespace(thigh=0, knee=1, ankle=2), None)
+    foot = Foot("left", Leg(0, 1, 2, None), None)
     bends = Knee(np.tile([1.0, 0.0, 0.0], (40, 1)), ANGLE, np.full(40, 2.0), np.full(40, 2.0))
     heel = np.arange(40) >= LANDS
     places = np.tile(place, (40, 1))
@@ -66,7 +65,7 @@ def test_a_knee_that_would_snap_straight_and_open_again_is_bent_more():
     poses = WorldPoses(np.stack((hip, knee, np.zeros((40, 3))), axis=1), np.zeros((40, 3, 4)))
     bends = Knee(np.tile([1.0, 0.0, 0.0], (40, 1)), 2.0 * np.arccos(0.5 * way), np.full(40, 2.0), np.full(40, 2.0))
     heel = np.ones(40, dtype=np.bool_)
-    places, foot = np.tile(place, (40, 1)), Foot("left", SimpleNamespace(thigh=0, knee=1, ankle=2), None)
+    places, foot = np.tile(place, (40, 1)), Foot("left", Leg(0, 1, 2, None), None)
     stance = Stance(heel, ~heel, places, places, np.zeros((40, 4)), np.zeros(40, dtype=np.intp))
     far = np.linalg.norm(hip - place, axis=1)
     turns = []
