@@ -114,7 +114,7 @@ def _given_pair(tree: Tree, limbs: tuple[tuple[int, ...], ...], *, top: int) -> 
         return None
     ways = [tree.skeleton.chain(limb[-1]).tolist() for limb in limbs]
     base = max(set(ways[0]) & set(ways[1]))
-    left, right = (tuple(way[way.index(base) + 1 :]) for way in ways)
+    left, right = (tuple(tree.skeleton.between(base, limb[-1])) for limb in limbs)
     triples = tuple(Triple(*limb[top:][:3]) for limb in limbs)
     lengths = [_way(tree, triple.top, triple.end) for triple in triples]
     return LimbPair(base, (left, right), (triples[0], triples[1]), 0.5 * sum(lengths))
@@ -176,8 +176,7 @@ def _toe(tree: Tree, chain: tuple[int, ...], ankle: int) -> int | None:
 
 
 def _way(tree: Tree, top: int, joint: int) -> float:
-    way = tree.skeleton.chain(joint).tolist()
-    return float(tree.lengths[way[way.index(top) + 1 :]].sum())
+    return float(tree.lengths[tree.skeleton.between(top, joint)].sum())
 
 
 def _legs(tree: Tree, pair: LimbPair, given: tuple[tuple[int, ...], ...] | None) -> tuple[Leg, Leg]:

@@ -161,8 +161,8 @@ def _slice(part: Part, low: float, high: float) -> tuple[float, float]:
 
 def _limb(skeleton: Skeleton, top: int, end: int) -> list[Carrier]:
     """Return the path from one joint of a limb down to another."""
-    way = skeleton.chain(end).tolist()
-    return [Carrier(joint, np.zeros(3), skeleton.offsets[below]) for joint, below in pairwise(way[way.index(top) :])]
+    way = pairwise((top, *skeleton.between(top, end)))
+    return [Carrier(joint, np.zeros(3), skeleton.offsets[below]) for joint, below in way]
 
 
 def _trunk(skeleton: Skeleton, anatomy: Anatomy) -> list[Carrier] | None:
@@ -194,10 +194,9 @@ def _neck_base(skeleton: Skeleton, anatomy: Anatomy, chest: int) -> tuple[int, F
     """
     shoulders = [_place_below(skeleton, chest, arm.shoulder) for arm in anatomy.arms or ()]
     beside: FloatArray = np.mean(shoulders, axis=0)
-    way = [] if anatomy.head is None else skeleton.chain(anatomy.head).tolist()
-    if anatomy.head is None or chest not in way:
+    if anatomy.head is None or chest not in skeleton.chain(anatomy.head):
         return chest, beside
-    between = way[way.index(chest) + 1 : -1]
+    between = skeleton.between(chest, anatomy.head)[:-1]
     if between:
         lengths = [_length(_limb(skeleton, joint, anatomy.head)) for joint in between]
         errors = np.abs(np.array(lengths) - _NECK_LENGTH * anatomy.leg_length)
@@ -243,8 +242,7 @@ def _bones(skeleton: Skeleton, joint: int) -> list[FloatArray]:
 
 def _place_below(skeleton: Skeleton, joint: int, descendant: int) -> FloatArray:
     """Return a descendant's place in a joint's frame with all between them at rest."""
-    way = skeleton.chain(descendant).tolist()
-    place: FloatArray = skeleton.offsets[way[way.index(joint) + 1 :]].sum(axis=0)
+    place: FloatArray = skeleton.offsets[skeleton.between(joint, descendant)].sum(axis=0)
     return place
 
 
