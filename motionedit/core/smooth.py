@@ -18,6 +18,11 @@ def smooth_step(t: FloatArray) -> FloatArray:
     return share
 
 
+def smooth_share(values: FloatArray | float, start: float, stop: float) -> FloatArray:
+    """Return a share that goes smoothly from 0 to 1 as values go from `start` to `stop`, and stays there beyond."""
+    return smooth_step(np.clip((values - start) / (stop - start), 0.0, 1.0))
+
+
 def no_more_than(most: FloatArray | float, *values: FloatArray) -> list[FloatArray]:
     """Return values that come to no more than so much together, smoothly: x m / (|x|^4 + m^4)^(1/4)."""
     square = np.square(np.maximum(most, _LEAST))

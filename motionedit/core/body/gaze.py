@@ -15,7 +15,7 @@ from motionedit.core import rotations as rot
 from motionedit.core.blocks import frame_blocks
 from motionedit.core.body.bones import below
 from motionedit.core.body.ground import reference_axes
-from motionedit.core.smooth import no_more_than, smooth_step
+from motionedit.core.smooth import no_more_than, smooth_share
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -119,7 +119,7 @@ def _apart(looks: FloatArray, goals: FloatArray, up: FloatArray) -> tuple[FloatA
     """
     aside, height, flat = zip(*(_angles(directions, up) for directions in (looks, goals)), strict=True)
     way: FloatArray = np.remainder(aside[1] - aside[0] + np.pi, 2.0 * np.pi) - np.pi
-    share = _eased(np.minimum(*flat), _STEEP, _LEVEL) * _eased(np.abs(way), _BEHIND, _ASIDE)
+    share = smooth_share(np.minimum(*flat), _STEEP, _LEVEL) * smooth_share(np.abs(way), _BEHIND, _ASIDE)
     return share * way, share * (height[1] - height[0])
 
 
@@ -134,8 +134,3 @@ def _shares(weights: FloatArray, part: BoolArray) -> FloatArray:
     """Return how joints of a part share its turn, shape (k,): all of it, or none where nothing of it may turn."""
     own = weights * part
     return own / max(float(own.sum()), _SHORTEST)
-
-
-def _eased(value: FloatArray, start: float, stop: float) -> FloatArray:
-    """Return a share that goes smoothly from 0 to 1 between two values."""
-    return smooth_step(np.clip((value - start) / (stop - start), 0.0, 1.0))

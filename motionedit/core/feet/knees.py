@@ -9,7 +9,7 @@ import numpy as np
 from motionedit.core import rotations as rot
 from motionedit.core.feet.correction import eased
 from motionedit.core.feet.pelvis import smooth_cover
-from motionedit.core.smooth import smooth_step
+from motionedit.core.smooth import smooth_share
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -140,5 +140,4 @@ def _folded(u: FloatArray, slack: FloatArray) -> FloatArray:
 
 def straightness(angle: FloatArray) -> FloatArray:
     """Return how nearly straight a knee is, shape (F,): 1 below 15 degrees, 0 above 40, smoothly."""
-    share = (np.abs(angle) - _STRAIGHT_TO_BENT[0]) / (_STRAIGHT_TO_BENT[1] - _STRAIGHT_TO_BENT[0])
-    return 1.0 - smooth_step(np.clip(share, 0.0, 1.0))
+    return 1.0 - smooth_share(np.abs(angle), *_STRAIGHT_TO_BENT)

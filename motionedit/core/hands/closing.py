@@ -14,7 +14,7 @@ from motionedit.core.feet.legs import LegGoal, legs_onto, turns_freely
 from motionedit.core.feet.reach import stretch
 from motionedit.core.kinematics import forward
 from motionedit.core.motion import Motion
-from motionedit.core.smooth import smooth_step
+from motionedit.core.smooth import smooth_share
 from motionedit.core.units import STANDARD_LEG
 from motionedit.dataclass import dataclass
 
@@ -161,14 +161,10 @@ def _brought(grips: Sequence[tuple[int, int]], gap: FloatArray, frame_time: floa
     frames = np.arange(len(gap))
     brought = np.zeros(len(gap))
     for start, stop in grips:
-        most = _eased_in((_LEFT - gap[start : stop + 1].max()) / (_LEFT - _BROUGHT))
+        most = smooth_share(gap[start : stop + 1].max(), _LEFT, _BROUGHT)
         outside = np.maximum(np.maximum(start - frames, frames - stop), 0)
-        brought = np.maximum(brought, most * _eased_in(1.0 - outside * (frame_time / _EASE)))
+        brought = np.maximum(brought, most * smooth_share(outside * (frame_time / _EASE), 1.0, 0.0))
     return brought
-
-
-def _eased_in(share: FloatArray | float) -> FloatArray:
-    return smooth_step(np.clip(share, 0.0, 1.0))
 
 
 def _within_reach(knee: Knee, shoulder: FloatArray, own: FloatArray, place: FloatArray) -> FloatArray:
