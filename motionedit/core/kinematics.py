@@ -14,7 +14,7 @@ from motionedit.core.motion import Motion
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from motionedit.core.arrays import FloatArray
+    from motionedit.core.arrays import BoolArray, FloatArray, IntArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +37,7 @@ class WorldPoses:
     positions: FloatArray
     rotations: FloatArray
 
-    def at(self, frames: slice) -> WorldPoses:
+    def at(self, frames: slice | IntArray | BoolArray) -> WorldPoses:
         """Return the transforms at some frames."""
         return WorldPoses(self.positions[frames], self.rotations[frames])
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
+from motionedit.core.blocks import frame_blocks
 from motionedit.core.body.in_one_loop import carried, read_off
 from motionedit.core.body.segments import Laid, lay_by_length, lay_given, lay_human
 from motionedit.core.kinematics import WorldPoses, forward
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
     from motionedit.core.body.anatomy import Anatomy
     from motionedit.core.skeleton import Skeleton
 
-_BLOCK_FRAMES = 1 << 10
 _FRAMES = 256  # at most are looked at for a clip's mean pose
 _NOT_HUMAN = (
     "the skeleton is not a human's: for the center of mass each bone weighs as much as it is long; "
@@ -156,10 +156,8 @@ def center_of_mass(poses: WorldPoses, masses: Masses) -> FloatArray:
         return center
     center = np.empty((len(poses.positions), 3))
     # Block by block: what is carried takes more memory on its way than the world transforms of a long motion.
-    for start in range(0, len(center), _BLOCK_FRAMES):
-        block = slice(start, start + _BLOCK_FRAMES)
-        part = WorldPoses(poses.positions[block], poses.rotations[block])
-        center[block] = shares @ carried(part, carriers, points)
+    for block in frame_blocks(len(center)):
+        center[block] = shares @ carried(poses.at(block), carriers, points)
     return center
 
 

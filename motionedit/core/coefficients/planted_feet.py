@@ -94,7 +94,7 @@ def _point_rows(
     joints = projection.joints[known]
     v = projection.rows[frames, 3:].reshape(len(frames), -1, 3)[:, known]
     _, jacobians = exp_and_left_jacobian(v.reshape(-1, 3))
-    here = WorldPoses(poses.positions[frames], poses.rotations[frames])
+    here = poses.at(frames)
     increments = rot.to_matrix(here.rotations[:, joints]) @ jacobians.reshape(*v.shape, 3).swapaxes(-1, -2)
     levers = rot.skew(here.positions[:, joints] - effector_positions(here, point)[:, None])
     turns = np.swapaxes(space.scale * (levers @ increments), 1, 2).reshape(len(frames), 3, -1)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motionedit.core.arrays import frozen
+from motionedit.core.arrays import frozen, runs
 from motionedit.core.blocks import BLOCK_FRAMES
 
 if TYPE_CHECKING:
@@ -69,14 +69,13 @@ def _stretches(given: bytes, reach: int, order: int) -> tuple[tuple[slice, BoolA
         distance = np.minimum(distance, np.abs(frames - nearest))
     fixed |= distance > reach
     # The first frames of a third difference all of which are fixed part the problem.
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], (~fixed).astype(np.int8), [0]))))
     found: list[tuple[int, int, int]] = []
-    for first, stop in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
-        begin, end = max(first - order, 0), min(stop + order, len(known))
-        if found and first - found[-1][2] < order:
-            found[-1] = (found[-1][0], end, stop)
+    for first, last in runs(~fixed):
+        begin, end = max(first - order, 0), min(last + 1 + order, len(known))
+        if found and first - found[-1][2] <= order:
+            found[-1] = (found[-1][0], end, last)
         else:
-            found.append((begin, end, stop))
+            found.append((begin, end, last))
     return tuple((slice(begin, end), known[begin:end]) for begin, end, _ in found)
 
 

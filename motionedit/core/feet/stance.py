@@ -9,6 +9,7 @@ import numpy as np
 
 from motionedit.core import rotations as rot
 from motionedit.core.compiled import compiled
+from motionedit.core.kinematics import effector_positions
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -57,10 +58,7 @@ def foot_path(poses: WorldPoses, foot: Foot) -> FootPath:
     ankle, turn = poses.positions[:, foot.leg.ankle], poses.rotations[:, foot.leg.ankle]
     if foot.toe is None:
         return FootPath(ankle, turn, np.zeros_like(ankle))
-    effector = foot.toe.effector
-    toe = poses.positions[:, effector.joint]
-    if effector.offset.any():
-        toe = toe + rot.rotate(poses.rotations[:, effector.joint], effector.offset)
+    toe = effector_positions(poses, foot.toe.effector)
     return FootPath(ankle, turn, rot.unrotate(turn, toe - ankle))
 
 
@@ -74,8 +72,6 @@ class Stance:
         Whether that part is down.
     heel_place, toe_place : shape (F, 3)
         Where it stands then.
-    flat : shape (F,)
-        Whether the whole foot is: both parts.
     turn : shape (F, 4)
         How the foot is turned then.
     whole : shape (F,)

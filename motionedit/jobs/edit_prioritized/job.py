@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from motionedit.core.blocks import BLOCK_FRAMES, blocks_of, forward_blocks, frame_blocks
+from motionedit.core.blocks import BLOCK_FRAMES, blocks_of, frame_blocks
 from motionedit.core.body.steps import change_steps
 from motionedit.core.bvh import edited_pieces, unedited_bytes
+from motionedit.core.kinematics import forward
 from motionedit.core.motion import Motion, scaled
 from motionedit.core.priorities.edit import PrioritizedEdit, edit_by_priorities
 from motionedit.core.priorities.settings import LayeredSettings, PaperFilter, Passes
@@ -228,7 +229,7 @@ class EditByPriorities:
         after = before
         if changed:
             parts = (_in_clip_units(edit, sized, block) for block in frame_blocks(len(clip.motion)))
-            after = feet_of(facts, forward_blocks(parts), masses=sized.masses)
+            after = feet_of(facts, map(forward, parts), masses=sized.masses)
         steps = change_steps(sized.input, edit.motion, first=facts.first)
         rough = rough_lines(
             facts,

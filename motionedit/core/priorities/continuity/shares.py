@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core.arrays import runs
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -20,10 +22,9 @@ def shares_of(wanted: BoolArray, ramp: int, changes: Sequence[int] = ()) -> Floa
     """
     share = np.zeros(len(wanted))
     f = np.arange(len(wanted))
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], wanted.astype(np.int8), [0]))))
-    for start, stop in edges.reshape(-1, 2).tolist():
-        rise = max([start - ramp, *(c for c in changes if start - ramp < c <= start)])
-        fall = min([stop - 1 + ramp, *(c for c in changes if stop <= c < stop - 1 + ramp)])
+    for first, last in runs(wanted):
+        rise = max([first - ramp, *(c for c in changes if first - ramp < c <= first)])
+        fall = min([last + ramp, *(c for c in changes if last < c < last + ramp)])
         t = np.clip(np.minimum(f - rise, fall - f) / ramp, 0.0, 1.0)
         share = np.maximum(share, t * t * t * (10.0 - 15.0 * t + 6.0 * t * t))
     return share

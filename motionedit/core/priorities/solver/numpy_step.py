@@ -66,9 +66,7 @@ class Pose:
 
     def at(self, these: BoolArray) -> Pose:
         """Return some of the frames."""
-        motion, world = self.motion, self.world
-        part = motion.at(these)
-        return Pose(self.frames[these], part, WorldPoses(world.positions[these], world.rotations[these]))
+        return Pose(self.frames[these], self.motion.at(these), self.world.at(these))
 
 
 def step_of(block: Block, pose: Pose, hinges: Hinges, iteration: int) -> tuple[FloatArray, Descent]:

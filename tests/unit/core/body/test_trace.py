@@ -6,8 +6,7 @@ from human import skeleton_of, standing, with_rotation
 
 from motionedit.core import blocks
 from motionedit.core import rotations as rot
-from motionedit.core.blocks import blocks_of, forward_blocks, frame_blocks
-from motionedit.core.body import center_of_mass as center_of_mass_module
+from motionedit.core.blocks import blocks_of, frame_blocks
 from motionedit.core.body.center_of_mass import center_of_mass, find_masses
 from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.body.quality import jerk_rms
@@ -37,7 +36,7 @@ def test_a_trace_by_blocks_is_that_of_the_whole_motion(moving, monkeypatch, size
     poses = forward(moving)
     masses = find_masses(moving.skeleton, find_anatomy(moving.skeleton))
     parts = (moving.at(block) for block in frame_blocks(len(moving)))
-    for each in (blocks_of(poses), forward_blocks(parts)):
+    for each in (blocks_of(poses), map(forward, parts)):
         found = trace_of(each, tracks_of, frame_time=moving.frame_time, first=first, masses=masses)
         np.testing.assert_allclose(found.tracks, tracks_of(poses), atol=1e-12)
         np.testing.assert_allclose(found.center, center_of_mass(poses, masses), atol=1e-12)
@@ -52,7 +51,7 @@ def test_without_masses_there_is_no_path_of_their_center(moving):
 def test_the_center_of_mass_does_not_depend_on_the_frames_that_are_taken_together(moving, monkeypatch):
     poses, masses = forward(moving), find_masses(moving.skeleton, find_anatomy(moving.skeleton))
     whole = center_of_mass(poses, masses)
-    monkeypatch.setattr(center_of_mass_module, "_BLOCK_FRAMES", 4)
+    monkeypatch.setattr(blocks, "BLOCK_FRAMES", 4)
     np.testing.assert_allclose(center_of_mass(poses, masses), whole, atol=1e-12)
     weighed = masses.shares @ (poses.positions + rot.rotate(poses.rotations, masses.points))
     np.testing.assert_allclose(whole, weighed, atol=1e-12)
