@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.motion import Motion
 
-TURN = 2.0 * np.pi
 # As `np.degrees` has it.
 DEGREES = 180.0 / np.pi
 MOST_WOUND = 1e8  # degrees: six of the digits after the point are left
@@ -129,7 +128,7 @@ def _angles_of_sums(sums: FloatArray, axes: tuple[int, ...]) -> FloatArray:
     plus, minus, middle = sums[::2]
     np.add(plus, minus, out=sums[1])
     np.subtract(plus, minus, out=sums[5])
-    sums[5] *= sign_of(axes)
+    sums[5] *= rot.sign_of(axes)
     np.multiply(middle, 2.0, out=sums[3])
     sums[3] -= np.pi / 2.0
     return sums[1::2]
@@ -139,11 +138,6 @@ def arc_tangents(sums: FloatArray) -> None:
     """Put the arc tangents of three pairs, shape (6, ...), in place of the first of each."""
     for k in (0, 2, 4):
         np.arctan2(sums[k], sums[k + 1], out=sums[k])
-
-
-def sign_of(axes: tuple[int, ...]) -> float:
-    """Return the sign in e_i e_j = sign e_k, of the first two axes and the third."""
-    return 1.0 if (axes[1] - axes[0]) % 3 == 1 else -1.0
 
 
 def _blocks(frames: int, joints: int) -> Iterator[slice]:
@@ -198,7 +192,7 @@ def solve_angles(q: FloatArray, axes: tuple[int, ...]) -> FloatArray:
         angle: FloatArray = 2.0 * np.arctan2(q[1 + axes[0]], q[0])[None]
         return angle
     i, j = axes[:2]
-    sign = sign_of(axes)
+    sign = rot.sign_of(axes)
     w, x, y, z = q[0], q[1 + i], q[1 + j], sign * q[1 + (3 - i - j)]
     if len(axes) == 2:
         plus, minus = np.arctan2(x + y, w - z), np.arctan2(x - y, w + z)
@@ -276,7 +270,7 @@ def _distances(before: FloatArray, after: FloatArray, seed: FloatArray) -> Float
     d = np.empty_like(after)
     np.subtract(after[:, 1:], before[:, :-1], out=d[:, 1:])
     np.subtract(after[:, 0], seed, out=d[:, 0])
-    d -= TURN * np.rint(d * (1.0 / TURN))
+    d -= rot.TURN * np.rint(d * (1.0 / rot.TURN))
     distance: FloatArray = np.abs(d, out=d).sum(axis=0)
     return distance
 
@@ -295,9 +289,9 @@ def _unwrap(angles: FloatArray, seed: FloatArray) -> FloatArray:
     turns = np.empty_like(angles)
     np.subtract(angles[:, 1:], angles[:, :-1], out=turns[:, 1:])
     np.subtract(angles[:, 0], seed, out=turns[:, 0])
-    turns *= 1.0 / TURN
+    turns *= 1.0 / rot.TURN
     np.rint(turns, out=turns)
     if not turns.any():
         return angles
-    unwrapped: FloatArray = angles - TURN * np.cumsum(turns, axis=1)
+    unwrapped: FloatArray = angles - rot.TURN * np.cumsum(turns, axis=1)
     return unwrapped

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core import rotations as rot
 from motionedit.core.euler import (
     DEGREES,
-    TURN,
     angles_near,
     gimbal_locked,
     joints_together,
@@ -269,7 +269,7 @@ def _meet_end(
     run, at the run's last and at the frame after.
     """
     before, last, following = ends
-    carried = angles + TURN * np.cumsum(np.rint(steps / TURN), axis=0)
+    carried = angles + rot.TURN * np.cumsum(np.rint(steps / rot.TURN), axis=0)
     if not _turns(last - carried[-1]).any():
         return carried
     backward = near(track.q[::-1], track.axes, track.solved[:, ::-1], following)[::-1]

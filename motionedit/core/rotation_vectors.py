@@ -14,8 +14,6 @@ from motionedit.core import rotations as rot
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
 
-TURN = 2.0 * np.pi
-
 # Below this length (rad) a rotation vector has no direction to add a turn along.
 _NO_DIRECTION = 1e-9
 
@@ -45,8 +43,8 @@ def _nearest(v: FloatArray, target: FloatArray) -> FloatArray:
     if length < _NO_DIRECTION:
         return v
     # |v (1 + 2 pi k/|v|) - target| is least at the k nearest this projection.
-    k = np.round((float(v @ target) / length - length) / TURN)
-    near: FloatArray = v * (1.0 + TURN * k / length)
+    k = np.round((float(v @ target) / length - length) / rot.TURN)
+    near: FloatArray = v * (1.0 + rot.TURN * k / length)
     return near
 
 
@@ -88,5 +86,5 @@ def least_turned(v: FloatArray, weights: FloatArray) -> FloatArray:
 
 def _turned(v: FloatArray, length: FloatArray, k: float) -> FloatArray:
     safe = np.where(length < _NO_DIRECTION, 1.0, length)
-    turned: FloatArray = v * (1.0 + TURN * k / safe)[..., None]
+    turned: FloatArray = v * (1.0 + rot.TURN * k / safe)[..., None]
     return turned

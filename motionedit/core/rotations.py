@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from motionedit.core.arrays import FloatArray
 
+TURN = 2.0 * np.pi
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
 IDENTITY.setflags(write=False)
 _CONJUGATE = np.array([1.0, -1.0, -1.0, -1.0])
@@ -279,7 +280,7 @@ def from_half_angles(half: FloatArray, axes: Sequence[int], *, out: FloatArray |
     quaternions are written to `out`, shape (..., 4), if it is given.
     """
     i, j, k = axes
-    sign = 1.0 if (j - i) % 3 == 1 else -1.0  # e_i e_j = sign e_k
+    sign = sign_of(axes)
     np.tan(half, out=half)
     q, kernel = np.empty((*half.shape[:-1], 4)) if out is None else out, compiled()
     if kernel is not None and q.flags.c_contiguous:
@@ -294,6 +295,11 @@ def from_half_angles(half: FloatArray, axes: Sequence[int], *, out: FloatArray |
     scale *= sign
     q[..., 1 + k] = (c + ab) * scale
     return q
+
+
+def sign_of(axes: Sequence[int]) -> float:
+    """Return the sign in e_i e_j = sign e_k, of the first two axes and the third."""
+    return 1.0 if (axes[1] - axes[0]) % 3 == 1 else -1.0
 
 
 def euler_axes(order: str) -> tuple[int, ...]:

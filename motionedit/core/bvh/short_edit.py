@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from motionedit.core import rotations as rot
 from motionedit.core.bvh.write import LONGEST_WHOLE, decimals_of_edits
 from motionedit.core.compiled import compiled
-from motionedit.core.euler import MOST_MIDDLE, MOST_WOUND, arc_tangents, sign_of
+from motionedit.core.euler import MOST_MIDDLE, MOST_WOUND, arc_tangents
 from motionedit.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -88,6 +89,6 @@ def _put_angles(motion: Motion, touched: BoolArray, given: FloatArray, *, values
         arc_tangents(sums)
         arrays = sums, joints, columns, touched, given, values, cells
         sizes = len(joints), touched.shape[1], *given.shape
-        if not kernel.touched_rows(*arrays, *sizes, sign_of(group.axes), MOST_MIDDLE, MOST_WOUND):
+        if not kernel.touched_rows(*arrays, *sizes, rot.sign_of(group.axes), MOST_MIDDLE, MOST_WOUND):
             return False
     return True

@@ -11,7 +11,7 @@ from motionedit.core.pca.coordinates import rotation_tracks, space_joints
 from motionedit.core.pca.database import FitSettings
 from motionedit.core.pca.fit import components_for
 from motionedit.core.pca.model_file import FORMAT, model_bytes, read_model
-from motionedit.core.rotation_vectors import TURN, relabelled, unwrapped
+from motionedit.core.rotation_vectors import relabelled, unwrapped
 from motionedit.errors import ModelError
 
 
@@ -73,7 +73,7 @@ def test_unwrapping_leaves_a_steady_track_alone_and_copies_it():
 
 def test_a_track_that_winds_the_other_way_is_moved_as_a_whole():
     target = np.zeros((40, 2, 3)) + np.array([0.0, 3.0, 0.1])
-    other = target * (1.0 - TURN / np.linalg.norm(target, axis=-1, keepdims=True))
+    other = target * (1.0 - rot.TURN / np.linalg.norm(target, axis=-1, keepdims=True))
     moved, k = relabelled(other, target)
     np.testing.assert_allclose(moved, target, atol=1e-9)
     assert list(k) == [1.0, 1.0] or list(k) == [-1.0, -1.0]
@@ -85,7 +85,7 @@ def test_the_turns_of_a_track_are_the_ones_that_come_nearest_of_all_three(scale)
     v, target = rng.normal(scale=scale, size=(2, 30, 40, 3))
     moved, k = relabelled(v, target)
     length = np.linalg.norm(v, axis=-1, keepdims=True)
-    choices = np.stack([v * (1.0 + TURN * turns / length) for turns in (0.0, -1.0, 1.0)])
+    choices = np.stack([v * (1.0 + rot.TURN * turns / length) for turns in (0.0, -1.0, 1.0)])
     best = np.argmin(((choices - target) ** 2).sum(axis=(1, 3)), axis=0)
     np.testing.assert_array_equal(k, np.array([0.0, -1.0, 1.0])[best])
     np.testing.assert_allclose(moved, np.take_along_axis(choices, best[None, None, :, None], axis=0)[0], atol=1e-12)

@@ -15,7 +15,7 @@ from motionedit.core.pca.fit import AllTheSameError, ComponentCount, TooFewCompo
 from motionedit.core.pca.streaming import DEFAULT_COMPONENTS, MOST_COMPONENTS, RESIDUAL_TOLERANCE, stream_components
 from motionedit.core.pca.tracks import make_consistent, other_windings, products_of
 from motionedit.core.pca.vectors import CentredVectors, VectorsInFile, VectorsInMemory, motion_vectors
-from motionedit.core.rotation_vectors import TURN
+from motionedit.core.rotations import TURN
 
 
 @pytest.fixture(autouse=True)
