@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from motionedit.core.motion import Motion
 from motionedit.core.skeleton import EndSite, Skeleton
 from motionedit.errors import MotionEditErrors, SpecError
 from motionedit.jobs.clip import resolve
@@ -166,13 +167,18 @@ def angle(found, expected):
     return (Rotation.from_quat([x, y, z, w]).inv() * expected).magnitude()
 
 
+def motion_of(frames):
+    """Return a motion of so many frames, 25 a second."""
+    return Motion(SKELETON, np.zeros((frames, 5, 4)), np.zeros((frames, 1, 3)), 0.04)
+
+
 def test_a_time_outside_the_clip_has_the_spec_s_line(place):
     time = place().loaded.model.goals[0].at
-    there = resolve.frame(time, place("goals", 0, "at"), frames=50, frame_time=0.04, events={"hit": 40.0})
+    there = resolve.frame(time, place("goals", 0, "at"), motion_of(50), events={"hit": 40.0})
     assert there == 40
-    found = refusal(resolve.frame, time, place("goals", 0, "at"), frames=20, frame_time=0.04, events={"hit": 40.0})
+    found = refusal(resolve.frame, time, place("goals", 0, "at"), motion_of(20), events={"hit": 40.0})
     assert found == "spec.yaml:3: goals.0.at: in walk.bvh: hit (frame 40) is outside the clip, whose frames are 0 to 19"
-    found = refusal(resolve.frame, time, place("goals", 0, "at"), frames=20, frame_time=0.04, events={})
+    found = refusal(resolve.frame, time, place("goals", 0, "at"), motion_of(20), events={})
     assert found == "spec.yaml:3: goals.0.at: in walk.bvh: no event 'hit'; there are no events"
 
 
@@ -180,8 +186,8 @@ def test_an_interval_outside_the_clip_has_the_spec_s_line(load):
     loaded = load("constraints:\n  - {type: pose, effector: A, points: [{hold: [3, 90]}]}", "edit-prioritized")
     hold = loaded.model.constraints[0].points[0].hold
     place = Place(loaded, ("constraints", 0, "points", 0, "hold"), "walk.bvh")
-    assert resolve.frame_range(hold, place, frames=91, frame_time=0.04, events={}) == (3, 90)
-    found = refusal(resolve.frame_range, hold, place, frames=90, frame_time=0.04, events={})
+    assert resolve.frame_range(hold, place, motion_of(91), events={}) == (3, 90)
+    found = refusal(resolve.frame_range, hold, place, motion_of(90), events={})
     assert (
         found
         == "spec.yaml:3: constraints.0.points.0.hold: in walk.bvh: 90 is outside the clip, whose frames are 0 to 89"

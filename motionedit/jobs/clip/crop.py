@@ -30,12 +30,9 @@ def cropped(crop: Mapping[str, str], facts: ClipFacts, place: Place, *, events: 
     MotionEditError
         A time is outside the clip, names an event without a frame, or nothing lies between.
     """
-    motion, found = facts.clip.motion, {"from": facts.first, "to": facts.last}
+    found = {"from": facts.first, "to": facts.last}
     for key, text in crop.items():
-        where = place.at(key)
-        found[key] = resolve.frame(
-            parse_time(text), where, frames=len(motion), frame_time=motion.frame_time, events=events
-        )
+        found[key] = resolve.frame(parse_time(text), place.at(key), facts.clip.motion, events=events)
     first, last = max(found["from"], facts.first), found["to"]
     if first >= last:
         message = f"nothing is left from frame {first} (from:) to frame {last} (to:)"

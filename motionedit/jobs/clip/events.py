@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
     from motionedit.core.bvh import Clip
     from motionedit.core.kinematics import Effector
-    from motionedit.core.motion import Motion
     from motionedit.core.skeleton import Skeleton
     from motionedit.core.timeline.warp import Timeline, TimeWarp
     from motionedit.jobs.clip.facts import ClipFacts
@@ -29,7 +28,6 @@ if TYPE_CHECKING:
     from motionedit.spec.document import Document
     from motionedit.spec.events import DetectRule, EventSpec
     from motionedit.spec.load import LoadedSpec
-    from motionedit.spec.times import Time
 
 
 _QUANTITIES: dict[str, Quantity] = {"height": "height", "speed": "speed", "distance": "distance"}
@@ -67,12 +65,8 @@ def explicit_events(
             if key is None:
                 continue
             value, place = by_clip[key], place.at("frames", key)
-        found[name] = float(value if isinstance(value, int) else _frame(value, clip.motion, place))
+        found[name] = float(value if isinstance(value, int) else resolve.frame(value, place, clip.motion, events={}))
     return found
-
-
-def _frame(time: Time, motion: Motion, place: Place) -> int:
-    return resolve.frame(time, place, frames=len(motion), frame_time=motion.frame_time, events={})
 
 
 def event_frames(
@@ -214,12 +208,9 @@ def events_at_edge(found: FoundEvents) -> list[str]:
 
 def _window(rule: DetectRule, facts: ClipFacts, place: Place, *, events: Mapping[str, float]) -> tuple[int, int]:
     """Return the first and last frame in which an event is looked for."""
-    motion = facts.clip.motion
     start, stop = facts.first, facts.last
     if rule.between is not None:
-        start, stop = resolve.frame_range(
-            rule.between, place.at("between"), frames=len(motion), frame_time=motion.frame_time, events=events
-        )
+        start, stop = resolve.frame_range(rule.between, place.at("between"), facts.clip.motion, events=events)
     elif rule.after is not None:
         if rule.after not in events:
             raise place.at("after").error(f"in {place.clip}: event '{rule.after}' has no frame")

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from motionedit.core.arrays import FloatArray
+    from motionedit.core.motion import Motion
     from motionedit.core.skeleton import Skeleton
     from motionedit.errors import MotionEditError
     from motionedit.spec.body import BodySpec
@@ -201,8 +202,8 @@ def orientation(spec: OrientationSpec) -> FloatArray:
     return rot.exp(np.radians(values)) if spec.kind == "rotation_vector" else rot.normalize(values)
 
 
-def frame(time: Time, place: Where, *, frames: int, frame_time: float, events: Mapping[str, float]) -> int:
-    """Return the frame of a time in a clip.
+def frame(time: Time, place: Where, motion: Motion, *, events: Mapping[str, float]) -> int:
+    """Return the frame of a time in a clip's motion.
 
     Raises
     ------
@@ -210,17 +211,15 @@ def frame(time: Time, place: Where, *, frames: int, frame_time: float, events: M
         Where the time is outside the clip or names an event that is not known for it.
     """
     try:
-        return time.frame(frames=frames, frame_time=frame_time, events=events)
+        return time.frame(frames=len(motion), frame_time=motion.frame_time, events=events)
     except ValueError as error:
         raise _no_frame(place, (time,), events, str(error)) from None
 
 
-def frame_range(
-    interval: Interval, place: Where, *, frames: int, frame_time: float, events: Mapping[str, float]
-) -> tuple[int, int]:
+def frame_range(interval: Interval, place: Where, motion: Motion, *, events: Mapping[str, float]) -> tuple[int, int]:
     """Return the first and last frame of an interval in a clip, with the errors of `frame`."""
     try:
-        return interval.frame_range(frames=frames, frame_time=frame_time, events=events)
+        return interval.frame_range(frames=len(motion), frame_time=motion.frame_time, events=events)
     except ValueError as error:
         raise _no_frame(place, (interval.start, interval.stop), events, str(error)) from None
 

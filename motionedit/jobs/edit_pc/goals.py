@@ -66,13 +66,12 @@ def clip_goals(
     SpecError, MotionEditErrors
         Goals name what the clip lacks.
     """
-    motion = facts.clip.motion
     refuse_unknown_joints(loaded, facts)
     least = max(DEFAULT_TOLERANCE / model.space.scale, solver_tolerance(loaded.model))
     goals = []
     for i, goal in enumerate(loaded.model.goals):
         place = resolve.Place(loaded, ("goals", i), facts.clip.label)
-        frame = resolve.frame(goal.at, place.at("at"), frames=len(motion), frame_time=motion.frame_time, events=events)
+        frame = resolve.frame(goal.at, place.at("at"), facts.clip.motion, events=events)
         if loaded.model.timing == "normalized":
             frame = _frame_on_timeline(goal.at, frame, model, facts, events=events)
         goals.append(_clip_goal(goal, _request(goal, facts, place, frame=frame, poses=poses), least_tolerance=least))

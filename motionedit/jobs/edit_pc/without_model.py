@@ -43,12 +43,10 @@ def refuse_lacking(loaded: LoadedSpec[EditPcSpec], facts: ClipFacts, task: ClipT
     own = _found_alone(loaded.model.events, known)
     events = faults.get(partial(event_frames, own, facts, place, known=known), otherwise=none)
     faults.get(partial(refuse_unknown_joints, loaded, facts), otherwise=None)
-    motion = facts.clip.motion
     for i, goal in enumerate(loaded.model.goals):
         if goal.at.event is None or goal.at.event in events:
             at = resolve.Place(loaded, ("goals", i, "at"), task.label)
-            frame = partial(resolve.frame, goal.at, at, frames=len(motion), frame_time=motion.frame_time, events=events)
-            faults.get(frame, otherwise=None)
+            faults.get(partial(resolve.frame, goal.at, at, facts.clip.motion, events=events), otherwise=None)
     faults.raise_all(f"what the spec names and {task.label} lacks")
 
 

@@ -34,8 +34,11 @@ class FeetInClip:
 
     def ankles(self, named: str | Sequence[str], place: Place) -> tuple[Effector, ...]:
         """Return the ankles that are named, or those of all legs."""
-        known = [leg.ankle for leg in self.facts.anatomy.legs or ()]
-        joints = tuple(known) if isinstance(named, str) else self._joints(named, place)
+        skeleton, known = self.facts.clip.motion.skeleton, [leg.ankle for leg in self.facts.anatomy.legs or ()]
+        if isinstance(named, str):
+            joints = tuple(known)
+        else:
+            joints = resolve.joints_if_there(named, skeleton, place, self.faults)
         if not known:
             self.faults.add(
                 place.error(f"no feet found in {place.clip}; body: in a spec says which joints are the legs")
@@ -55,7 +58,7 @@ class FeetInClip:
         sides = dict(zip(("left", "right"), self.facts.anatomy.legs or (), strict=False))
         if foot in sides:
             return sides[foot].ankle
-        joint = self._joint(foot, place)
+        joint = resolve.joint_if_there(foot, self.facts.clip.motion.skeleton, place, self.faults)
         if joint is not None:
             self._refuse_no_ankle(joint, place)
         return joint
@@ -64,21 +67,12 @@ class FeetInClip:
         """Return the plants that the spec or its file gives, by ankle; None where they are to be found."""
         found: dict[int, list[tuple[str, int, int]]] = {}
         if given.by_foot is not None:
-            motion = self.facts.clip.motion
             for foot, intervals in given.by_foot.items():
                 joint = self._ankle(foot, place.at(foot))
                 for i, interval in enumerate(intervals):
-                    span: tuple[int, int] | None = self.faults.get(
-                        partial(
-                            resolve.frame_range,
-                            interval,
-                            place.at(foot, i),
-                            frames=len(motion),
-                            frame_time=motion.frame_time,
-                            events=self.events,
-                        ),
-                        otherwise=None,
-                    )
+                    motion, events = self.facts.clip.motion, self.events
+                    find = partial(resolve.frame_range, interval, place.at(foot, i), motion, events=events)
+                    span: tuple[int, int] | None = self.faults.get(find, otherwise=None)
                     if joint is not None and span is not None:
                         found.setdefault(joint, []).extend((("heel", *span), ("toe", *span)))
             return self._no_more_than_frames({joint: tuple(plants) for joint, plants in found.items()}, place)
@@ -109,9 +103,3 @@ class FeetInClip:
                     self.faults.add(place.error(message))
                     break
         return found
-
-    def _joint(self, name: str, place: Place) -> int | None:
-        return resolve.joint_if_there(name, self.facts.clip.motion.skeleton, place, self.faults)
-
-    def _joints(self, names: Sequence[str], place: Place) -> tuple[int, ...]:
-        return resolve.joints_if_there(names, self.facts.clip.motion.skeleton, place, self.faults)

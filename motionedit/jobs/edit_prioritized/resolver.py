@@ -185,15 +185,11 @@ class Resolver:
     def _point(self, point: Point, axes: GivenAxes, place: Place) -> ControlPoint:
         motion, events = self.facts.clip.motion, self.events
         (mode,) = point.time_keys
-        count, frame_time = len(motion), motion.frame_time
         interval = point.hold or point.during
         if interval is not None:
-            start, stop = resolve.frame_range(
-                interval, place.at(mode), frames=count, frame_time=frame_time, events=events
-            )
+            start, stop = resolve.frame_range(interval, place.at(mode), motion, events=events)
         else:
-            start = resolve.frame(point.start, place.at(mode), frames=count, frame_time=frame_time, events=events)
-            stop = start
+            start = stop = resolve.frame(point.start, place.at(mode), motion, events=events)
         bound, length = point.bound
         return LengthPoint(
             mode="at" if interval is None else "during" if point.hold is None else "hold",

@@ -77,10 +77,7 @@ def poses_at(facts: ClipFacts, question: Question) -> tuple[list[dict[str, Any]]
     effectors: list[tuple[EffectorSpec, Effector]] = []
     for time in question.times:
         try:
-            found = resolve.frame(
-                time, _Option("--at", facts.clip.label), frames=len(motion), frame_time=motion.frame_time, events={}
-            )
-            frames.append(found)
+            frames.append(resolve.frame(time, _Option("--at", facts.clip.label), motion, events={}))
         except UsageError as error:
             errors.append(error)
     for spec in question.effectors:
