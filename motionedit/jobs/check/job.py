@@ -13,7 +13,6 @@ from motionedit.core.blocks import blocks_of
 from motionedit.core.body import ground
 from motionedit.core.body.anatomy import NOTHING_GIVEN
 from motionedit.core.body.quality import find_defects
-from motionedit.core.body.steps import own_steps
 from motionedit.core.units import STANDARD_LEG
 from motionedit.dataclass import dataclass, replace
 from motionedit.errors import EXIT_CLIP_FAILED, EXIT_DONE, EXIT_OUT_OF_TOLERANCE, MotionEditError, UsageError
@@ -22,7 +21,7 @@ from motionedit.jobs.batch.plan import find_clips
 from motionedit.jobs.clip.facts import facts_of
 from motionedit.jobs.clip.faults import Faults
 from motionedit.jobs.clip.metrics import clip_metrics, feet_of
-from motionedit.jobs.info.job import likely_unit
+from motionedit.jobs.clip.unit import likely_unit
 from motionedit.regular_files import read_file
 
 if TYPE_CHECKING:
@@ -229,8 +228,7 @@ def _facts(clip: Clip, task: ClipTask, check: SpecCheck | None, lacking: Faults,
 
 def _measures(facts: ClipFacts) -> dict[str, float]:
     motion = facts.clip.motion
-    steps = own_steps(motion, first=facts.first)
-    measured = clip_metrics(facts, feet_of(facts, blocks_of(facts.poses)), facts.phases, steps)
+    measured = clip_metrics(facts, feet_of(facts, blocks_of(facts.poses)), facts.phases, facts.steps)
     defects = find_defects(motion, first=facts.first)
     counted = {
         "jumps": sum(len(defect.frames) for defect in defects),

@@ -1,14 +1,32 @@
-"""Whether the unit that a spec gives makes a leg of the clip as long as legs are."""
+"""Which unit makes a leg of a clip as long as legs are, and whether the one that a spec gives does."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import math
+from typing import TYPE_CHECKING, Any
+
+from motionedit.core.units import STANDARD_LEG
+from motionedit.spec.values import UNITS
 
 if TYPE_CHECKING:
     from motionedit.spec.values import Unit
 
+# Metres of a grown human's leg; outside of them the unit is a guess, and that is said.
+_SHORTEST_HUMAN, _LONGEST_HUMAN = 0.6, 1.15
 # Metres between which a leg is a person's, small or large, or a creature's: else the unit is a slip.
 _SHORTEST_LEG, _LONGEST_LEG = 0.3, 1.5
+
+
+def likely_unit(leg_length: float) -> dict[str, Any] | None:
+    """Return the unit that makes a leg nearest 0.85 m, by ratio; None where there is no length.
+
+    Its `name`, the `leg` in metres, and whether that is `likely`: a human's.
+    """
+    if leg_length <= 0.0:
+        return None
+    name = min(UNITS, key=lambda unit: abs(math.log(leg_length * UNITS[unit] / STANDARD_LEG)))
+    leg = leg_length * UNITS[name]
+    return {"name": name, "leg": leg, "likely": _SHORTEST_HUMAN <= leg <= _LONGEST_HUMAN}
 
 
 def unit_doubts(leg_length: float, unit: Unit | None) -> list[str]:

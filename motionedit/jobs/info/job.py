@@ -11,17 +11,15 @@ from motionedit.core.body import ground
 from motionedit.core.body.contacts import foot_plants
 from motionedit.core.body.hinges import find_hinges
 from motionedit.core.body.quality import find_defects
-from motionedit.core.body.steps import own_steps
-from motionedit.core.units import STANDARD_LEG
 from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError, MotionEditError, together
 from motionedit.jobs.batch.one_clip import read_task
 from motionedit.jobs.batch.plan import find_clips
 from motionedit.jobs.clip.facts import ClipFacts, facts_of
 from motionedit.jobs.clip.metrics import clip_metrics, feet_of
+from motionedit.jobs.clip.unit import likely_unit
 from motionedit.jobs.info.poses import Question, ask, poses_at
 from motionedit.jobs.info.text import describe
-from motionedit.spec.values import UNITS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -29,9 +27,6 @@ if TYPE_CHECKING:
 
     from motionedit.core.body.anatomy import Anatomy, Arm, Leg
     from motionedit.core.skeleton import Skeleton
-
-# A grown human's leg (m); outside of it the unit is a guess, and that is said.
-_SHORTEST_LEG, _LONGEST_LEG = 0.6, 1.15
 
 
 @dataclass(frozen=True)
@@ -128,18 +123,6 @@ def _record(facts: ClipFacts, *, question: Question, contacts: bool) -> tuple[di
     return record, errors
 
 
-def likely_unit(leg_length: float) -> dict[str, Any] | None:
-    """Return the unit that makes a leg nearest 0.85 m, by ratio; None where there is no length.
-
-    Its `name`, the `leg` in metres, and whether that is `likely`: a human's.
-    """
-    if leg_length <= 0.0:
-        return None
-    name = min(UNITS, key=lambda unit: abs(math.log(leg_length * UNITS[unit] / STANDARD_LEG)))
-    leg = leg_length * UNITS[name]
-    return {"name": name, "leg": leg, "likely": _SHORTEST_LEG <= leg <= _LONGEST_LEG}
-
-
 def _anatomy(skeleton: Skeleton, anatomy: Anatomy) -> dict[str, Any]:
     def named(joint: int | None) -> str | None:
         return None if joint is None else skeleton.names[joint]
@@ -203,7 +186,7 @@ def _defects(facts: ClipFacts) -> list[dict[str, Any]]:
 
 def _metrics(facts: ClipFacts) -> dict[str, Any]:
     trace = feet_of(facts, blocks_of(facts.poses))
-    return clip_metrics(facts, trace, facts.phases, own_steps(facts.clip.motion, first=facts.first))
+    return clip_metrics(facts, trace, facts.phases, facts.steps)
 
 
 def _contacts(facts: ClipFacts) -> list[dict[str, Any]]:

@@ -3,7 +3,7 @@
 import pytest
 import yaml
 
-from motionedit.jobs.info.job import likely_unit
+from motionedit.jobs.clip.unit import likely_unit
 from motionedit.jobs.info.text import flow, shown_name
 
 
