@@ -15,13 +15,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from motionedit.core.arrays import frozen
+from motionedit.core.coefficients.prior import EACH
 from motionedit.dataclass import replace
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
     from motionedit.core.pca.model import MotionModel
-
-_EACH = 3  # columns of the travel, and of every joint
 
 
 def with_one_more(model: MotionModel, deviation: FloatArray) -> MotionModel:
@@ -56,9 +55,9 @@ def change_of_alpha(change: FloatArray, known: MotionModel, joined: MotionModel)
 def _own_all_along(model: MotionModel, deviation: FloatArray) -> FloatArray:
     """Return the part of a clip's mean difference, shape (n,), that the database's motions do not account for."""
     means = model.component_rows.mean(axis=1)
-    usual = (model.components.explained_variance @ means**2).reshape(-1, _EACH).sum(axis=1)
+    usual = (model.components.explained_variance @ means**2).reshape(-1, EACH).sum(axis=1)
     usual *= 1.0 + 1.0 / len(model.clips)
-    mean = deviation.mean(axis=0).reshape(-1, _EACH)
+    mean = deviation.mean(axis=0).reshape(-1, EACH)
     squares = (mean * mean).sum(axis=1)
     own = 1.0 - usual / np.maximum(np.maximum(squares, usual), np.finfo(np.float64).tiny)
     all_along: FloatArray = (own[:, None] * mean).ravel()

@@ -35,7 +35,7 @@ _ALONE, _LEAST_VARIANCE = 0.65, 1e-12
 _LEAST_DEVIATION = float(np.radians(5.0))
 _LEAST_TRAVEL = 0.05  # metres at leg length 0.85 m: and so far the body may then go as a whole
 _TRAVEL = 3  # columns of Theta that are no rotation's
-_EACH = 3  # columns of the travel, and of every joint
+EACH = 3  # columns of the travel, and of every joint
 # Beside 1 on the diagonal of K: frames next to each other are nearly one.
 _JITTER = 1e-9
 
@@ -168,7 +168,7 @@ def _pose_factor(model: MotionModel, places: FloatArray, columns: IntArray) -> F
     rows = model.component_rows[:, near][:, :, columns]
     rows = (rows * np.sqrt(model.components.explained_variance / len(near))[:, None, None]).reshape(-1, len(columns))
     together = rows.T @ rows
-    turning, joints = columns >= _TRAVEL, columns // _EACH
+    turning, joints = columns >= _TRAVEL, columns // EACH
     same = joints[:, None] == joints
     times = _widening((together * same)[np.ix_(turning, turning)])
     together *= times

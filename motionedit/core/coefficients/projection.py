@@ -71,11 +71,6 @@ class Projection:
     seconds: float
 
 
-def clip_joints(space: PoseSpace, joint_map: IntArray) -> IntArray:
-    """Return the clip's joints behind the columns; joint_map (J,) gives the clip's joint of each of the model's."""
-    return joint_map[space.joints]
-
-
 def project(
     motion: Motion, model: MotionModel, *, joint_map: IntArray, alignment: Alignment, warp: TimeWarp, first: int
 ) -> Projection:
@@ -83,15 +78,14 @@ def project(
 
     Parameters
     ----------
+    joint_map : shape (J,)
+        The clip's joint of each of the model's.
     first : int
         The clip's first frame after a rest pose.
     """
     on_timeline = project_resampled(motion, model, joint_map=joint_map, alignment=alignment, warp=warp)
     places = _places(warp, len(motion), first=first, rate=model.timeline.frame_rate)
-    travel = int(joint_map[model.travel])
-    joints = clip_joints(model.space, joint_map)
-    rows = _rows(motion, model, travel=travel, joints=joints, alignment=alignment, places=places)
-    return replace(on_timeline, motion=motion, places=places, rows=rows)
+    return of_another(replace(on_timeline, places=places), model, motion)
 
 
 def _places(warp: TimeWarp, frames: int, *, first: int, rate: float) -> FloatArray:
@@ -119,8 +113,7 @@ def project_resampled(
     """Return the clip resampled to the timeline, in the model's space."""
     places = np.arange(model.timeline.frames, dtype=np.float64)
     resampled = resample(motion, warp.to_source(places), frame_time=1.0 / model.timeline.frame_rate)
-    travel = int(joint_map[model.travel])
-    joints = clip_joints(model.space, joint_map)
+    travel, joints = int(joint_map[model.travel]), joint_map[model.space.joints]
     rows = _rows(resampled, model, travel=travel, joints=joints, alignment=alignment, places=places)
     deviation = rows - model.mean_rows
     off = deviation.ravel()

@@ -133,23 +133,28 @@ def seen(poses: WorldPoses, frame: int, effector: Effector, measure: Measure) ->
     return position[0], measure.rotations(one.rotations[:, effector.joint], one)[0]
 
 
+def off(request: GoalRequest, poses: WorldPoses) -> tuple[float | None, float | None]:
+    """Return how far a goal is off, clip units along its axes, and turned, rad; None of what it does not ask for."""
+    position, rotation = seen(poses, request.frame, request.effector, request.measure)
+    way = turn = None
+    if request.position is not None:
+        way = float(np.linalg.norm((request.position - position)[list(request.measure.counted)]))
+    if request.rotation is not None:
+        turn = float(rot.angle_between(rotation, request.rotation))
+    return way, turn
+
+
 def goal_record(goal: ClipGoal, poses: WorldPoses) -> dict[str, Any]:
     """Return a goal's entry in the report, measured by forward kinematics on the edited motion."""
-    request = goal.request
-    position, rotation = seen(poses, request.frame, request.effector, request.measure)
-    error = angle = None
-    if request.position is not None:
-        counted = list(request.measure.counted)
-        error = float(np.linalg.norm((request.position - position)[counted]))
-    if request.rotation is not None:
-        angle = float(np.degrees(rot.angle_between(rotation, request.rotation)))
+    error, turn = off(goal.request, poses)
+    angle = None if turn is None else float(np.degrees(turn))
     return {
         "name": goal.name,
         "priority": goal.spec.priority,
         "error_max": error,
         "error_rms": error,
         "error_angle_max": angle,
-        "frame": request.frame,
+        "frame": goal.request.frame,
         "tolerance": goal.tolerance if error is not None else None,
         "tolerance_angle": goal.angle_tolerance if angle is not None else None,
         "status": "ok",

@@ -4,13 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Protocol
 
-import numpy as np
-
 from motionedit.core import kinematics
-from motionedit.core import rotations as rot
 from motionedit.core.units import STANDARD_LEG
 from motionedit.dataclass import replace
-from motionedit.jobs.edit_pc.goals import seen
+from motionedit.jobs.edit_pc.goals import off, seen
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -57,16 +54,5 @@ def _reached(request: GoalRequest, poses: WorldPoses) -> GoalRequest:
 
 def ways_off(poses: WorldPoses, requests: Sequence[GoalRequest], *, leg: float) -> list[float]:
     """Return how far each goal is off in some poses, over what settles it; `leg` is the leg's length, clip units."""
-    tolerance = _SETTLED * leg / STANDARD_LEG
-    return [_off(request, poses, tolerance) for request in requests]
-
-
-def _off(request: GoalRequest, poses: WorldPoses, tolerance: float) -> float:
-    position, rotation = seen(poses, request.frame, request.effector, request.measure)
-    off = 0.0
-    if request.position is not None:
-        counted = list(request.measure.counted)
-        off = float(np.linalg.norm((request.position - position)[counted])) / tolerance
-    if request.rotation is not None:
-        off = max(off, float(rot.angle_between(rotation, request.rotation)) / _SETTLED)
-    return off
+    tolerance, found = _SETTLED * leg / STANDARD_LEG, [off(request, poses) for request in requests]
+    return [max((way or 0.0) / tolerance, (turn or 0.0) / _SETTLED) for way, turn in found]
