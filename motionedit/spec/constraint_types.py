@@ -72,11 +72,6 @@ class ComConstraint(Recruiting, ConstraintItem):
     )
     axes: tuple[int, ...] = spec_key(kinds.AXES, default=(0, 1, 2), description=_AXES)
 
-    @property
-    def default_name(self) -> str:
-        """The name of one that gives none."""
-        return self.type
-
     @classmethod
     def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
         """Yield what is wrong between keys."""
@@ -140,11 +135,6 @@ class PostureConstraint(ConstraintItem):
     type: Literal["posture"] = spec_key(kinds.constant("posture"), description="The type: posture.")
     joints: tuple[str, ...] = spec_key(kinds.JOINTS, description="The joints that keep their rotations.")
 
-    @property
-    def default_name(self) -> str:
-        """The name of one that gives none."""
-        return self.type
-
 
 class DistanceConstraint(Recruiting, EffectorItem, ConstraintItem):
     """Two points of the body are as far from each other as asked, or not nearer, or not farther."""
@@ -177,12 +167,7 @@ def _joints_of(effector: object) -> set[str]:
 
 
 class _Timeless(Recruiting, ConstraintItem):
-    """One that acts without times of its own, and is called by its type where it has no name."""
-
-    @property
-    def default_name(self) -> str:
-        """The name of one that gives none."""
-        return self.type
+    """One that acts without times of its own."""
 
     @classmethod
     def key_names(cls) -> tuple[str, ...]:

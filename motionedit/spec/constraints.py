@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 from motionedit.dataclass import dataclass
 from motionedit.spec import kinds
 from motionedit.spec.faults import Fault, Keys
-from motionedit.spec.items import NOT_TWO_FRAMES, Item, measured_in_itself, without
+from motionedit.spec.items import NOT_TWO_FRAMES, Item, measure_faults, without
 from motionedit.spec.model import Kind, SpecModel, mappings_in, spec_key
 from motionedit.spec.nested import list_of, mapping
 from motionedit.spec.points import Point
@@ -101,6 +101,11 @@ class ConstraintItem(Item):
     )
 
     @property
+    def default_name(self) -> str:
+        """The name of one that gives none: its type, where it is about no one effector."""
+        return self.type
+
+    @property
     def met_within(self) -> Tolerance:
         """The tolerance, a bare number in degrees where the constraint is an angle."""
         tolerance = self.tolerance or Tolerance()
@@ -175,9 +180,7 @@ class Placed(SpecModel):
     def faults_between_keys(cls, data: Mapping[str, Any]) -> Iterator[Fault]:
         """Yield what is wrong between keys."""
         yield from super().faults_between_keys(data)
-        if data.get("frame") == "heading" and "relative_to" in data:
-            yield Fault("stands beside frame: heading; give one of them", ("relative_to",))
-        yield from measured_in_itself(data)
+        yield from measure_faults(data)
 
 
 class Defaults(SpecModel):

@@ -10,7 +10,7 @@ from motionedit.spec.items import (
     EFFECTOR_KEYS,
     NOT_TWO_FRAMES,
     EffectorItem,
-    measured_in_itself,
+    measure_faults,
     repeated_names,
     taken_apart,
     without,
@@ -107,9 +107,7 @@ class PcGoal(EffectorItem):
         placed, turned = "position" in data or "shift" in data, "orientation" in data or "turn" in data
         if "axes" in data and turned and not placed:
             yield Fault("belongs to position or shift; an orientation has all its axes", ("axes",))
-        if data.get("frame") == "heading" and "relative_to" in data:
-            yield Fault("stands beside frame: heading; give one of them", ("relative_to",))
-        yield from measured_in_itself(data)
+        yield from measure_faults(data)
         tolerance = data.get("tolerance")
         if isinstance(tolerance, dict):
             if "angle" in tolerance and not turned:

@@ -94,8 +94,13 @@ def without(key: str) -> dict[str, Any]:
     return {"not": {"type": "object", "required": [key]}}
 
 
-def measured_in_itself(data: Mapping[str, Any]) -> Iterator[Fault]:
-    """Yield a fault where an item's effector is on the joint in whose frame it is measured: there it never moves."""
+def measure_faults(data: Mapping[str, Any]) -> Iterator[Fault]:
+    """Yield what is wrong with what an item is measured in.
+
+    That is two frames, or the frame of the joint that its effector is on: there it never moves.
+    """
+    if data.get("frame") == "heading" and "relative_to" in data:
+        yield Fault("stands beside frame: heading; give one of them", ("relative_to",))
     base, effectors = data.get("relative_to"), data.get("effector")
     for effector in effectors if isinstance(effectors, list) else [effectors]:
         joints = [effector.get(key) for key in ("joint", "end_site")] if isinstance(effector, dict) else [effector]

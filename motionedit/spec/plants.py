@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from motionedit.dataclass import dataclass
-from motionedit.spec import grammar
+from motionedit.spec import kinds
 from motionedit.spec.faults import Fault, FaultyValueError, faulty, show
 from motionedit.spec.model import Context, Kind
 from motionedit.spec.text_files import read_text
@@ -117,7 +117,6 @@ def _row_fault(row: list[str]) -> str | None:
     return None
 
 
-_TIME = {"anyOf": [{"type": "integer", "minimum": 0}, {"type": "string", "pattern": grammar.whole(grammar.TIME)}]}
 PLANTS = Kind(
     _plants,
     PLANTS_WORDS,
@@ -130,7 +129,7 @@ PLANTS = Kind(
                 "additionalProperties": {
                     "type": "array",
                     "minItems": 1,
-                    "items": {"type": "array", "items": _TIME, "minItems": 2, "maxItems": 2},
+                    "items": kinds.INTERVAL.json,
                 },
             },
         ]
