@@ -46,7 +46,7 @@ def _event_frames(value: object, context: Context) -> EventFrames:
         # Imported here: most specs name no file.
         from motionedit.spec.event_table import read_event_table
 
-        table = read_event_table(context.folder / file, label=_label(context, value))
+        table = read_event_table(context.folder / file, label=context.label_of(value))
         return EventFrames(by_clip=table, file=context.folder / file)
     if isinstance(value, dict):
         faults: list[Fault] = []
@@ -68,10 +68,6 @@ def _event_frames(value: object, context: Context) -> EventFrames:
 
 def _when(value: object, words: str = INSTANT_WORDS) -> When:
     return parse_instant(value, words=words) if isinstance(value, str) else scalars.whole(value, at_least=0)
-
-
-def _label(context: Context, file: str) -> str:
-    return file if context.label in ("", ".") or Path(file).is_absolute() else f"{context.label}/{file}"
 
 
 _FRAME = {"type": "integer", "minimum": 0}

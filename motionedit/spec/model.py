@@ -27,6 +27,10 @@ class Context:
     label: str = ""
     events: frozenset[str] | None = None
 
+    def label_of(self, file: str) -> str:
+        """Return what messages call a file that the spec names."""
+        return file if self.label in ("", ".") or Path(file).is_absolute() else f"{self.label}/{file}"
+
 
 NO_CONTEXT = Context()
 
