@@ -137,10 +137,10 @@ def _bends_at_once(poses: WorldPoses, limbs: NDArray[np.int64], first: int) -> t
 
 
 def _bends(poses: WorldPoses, limbs: NDArray[np.int64], towards: Sequence[_Towards], first: int) -> tuple[Bend, ...]:
-    tops, joints, ends, parents = limbs.T
+    _, joints, _, parents = limbs.T
     sines, axes = _sides(poses, limbs, towards, first)
-    starts, stops, seen_from = (np.concatenate(each) for each in ((tops, joints), (joints, ends), (parents, joints)))
-    bones = mean_directions(poses, starts, stops, seen_from=seen_from, first=first).reshape(2, -1, 3)
+    triples = np.concatenate((limbs[:, [0, 1, 3]], limbs[:, [1, 2, 1]]))
+    bones = directions_of(poses, triples, first=first).reshape(2, -1, 3)
     uppers, lowers = bones
     local = rot.between(poses.rotations[:, parents], poses.rotations[:, joints])
     lengths = np.sqrt([axis.dot(axis) for axis in axes])
@@ -183,17 +183,8 @@ def _along(axes: FloatArray, starts: FloatArray, stops: FloatArray) -> FloatArra
 
 def mean_direction(poses: WorldPoses, start: int, stop: int, *, seen_from: int, first: int) -> FloatArray:
     """Return the unit direction from one joint to another in the frame of a third, shape (3,), the mean of frames."""
-    direction: FloatArray = mean_directions(
-        poses, np.array([start]), np.array([stop]), seen_from=np.array([seen_from]), first=first
-    )[0]
+    direction: FloatArray = directions_of(poses, np.array([[start, stop, seen_from]]), first=first)[0]
     return direction
-
-
-def mean_directions(
-    poses: WorldPoses, starts: IntArray, stops: IntArray, *, seen_from: IntArray, first: int
-) -> FloatArray:
-    """Return `mean_direction` of n pairs of joints, shape (n, 3)."""
-    return directions_of(poses, np.stack((starts, stops, seen_from), axis=1), first=first)
 
 
 def directions_of(poses: WorldPoses, triples: IntArray, *, first: int) -> FloatArray:

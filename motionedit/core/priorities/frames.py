@@ -163,21 +163,16 @@ def _solve(run: Run, solved: Solved, group: Group, reference: Reference, *, in_o
     solve_layers(solved, group.prepared, reference, frames, levels=levels, in_order=in_order, threads=threads)
 
 
-def known_after(run: Run, previous: Solved, start: Motion) -> Known:
-    """Return what a solve from `start` that follows another may leave alone.
-
-    Frames that were left as in the input, and that start from there again, need nothing.
-    """
-    return known_again(run, left_alone(run, previous), start)
-
-
 def left_alone(run: Run, previous: Solved) -> Known:
     """Return the frames that a solve left as in the input, and its ranks."""
     return Known(_same(previous.motion, run.motion) & previous.converged, previous.ranks)
 
 
 def known_again(run: Run, left: Known, start: Motion) -> Known:
-    """Return what a solve from `start` may leave alone of what the one before did."""
+    """Return what a solve from `start` may leave alone of what the one before did.
+
+    Frames that were left as in the input, and that start from there again, need nothing.
+    """
     return Known(_same(start, run.motion) & left.done if left.done.any() else left.done, left.ranks)
 
 

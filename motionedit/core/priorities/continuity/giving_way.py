@@ -15,7 +15,7 @@ import numpy as np
 from motionedit.core.priorities.agreeing import overruled
 from motionedit.core.priorities.continuity.shares import shares_of
 from motionedit.core.priorities.continuity.smoothing import in_passes
-from motionedit.core.priorities.continuity.straight import bent_where_missed
+from motionedit.core.priorities.continuity.straight import MISSED, bent_where_missed
 from motionedit.core.priorities.frames import Known, run_of, solve_from, solve_from_input
 from motionedit.core.priorities.ramps import ending_in
 from motionedit.core.priorities.targets import lefts_of, toward
@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from motionedit.core.priorities.groups import Asked
     from motionedit.core.priorities.settings import Passes
 
-# Metres or radians: what is farther from its goal is missed.
-MISSED = 1e-4
 # lambda^2 of a constraint that gives way, (m/rad)^2.
 _SOFTNESS = 0.12**2
 # Once its path is found it is kept to it by so much less softness, or what is below it would shift it.

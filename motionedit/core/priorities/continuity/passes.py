@@ -11,7 +11,8 @@ from motionedit.core.priorities.continuity.straight import bent_where_missed
 from motionedit.core.priorities.frames import (
     Run,
     Solved,
-    known_after,
+    known_again,
+    left_alone,
     run_of,
     solve_frames,
     solve_from_input,
@@ -59,6 +60,6 @@ def solve_as_the_paper(run: Run, smoothing: PaperFilter) -> Passed:
     still = tuple(Recruits(each.joints, root=False) for each in run.asked.recruits)
     frozen = run_of(replace(run.asked, recruits=still)) if smoothing.count > 1 else run
     for _ in range(1, smoothing.count):
-        known = known_after(frozen, state, state.motion)
+        known = known_again(frozen, left_alone(frozen, state), state.motion)
         state = solve_frames(frozen, state.motion, reference=motion, pull_root=False, known=known)
     return Passed(state, iterations)

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 _LITTLE = float(np.radians(1.0))
 _BACK = float(np.radians(0.2))  # so far back a limb counts as straight
-_MISSED = 1e-4  # metres or radians
+MISSED = 1e-4  # metres or radians: what is farther from its goal
 
 
 def bent_where_missed(run: Run, state: Solved) -> Solved:
@@ -34,13 +34,13 @@ def bent_where_missed(run: Run, state: Solved) -> Solved:
 
     A frame keeps what it had where that does not help.
     """
-    if np.maximum.reduce(state.left, axis=None, initial=0.0) < _MISSED:
+    if np.maximum.reduce(state.left, axis=None, initial=0.0) < MISSED:
         return state
     body, recruited = run.asked.body, frozenset().union(*(each.joints for each in run.asked.recruits))
     bends = [bend for bend in body.bends if bend.joint in recruited and _is_ever_straight(bend)]
     if not bends:
         return state
-    missed = state.left.max(axis=1) > _MISSED
+    missed = state.left.max(axis=1) > MISSED
     rotations = state.motion.rotations.copy()
     again = np.zeros(len(rotations), dtype=np.bool_)
     for bend in bends:
@@ -81,8 +81,8 @@ def _is_recruited(run: Run, bend: Bend) -> BoolArray:
 
 def _is_better(after: Solved, before: Solved) -> BoolArray:
     """Return at which frames the most important layer that differs is nearer to its goals, shape (F,): met is met."""
-    gains = np.maximum(before.left, _MISSED) - np.maximum(after.left, _MISSED)
-    gains[np.abs(gains) < 0.1 * _MISSED] = 0.0
+    gains = np.maximum(before.left, MISSED) - np.maximum(after.left, MISSED)
+    gains[np.abs(gains) < 0.1 * MISSED] = 0.0
     first = np.argmax(gains != 0.0, axis=1)
     better: BoolArray = gains[np.arange(len(gains)), first] > 0.0
     return better
