@@ -58,5 +58,4 @@ def solve_damped(
         progress.history.append(float(np.linalg.norm(error)))
         if progress.history[-1] < (1.0 - _PROGRESS) * best:
             best, best_at = progress.history[-1], progress.iterations
-    solution = progress.finished()
-    return CoefficientSolution(change, solution.iterations, solution.history, solution.reason)
+    return progress.finished(change)

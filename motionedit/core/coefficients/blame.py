@@ -37,8 +37,8 @@ def rivals_of(
     depths = [depth for depth, layer in enumerate(layers) for _ in layer]
 
     def are_met(some: Sequence[int]) -> bool:
-        solution, y = free_solution(lambda y: stacked_errors([goals[k] for k in some], y), size)
-        return solution.reason == "converged" and (bound is None or float(np.linalg.norm(y)) <= bound)
+        free = free_solution(lambda y: stacked_errors([goals[k] for k in some], y), size)
+        return free.reason == "converged" and (bound is None or float(np.linalg.norm(free.change)) <= bound)
 
     def is_met_beside(i: int, k: int) -> bool:
         both = [[goals[k]], [goals[i]]] if depths[k] < depths[i] else [[goals[k], goals[i]]]

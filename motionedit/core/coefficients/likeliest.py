@@ -74,9 +74,9 @@ def likeliest_change(layers: Sequence[Sequence[Goal]], *, size: int, bound: floa
         Largest |y|.
     """
     every = [goal for layer in layers for goal in layer]
-    whole, y = free_solution(lambda y: stacked_errors(every, y), size)
-    if whole.reason == "converged" and _within(y, bound):
-        return LikeliestChange(y, whole.iterations, whole.history, ("converged",) * len(layers))
+    whole = free_solution(lambda y: stacked_errors(every, y), size)
+    if whole.reason == "converged" and _within(whole.change, bound):
+        return LikeliestChange(whole.change, whole.iterations, whole.history, ("converged",) * len(layers))
     done, iterations, reasons = np.zeros(size), whole.iterations, []
     above: list[tuple[Sequence[Goal], FloatArray]] = []
     for layer in layers:
@@ -100,8 +100,8 @@ def _why(layer: Sequence[Goal], reason: str, *, size: int, bound: float | None) 
     """Return the reason of a layer below others: whether it would have been met without them."""
     if reason == "converged":
         return reason
-    alone, y = free_solution(lambda y: stacked_errors(layer, y), size)
-    return "gave way" if alone.reason == "converged" and _within(y, bound) else reason
+    alone = free_solution(lambda y: stacked_errors(layer, y), size)
+    return "gave way" if alone.reason == "converged" and _within(alone.change, bound) else reason
 
 
 def _layer(
@@ -128,8 +128,8 @@ def _layer(
         found = _constrained(own, kept, start, penalty=penalty)[0]
         return found, float(np.linalg.norm(own(found)[0]))
 
-    free, found = free_solution(all_of, len(y))
-    iterations = free.iterations
+    free = free_solution(all_of, len(y))
+    found, iterations = free.change, free.iterations
     if free.reason == "converged" and _within(found, bound):
         return found, "converged", iterations
     if above:
@@ -138,10 +138,10 @@ def _layer(
     if _within(found, bound):
         met = float(np.linalg.norm(own(found)[0])) < ERROR_STOP
         return found, "converged" if met else "stalled", iterations
-    bounded, found = bounded_solution(
+    bounded = bounded_solution(
         nearest, own, norm=lambda y: float(np.linalg.norm(y)), size=len(y), bound=bound or np.inf, start=y
     )
-    return _filled(own, above, found, bound=bound or np.inf), bounded.reason, iterations + bounded.iterations
+    return _filled(own, above, bounded.change, bound=bound or np.inf), bounded.reason, iterations + bounded.iterations
 
 
 def _filled(

@@ -11,7 +11,7 @@ import numpy as np
 
 from motionedit.core.coefficients.goals import stacked_errors
 from motionedit.core.coefficients.penalty_search import PenaltySearch
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -100,19 +100,18 @@ def solve_goals(
         error, jacobian = stacked_errors(goals, root * y)
         return error, jacobian * root
 
-    free, y = free_solution(evaluate, len(start))
-    if bound is None or np.linalg.norm((start + root * y) / deviation) <= bound:
-        return CoefficientSolution(root * y, free.iterations, free.history, free.reason)
+    free = free_solution(evaluate, len(start))
+    if bound is None or np.linalg.norm((start + root * free.change) / deviation) <= bound:
+        return replace(free, change=root * free.change)
     offset, slope = start / deviation, root / deviation
 
     def nearest(y: FloatArray, penalty: float) -> tuple[FloatArray, float]:
         return penalised(evaluate, y, offset=offset, slope=slope, penalty=penalty)
 
-    bounded, y = bounded_solution(
+    bounded = bounded_solution(
         nearest, evaluate, norm=lambda y: float(np.linalg.norm(offset + slope * y)), size=len(start), bound=bound
     )
-    history = (free.history[0], *bounded.history)
-    return CoefficientSolution(root * y, bounded.iterations, history, bounded.reason)
+    return replace(bounded, change=root * bounded.change, history=(free.history[0], *bounded.history))
 
 
 @dataclass
@@ -127,12 +126,12 @@ class Progress:
         """How many steps were accepted."""
         return len(self.history) - 1
 
-    def finished(self) -> CoefficientSolution:
-        """Return a solution without its change."""
-        return CoefficientSolution(np.zeros(0), self.iterations, tuple(self.history), self.reason)
+    def finished(self, change: FloatArray) -> CoefficientSolution:
+        """Return the solution that a run has come to."""
+        return CoefficientSolution(change, self.iterations, tuple(self.history), self.reason)
 
 
-def free_solution(evaluate: Evaluate, size: int) -> tuple[CoefficientSolution, FloatArray]:
+def free_solution(evaluate: Evaluate, size: int) -> CoefficientSolution:
     """Damped Gauss-Newton, homing to zero; Levenberg-Marquardt where it stalls."""
     y = np.zeros(size)
     error, jacobian = evaluate(y)
@@ -156,7 +155,7 @@ def free_solution(evaluate: Evaluate, size: int) -> tuple[CoefficientSolution, F
         step = float(np.linalg.norm(y_new - y))
         y = y_new
         progress.history.append(float(np.linalg.norm(error)))
-    return progress.finished(), y
+    return progress.finished(y)
 
 
 def _gauss_newton_step(
@@ -218,7 +217,7 @@ def bounded_solution(
     size: int,
     bound: float,
     start: FloatArray | None = None,
-) -> tuple[CoefficientSolution, FloatArray]:
+) -> CoefficientSolution:
     """Minimise |e|^2 + mu |z|^2 with mu lowered until the norm |z| meets the bound.
 
     Parameters
@@ -243,7 +242,7 @@ def bounded_solution(
     error = float(np.linalg.norm(evaluate(best)[0]))
     progress.history.append(error)
     progress.reason = "converged" if error < ERROR_STOP else "bound"
-    return progress.finished(), best
+    return progress.finished(best)
 
 
 def penalised(
