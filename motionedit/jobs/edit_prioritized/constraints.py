@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from motionedit.core.again import LastFew, Same
 from motionedit.dataclass import dataclass
 from motionedit.jobs.clip.edit_record import DEFAULT_ANGLE_TOLERANCE, DEFAULT_TOLERANCE
@@ -12,8 +14,10 @@ from motionedit.jobs.edit_prioritized.resolver import Resolver
 from motionedit.spec.plants import PLANTS
 
 if TYPE_CHECKING:
-    from collections.abc import Hashable, Mapping
+    from collections.abc import Hashable, Mapping, Sequence
 
+    from motionedit.core.arrays import BoolArray
+    from motionedit.core.motion import Motion
     from motionedit.core.priorities.kinds.constraint import Constraint
     from motionedit.jobs.clip.facts import ClipFacts
     from motionedit.spec.edit_prioritized import EditPrioritizedSpec
@@ -89,6 +93,16 @@ def clip_constraints(
     if key is not None and is_whole:
         _KNOWN.keep(key, tuple(found))
     return found
+
+
+def placed_at(constraints: Sequence[Constraint], motion: Motion, joint: int) -> BoolArray:
+    """Return the frames of a motion at which constraints place a joint or what hangs on it, shape (F,)."""
+    placed = np.zeros(len(motion), dtype=np.bool_)
+    for each in constraints:
+        if each.places_effector and each.at is not None and joint in motion.skeleton.chain(each.at.joint):
+            first, last = each.active(len(motion))
+            placed[first : last + 1] = True
+    return placed
 
 
 # The clips of a folder mostly share their skeleton: of those the same is asked.

@@ -22,6 +22,7 @@ from motionedit.dataclass import replace
 from motionedit.jobs.clip.facts import Poses
 from motionedit.jobs.edit_prioritized.asked_path import asked_path
 from motionedit.jobs.edit_prioritized.body import body_again
+from motionedit.jobs.edit_prioritized.constraints import placed_at
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -193,13 +194,5 @@ def _with_goals(
 
 def _placed_by_others(foot: Foot, constraints: Sequence[ClipConstraint], sized: SizedClip) -> BoolArray:
     """Return the frames at which another constraint places a foot, shape (F,): in the air it goes there."""
-    frames, skeleton = len(sized.motion), sized.motion.skeleton
-    placed = np.zeros(frames, dtype=np.bool_)
-    for each in constraints:
-        ask = each.constraint
-        if ask.stands or not ask.places_effector or ask.at is None:
-            continue
-        if foot.leg.ankle in skeleton.chain(ask.at.joint) and ask.points:
-            first, last = ask.active(frames)
-            placed[first : last + 1] = True
-    return placed
+    others = [each.constraint for each in constraints if each.constraint.points and not each.constraint.stands]
+    return placed_at(others, sized.motion, foot.leg.ankle)

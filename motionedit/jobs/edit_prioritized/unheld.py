@@ -16,11 +16,12 @@ from motionedit.core.body.quality import foot_drift
 from motionedit.core.hands.grips import SEEN_APART, find_grips, seen_by
 from motionedit.core.kinematics import forward_of
 from motionedit.dataclass import dataclass
+from motionedit.jobs.edit_prioritized.constraints import placed_at
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from motionedit.core.arrays import BoolArray, FloatArray
+    from motionedit.core.arrays import FloatArray
     from motionedit.core.body.anatomy import Arm
     from motionedit.core.body.trace import Trace
     from motionedit.core.motion import Motion
@@ -49,7 +50,7 @@ def loose_feet(sized: SizedClip, constraints: Sequence[Constraint], before: Trac
     lines: list[str] = []
     for foot, leg in zip(("left", "right"), facts.anatomy.legs or (), strict=False):
         own = np.array([point.foot == foot for point in facts.anatomy.sole_points])[down.points]
-        loose = np.where(own & ~_placed(sized, constraints, leg.ankle)[down.frames], ways, 0.0)
+        loose = np.where(own & ~placed_at(constraints, sized.motion, leg.ankle)[down.frames], ways, 0.0)
         worst = int(np.argmax(loose))
         if loose[worst] * sized.scale > _LOOSE:
             lines.append(
@@ -98,7 +99,7 @@ def loose_hands(
         part, wrists = edited.at(span), _wrists(sized.facts.anatomy.arms)
         left, right = (forward_of(part, j) for j in wrists)
         apart = rot.length(seen_by(right, left) / sized.scale - grip.seen)
-        placed = [_placed(sized, constraints, j)[span] for j in wrists]
+        placed = [placed_at(constraints, sized.motion, j)[span] for j in wrists]
         apart[placed[0] & placed[1]] = 0.0
         worst = int(np.argmax(apart))
         if apart[worst] * sized.scale > SEEN_APART:
@@ -112,14 +113,3 @@ def loose_hands(
 
 def _wrists(arms: tuple[Arm, Arm] | None) -> list[int]:
     return [arm.wrist for arm in arms or ()]
-
-
-def _placed(sized: SizedClip, constraints: Sequence[Constraint], joint: int) -> BoolArray:
-    """Return the frames at which a constraint places a joint or what hangs on it, shape (F,)."""
-    skeleton, frames = sized.motion.skeleton, len(sized.motion)
-    placed = np.zeros(frames, dtype=np.bool_)
-    for each in constraints:
-        if each.places_effector and each.at is not None and joint in skeleton.chain(each.at.joint):
-            first, last = each.active(frames)
-            placed[first : last + 1] = True
-    return placed

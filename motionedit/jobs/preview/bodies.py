@@ -132,11 +132,8 @@ def _tip_names(skeleton: Skeleton) -> list[str]:
 
 def _below(skeleton: Skeleton, joint: int) -> list[int]:
     """Return the joints under `joint`, itself first, in file order."""
-    inside = {joint}
-    for j in range(joint + 1, len(skeleton)):
-        if int(skeleton.parents[j]) in inside:
-            inside.add(j)
-    return sorted(inside)
+    joints: list[int] = np.flatnonzero(below(skeleton, joint)).tolist()
+    return joints
 
 
 def _between(skeleton: Skeleton, top: int | None, bottom: int) -> list[int]:
