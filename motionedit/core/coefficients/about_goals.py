@@ -49,7 +49,7 @@ def components_about(
     weights = believed + (1.0 - believed) * near
     E = model.component_rows * weights[:, None]
     if heading or position:
-        at = np.clip(np.floor(places + 0.5).astype(np.intp), 0, model.timeline.frames - 1)
+        at = model.timeline.frames_at(places)
         E[:, :, :_ROOT] = _laid_over(model, at, heading=heading, position=position) * weights[:, None]
     rows = frozen(E.reshape(len(E), -1))
     return replace(model, components=replace(model.components, components=rows))

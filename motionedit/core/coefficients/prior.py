@@ -142,7 +142,7 @@ def _root(prior: ChangePrior, projection: Projection, model: MotionModel, feet: 
     for foot in feet:
         near = _kernel(foot.frames, prior.frames, projection.motion.frame_time)
         fade = np.linalg.solve(prior.kernel_root, near.T).T
-        places = np.floor(projection.places[foot.frames] + 0.5).astype(np.intp)
+        places = model.timeline.frames_at(projection.places[foot.frames])
         # What is picked at once is the foot's alone: all columns of many motions take longer than the rest.
         components = np.moveaxis(model.component_rows[:, places[:, None], foot.columns], 0, -1)
         at, place = np.nonzero(foot.columns[:, None] == prior.columns)

@@ -147,8 +147,7 @@ def _rows(
     q = rotations_in_space(motion, joints, path=path, alignment=alignment)
     tracks = rotation_tracks(q, model.space.references)
     mean = model.mean_rows[:, 3:].reshape(model.timeline.frames, -1, 3)
-    nearest = mean[np.clip(np.floor(places + 0.5).astype(np.intp), 0, len(mean) - 1)]
-    tracks, _ = relabelled(tracks, nearest)
+    tracks, _ = relabelled(tracks, mean[model.timeline.frames_at(places)])
     return pose_rows(tracks, model.space, path=path, alignment=alignment)
 
 

@@ -13,7 +13,7 @@ from motionedit.errors import ClipError
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from motionedit.core.arrays import FloatArray
+    from motionedit.core.arrays import FloatArray, IntArray
 
 
 @dataclass(frozen=True)
@@ -33,6 +33,10 @@ class Timeline:
     frames: int
     frame_rate: float
     events: tuple[tuple[str, int], ...] = ()
+
+    def frames_at(self, places: FloatArray) -> IntArray:
+        """Return the frames nearest to places, of any one shape; halves go up."""
+        return np.clip(np.floor(places + 0.5).astype(np.intp), 0, self.frames - 1)
 
 
 @dataclass(frozen=True, eq=False)
