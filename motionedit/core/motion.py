@@ -52,6 +52,10 @@ class Motion:
         """Return the motion at some of its frames; of a slice its arrays are views."""
         return Motion(self.skeleton, self.rotations[frames], self.translations[frames], self.frame_time)
 
+    def copied(self) -> Motion:
+        """Return the motion with arrays of its own, which can be changed in place."""
+        return Motion(self.skeleton, self.rotations.copy(), self.translations.copy(), self.frame_time)
+
     @property
     def is_fixed(self) -> bool:
         """Whether no array of it can have been changed in place: copies and pickles of arrays can be."""

@@ -10,7 +10,6 @@ import numpy as np
 
 from motionedit.core.blocks import frame_blocks
 from motionedit.core.compiled import compiled
-from motionedit.core.motion import Motion
 from motionedit.core.priorities.drawn_to import drawn_to
 from motionedit.core.priorities.far_floors import lifted
 from motionedit.core.priorities.far_turns import parts_of
@@ -22,6 +21,7 @@ from motionedit.dataclass import dataclass, replace
 if TYPE_CHECKING:
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.kinematics import WorldPoses
+    from motionedit.core.motion import Motion
     from motionedit.core.priorities.ramps import Ends
     from motionedit.core.priorities.task_targets import Targets
 
@@ -177,12 +177,9 @@ def known_again(run: Run, left: Known, start: Motion) -> Known:
 
 
 def _unsolved(run: Run, start: Motion, known: Known | None = None, *, in_place: bool = False) -> Solved:
-    motion = start
-    if not in_place:
-        motion = Motion(start.skeleton, start.rotations.copy(), start.translations.copy(), start.frame_time)
     shape = len(run.idle), run.level_count
     return Solved(
-        motion,
+        start if in_place else start.copied(),
         np.zeros(shape[0], dtype=np.int64),
         run.idle.copy() if known is None else run.idle | known.done,
         np.zeros(shape, dtype=np.int64),

@@ -88,16 +88,10 @@ def _steadied(layers: _Layers, smoothing: Passes) -> _Layers:
     if layers.seen.jerk < _UNSTEADY or body.mobility is None:
         return layers
     firm = replace(layers.asked, body=replace(body, root_mobility=_FIRM * body.root_mobility))
-    new = _smooth(firm, _copied(layers.state), smoothing)
+    # Passes use up the motion that they are given.
+    new = _smooth(firm, replace(layers.state, motion=layers.state.motion.copied()), smoothing)
     is_steadier = new.seen.jerk < layers.seen.jerk and new.seen.much.max() <= layers.seen.much.max()
     return new if is_steadier else layers
-
-
-def _copied(state: Solved) -> Solved:
-    """Return a solution with a motion of its own: passes use theirs up."""
-    motion = state.motion
-    own = replace(motion, rotations=motion.rotations.copy(), translations=motion.translations.copy())
-    return replace(state, motion=own)
 
 
 def _calmest(layers: _Layers, members: list[int], before: FloatArray, smoothing: Passes) -> _Layers:
