@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from motionedit.core.arrays import frozen
-from motionedit.core.pca.fit import PrincipalComponents
-from motionedit.dataclass import dataclass
+from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from motionedit.core.arrays import FloatArray
     from motionedit.core.pca.coordinates import PoseSpace
+    from motionedit.core.pca.fit import PrincipalComponents
     from motionedit.core.skeleton import Skeleton
     from motionedit.core.timeline.warp import Timeline
 
@@ -84,12 +84,10 @@ class MotionModel:
     def truncated(self, count: int) -> MotionModel:
         """Return the model with its first `count` components alone."""
         full = self.components
-        cut = PrincipalComponents(
-            mean=full.mean,
+        cut = replace(
+            full,
             components=full.components[:count],
             explained_variance=full.explained_variance[:count],
-            total_variance=full.total_variance,
             coefficients=frozen(full.coefficients[:, :count].copy()),
-            left_out=full.left_out,
         )
-        return MotionModel(self.skeleton, self.space, self.timeline, self.travel, self.up, cut, self.clips, self.rules)
+        return replace(self, components=cut)
