@@ -14,6 +14,7 @@ from motionedit.core.motion import Motion
 from motionedit.core.priorities import targets as of_all
 from motionedit.core.priorities.edit import prepare
 from motionedit.core.priorities.kinds import Aim, CenterOfMass, Distance, Floor, Orientation, Pose, Position, Posture
+from motionedit.core.priorities.kinds.constraint import ConstraintErrors
 from motionedit.core.priorities.settings import LayeredSettings, PaperFilter
 from motionedit.core.priorities.targets import errors_of, reached
 from motionedit.core.priorities.task_targets import Targets
@@ -55,6 +56,21 @@ KINDS = {
         **EASES,
     ),
 }
+
+
+def test_of_lengths_and_angles_that_are_left_the_larger_counts():
+    near, turned = np.array([0.1, 0.3]), np.array([0.2, 0.1])
+    assert ConstraintErrors(0, near, turned).largest.tolist() == [0.2, 0.3]
+    assert ConstraintErrors(0, near, None).largest is near
+    assert ConstraintErrors(0, None, turned).largest is turned
+
+
+@pytest.mark.parametrize(("kind", "has_one"), [("hips", True), ("position", False), ("aim", False)])
+def test_a_joint_alone_whose_whole_place_is_asked_for_has_a_goal(kind, has_one):
+    places = Targets(4, 5, np.zeros((2, 3)), np.tile(rot.IDENTITY, (2, 1)))
+    goal = KINDS[kind].goal(places)
+    assert (goal is not None) == has_one
+    assert not has_one or goal[0] == joint("Hips")
 
 
 def asked_of(constraint):

@@ -40,6 +40,11 @@ def test_halves_round_up():
     assert [round_half_up(x) for x in (0.5, 1.5, 2.5, 2.49)] == [1, 2, 3, 2]
 
 
+def test_a_place_on_the_timeline_has_the_nearest_of_its_frames():
+    found = Timeline(11, 25.0).frames_at(np.array([-0.7, 0.49, 0.5, 9.6, 12.0]))
+    assert found.tolist() == [0, 0, 1, 10, 10]
+
+
 def test_resampling_at_whole_frames_gives_the_frames():
     motion = stroke(1)
     again = resample(motion, np.arange(len(motion), dtype=float), frame_time=0.02)
