@@ -5,6 +5,7 @@ import json
 import math
 import multiprocessing
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -126,14 +127,12 @@ def messages(monkeypatch):
     """How many items each message had, and its bytes, in the order in which they were sent."""
     sent = []
 
-    class Noted(processes.ForkingPickler):
-        @classmethod
-        def dumps(cls, items):
-            message = processes.multiprocessing.reduction.ForkingPickler.dumps(items)
-            sent.append((len(items), len(message)))
-            return message
+    def noted(items):
+        message = pickle.dumps(items)
+        sent.append((len(items), len(message)))
+        return message
 
-    monkeypatch.setattr(processes, "ForkingPickler", Noted)
+    monkeypatch.setattr(processes, "_packed", noted)
     return sent
 
 

@@ -109,15 +109,15 @@ def normalize(
         As `run`.
     """
     try:
-        with standing_crew(options, name_of=_source_of) as crew:
+        with standing_crew(options, name_of=_name_of) as crew:
             return _both_phases(loaded, tasks, options, crew, before_writing, verdicts)
     finally:
         let_go()
 
 
-def _source_of(item: ClipTask | tuple[ClipTask, ResampleClip]) -> Path | None:
-    """Return the file of an item of either phase."""
-    return (item[0] if isinstance(item, tuple) else item).source
+def _name_of(item: ClipTask | tuple[ClipTask, ResampleClip]) -> str:
+    """Return what the clip of an item of either phase is called."""
+    return (item[0] if isinstance(item, tuple) else item).label
 
 
 def _both_phases(
