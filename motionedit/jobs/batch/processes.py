@@ -55,8 +55,8 @@ def in_processes(
     workers: int,
     is_last: Callable[[Result | WorkerDiedError], bool],
     crew: Crew | None = None,
-) -> Generator[Result | WorkerDiedError]:
-    """Yield function(item) for each item, in order; see `results_in_order`. A crew that is given goes on after it."""
+) -> Generator[list[Result | WorkerDiedError]]:
+    """Yield what function(item) is for each item; see `results_as_they_come`. A crew that is given goes on after it."""
     stays = crew is not None
     crew = crew or Crew()
     crew.turn_to(function, workers)
@@ -71,12 +71,14 @@ def in_processes(
                 crew.begin(items, waiting, before=taken + workers * AHEAD)
             if taken not in results:  # it came after the last one that was wanted
                 break
-            value = results.pop(taken)
-            taken += 1
-            if isinstance(value, Raised):
-                raise value.error
-            yield value
-            if is_last(value):
+            come: list[Result | WorkerDiedError] = []
+            while taken in results and not isinstance(results[taken], Raised):
+                come.append(results.pop(taken))
+                taken += 1
+            if not come:
+                raise results[taken].error
+            yield come
+            if any(map(is_last, come)):
                 waiting.clear()
     finally:
         # At the end they are idle; after Ctrl-C or an error, or where nobody listens, what they do is not wanted.

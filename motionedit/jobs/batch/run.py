@@ -22,18 +22,21 @@ from motionedit.jobs.batch.files import clean_leftovers
 from motionedit.jobs.batch.notices import notices_of
 from motionedit.jobs.batch.one_clip import Done, Outcome, RunOne, RunOwn
 from motionedit.jobs.batch.plan import no_progress
-from motionedit.jobs.batch.pool import results_in_order
+from motionedit.jobs.batch.pool import results_as_they_come, results_in_order
 from motionedit.jobs.batch.records import Records
 from motionedit.jobs.batch.verdicts import Verdict
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Sequence
+    from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 
+    from motionedit.jobs.batch.no_result import WorkerDiedError
     from motionedit.jobs.batch.notices import Notice
     from motionedit.jobs.batch.one_clip import Work
     from motionedit.jobs.batch.plan import ClipTask, RunOptions
     from motionedit.jobs.batch.processes import Crew
     from motionedit.jobs.batch.verdicts import Verdicts
+
+    Ended = tuple[ClipTask, Done, dict[str, Any]]
 
 Item = TypeVar("Item")
 Value = TypeVar("Value")
@@ -146,28 +149,25 @@ def _run(
     from motionedit.core import bvh as _bvh  # noqa: F401  loaded once here, not in every forked worker
 
     waiting = [task for task in tasks if not task.current]
-    folders = [task.output.parent for task in waiting if task.output is not None]
+    folders = {task.output.parent for task in waiting if task.output is not None}
     done: list[Done] = []
     records = Records()
     arrivals = None if options.scheduler is None else Arrivals()
     try:
         if not options.dry_run:
             clean_leftovers(folders)
-        results = results_in_order(
+        results = results_as_they_come(
             run_one, items, options=options, is_last=lambda one: not options.keep_going and _has_failed(one), crew=crew
         )
         with closing(results), options.progress(len(waiting)) as advance:
-            for result in results:
-                one = result if isinstance(result, Done) else Done(errors=(result,))
-                task = waiting[len(done)]
-                one = one if arrivals is None else arrivals.checked(task, one)
-                record = _record(task, one)
-                if verdicts is not None and one.digest is not None and task.output is not None:
-                    verdict = Verdict(record, one.outcome.warnings, bool(options.report_frames))
-                    verdicts.keep(task.output, one.digest, verdict, stamp=task.stamp)
-                records.append(record)
-                done.append(replace(one, outcome=replace(one.outcome, record={})))
-                advance()
+            for ended in _ended(results, waiting, arrivals):
+                # Before any of them counts as done: what is told of a stopped run is kept.
+                if verdicts is not None:
+                    _keep(ended, verdicts, frames=bool(options.report_frames))
+                for _, one, record in ended:
+                    records.append(record)
+                    done.append(replace(one, outcome=replace(one.outcome, record={})))
+                    advance()
     except KeyboardInterrupt:
         if len(tasks) < 2:
             raise
@@ -183,6 +183,31 @@ def _run(
     if options.strict and not options.dry_run:
         _make_stale([task for task, one in pairs if one.outcome.status in MISSED and not one.errors])
     return _collect(pairs, records, options, total=len(tasks), current=len(tasks) - len(waiting))
+
+
+def _ended(
+    results: Iterable[list[Done | WorkerDiedError]], tasks: Sequence[ClipTask], arrivals: Arrivals | None
+) -> Iterator[list[Ended]]:
+    """Yield lists of clips that came together: the task of each, what became of it, its record."""
+    following = iter(tasks)
+    for come in results:
+        ended = []
+        for result, task in zip(come, following, strict=False):
+            one = result if isinstance(result, Done) else Done(errors=(result,))
+            one = one if arrivals is None else arrivals.checked(task, one)
+            ended.append((task, one, _record(task, one)))
+        yield ended
+
+
+def _keep(ended: Sequence[Ended], verdicts: Verdicts, *, frames: bool) -> None:
+    """Keep the verdicts on clips that were written just now; `frames` says whether their records tell of all frames."""
+    verdicts.add(
+        [
+            verdicts.line(task.output, one.digest, Verdict(record, one.outcome.warnings, frames), stamp=task.stamp)
+            for task, one, record in ended
+            if one.digest is not None and task.output is not None
+        ]
+    )
 
 
 def _with_current(tasks: Sequence[ClipTask], done: Sequence[Done]) -> list[tuple[ClipTask, Done]]:
