@@ -295,7 +295,7 @@ def _collect(
         failures=failures,
         exit_code=_exit_code([one for _, one in pairs], total, strict=options.strict),
         seconds=[None if one.current else one.seconds for _, one in pairs],
-        details=[(_heading(task), one.outcome.details) for task, one in made if not one.errors],
+        details=[(_heading(task), one.outcome.details) for task, one in made if options.dry_run and not one.errors],
         contents=[one.outcome.content if isinstance(one.outcome.content, bytes) else None for _, one in made],
         current=current,
     )

@@ -235,6 +235,9 @@ def _with_failures(
     result: BatchResult, tasks: Sequence[ClipTask], failures: dict[str, MotionEditError], warnings: list[str]
 ) -> BatchResult:
     """Return the result with the clips that the first phase left out, in the order of the tasks."""
+    told = replace(result, notices=[*map(Notice, warnings), *result.notices], more={"warnings": warnings})
+    if not failures:
+        return told
     entries = {
         record["clip"]: (record, seconds) for record, seconds in zip(result.records, result.seconds, strict=True)
     }
@@ -243,11 +246,9 @@ def _with_failures(
             entries[task.label] = (_failed_record(task, failures[task.label]), 0.0)
     ordered = [entries[task.label] for task in tasks if task.label in entries]
     return replace(
-        result,
+        told,
         records=[record for record, _ in ordered],
         seconds=[seconds for _, seconds in ordered],
-        notices=[*map(Notice, warnings), *result.notices],
         failures=[*_one_by_one(failures), *result.failures],
-        exit_code=EXIT_CLIP_FAILED if failures else result.exit_code,
-        more={"warnings": warnings},
+        exit_code=EXIT_CLIP_FAILED,
     )
