@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from contextlib import closing, suppress
 from dataclasses import field
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from motionedit.dataclass import dataclass, replace
 from motionedit.errors import (
@@ -14,7 +14,6 @@ from motionedit.errors import (
     EXIT_OUT_OF_TOLERANCE,
     EXIT_USAGE,
     MISSED,
-    ClipError,
     MotionEditError,
 )
 from motionedit.jobs.batch.arrivals import Arrivals
@@ -22,12 +21,12 @@ from motionedit.jobs.batch.files import clean_leftovers
 from motionedit.jobs.batch.notices import notices_of
 from motionedit.jobs.batch.one_clip import Done, Outcome, RunOne, RunOwn
 from motionedit.jobs.batch.plan import no_progress
-from motionedit.jobs.batch.pool import results_as_they_come, results_in_order
+from motionedit.jobs.batch.pool import results_as_they_come
 from motionedit.jobs.batch.records import Records
 from motionedit.jobs.batch.verdicts import Verdict
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from motionedit.jobs.batch.no_result import WorkerDiedError
     from motionedit.jobs.batch.notices import Notice
@@ -37,9 +36,6 @@ if TYPE_CHECKING:
     from motionedit.jobs.batch.verdicts import Verdicts
 
     Ended = tuple[ClipTask, Done, dict[str, Any]]
-
-Item = TypeVar("Item")
-Value = TypeVar("Value")
 
 _NANOSECONDS_STALE = 1_000_000_000
 
@@ -233,45 +229,6 @@ def _make_stale(tasks: Sequence[ClipTask]) -> None:
             with suppress(OSError):
                 before = task.source.stat().st_mtime_ns - _NANOSECONDS_STALE
                 os.utime(task.output, ns=(before, before))
-
-
-def map_tasks(
-    function: Callable[[Item], Value], items: Sequence[Item], options: RunOptions, *, crew: Crew | None = None
-) -> list[Value | MotionEditError]:
-    """Return function(item) for each item in order, on the workers that `options` asks for.
-
-    A MotionEditError, of one fault or several, or OSError of an item comes back as its value; every item is tried.
-    `function`, items and values are pickled where there are several workers, those of `crew` if it is given.
-    """
-    return list(values_in_order(function, items, options, crew=crew))
-
-
-def values_in_order(
-    function: Callable[[Item], Value], items: Sequence[Item], options: RunOptions, *, crew: Crew | None = None
-) -> Generator[Value | MotionEditError]:
-    """Yield what `map_tasks` returns, one by one: of many large values few are held at a time."""
-    from motionedit.core import bvh as _bvh  # noqa: F401  as above
-
-    results = results_in_order(_Guarded(function), items, options=options, crew=crew)
-    with closing(results), options.progress(len(items)) as advance:
-        for value in results:
-            yield value
-            advance()
-
-
-@dataclass(frozen=True)
-class _Guarded:
-    """A function whose errors are values, as a worker runs it."""
-
-    function: Callable[[Any], Any]
-
-    def __call__(self, item: Any) -> Any:  # noqa: ANN401  any function of map_tasks
-        try:
-            return self.function(item)
-        except MotionEditError as error:
-            return error
-        except OSError as error:
-            return ClipError(error.strerror or str(error), file=error.filename and str(error.filename))
 
 
 def _has_failed(result: Done | MotionEditError) -> bool:

@@ -16,7 +16,8 @@ from motionedit.jobs.batch.notices import Notice
 from motionedit.jobs.batch.one_clip import write_file
 from motionedit.jobs.batch.plan import find_clips, plan
 from motionedit.jobs.batch.pool import standing_crew, workers_for
-from motionedit.jobs.batch.run import BatchResult, earlier, failed_record, map_tasks, run_each
+from motionedit.jobs.batch.run import BatchResult, earlier, failed_record, run_each
+from motionedit.jobs.batch.values import map_tasks
 from motionedit.jobs.batch.verdicts import run_key, verdicts_in
 from motionedit.jobs.normalize.common_timeline import common_timeline, events_out_of_order
 from motionedit.jobs.normalize.measures import ClipMeasure, MeasureClip, sound_measures
