@@ -147,7 +147,8 @@ def _hashed(self: object) -> int:
 
 def _sent(self: object) -> dict[str, Any]:
     # In another process texts have other hashes.
-    return {name: value for name, value in self.__dict__.items() if name != _HASH}
+    own = self.__dict__
+    return {name: value for name, value in own.items() if name != _HASH} if _HASH in own else own
 
 
 _HASH = " hash"

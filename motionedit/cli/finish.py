@@ -44,8 +44,8 @@ def finish_batch(result: BatchResult, options: RunOptions, *, command: str, spec
 
 def _list(paths: Sequence[str]) -> None:
     """Print the files written, one a line: as bytes for other programs, since a name need not be text."""
-    for path in paths:
-        to_stdout(printable(path) if sys.stdout is not None and sys.stdout.isatty() else os.fsencode(path))
+    shown = sys.stdout is not None and sys.stdout.isatty()
+    to_stdout("\n".join(map(printable, paths)) if shown else b"\n".join(map(os.fsencode, paths)))
 
 
 def _say(result: BatchResult, options: RunOptions) -> None:

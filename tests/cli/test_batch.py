@@ -9,7 +9,8 @@ from motionedit.core.bvh import VerifyResult, unedited_bytes
 from motionedit.errors import ClipError, MotionEditErrors, SpecError
 from motionedit.jobs.batch.one_clip import Outcome
 from motionedit.jobs.batch.plan import RunOptions, plan
-from motionedit.jobs.batch.run import map_tasks, run_batch
+from motionedit.jobs.batch.run import run_batch
+from motionedit.jobs.batch.values import map_tasks
 
 
 @dataclass(frozen=True)

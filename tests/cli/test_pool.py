@@ -5,6 +5,7 @@ import json
 import math
 import multiprocessing
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -18,7 +19,7 @@ from motionedit.errors import UsageError
 from motionedit.jobs.batch import processes
 from motionedit.jobs.batch.no_result import WorkerDiedError
 from motionedit.jobs.batch.plan import RunOptions
-from motionedit.jobs.batch.pool import results_in_order, standing_crew
+from motionedit.jobs.batch.pool import results_as_they_come, results_in_order, standing_crew
 
 
 def slow_first(item):
@@ -47,6 +48,12 @@ def first_letter(item):
     return item[0]
 
 
+def refuse_sixty(item):
+    if item == 60:
+        raise ValueError(item)
+    return item
+
+
 def mark(folder, item):
     (folder / str(item)).touch()
     time.sleep(0.02)
@@ -70,6 +77,22 @@ def interrupt_itself(item):
 def test_results_are_in_order_for_any_number_of_workers(jobs):
     found = list(results_in_order(slow_first, range(6), options=RunOptions(jobs=jobs)))
     assert found == [0, 1, 4, 9, 16, 25]
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_results_that_came_together_come_in_one_list(jobs):
+    found = list(results_as_they_come(abs, range(400), options=RunOptions(jobs=jobs)))
+    assert [value for come in found for value in come] == list(range(400))
+    assert all(found)
+    assert len(found) == 400 if jobs == 1 else len(found) < 200
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_an_error_is_raised_after_the_results_before_it(jobs):
+    results, found = results_in_order(refuse_sixty, range(200), options=RunOptions(jobs=jobs)), []
+    with pytest.raises(ValueError, match="60"):
+        found.extend(results)
+    assert found == list(range(60))
 
 
 def test_one_item_needs_no_worker():
@@ -126,14 +149,12 @@ def messages(monkeypatch):
     """How many items each message had, and its bytes, in the order in which they were sent."""
     sent = []
 
-    class Noted(processes.ForkingPickler):
-        @classmethod
-        def dumps(cls, items):
-            message = processes.multiprocessing.reduction.ForkingPickler.dumps(items)
-            sent.append((len(items), len(message)))
-            return message
+    def noted(items):
+        message = pickle.dumps(items)
+        sent.append((len(items), len(message)))
+        return message
 
-    monkeypatch.setattr(processes, "ForkingPickler", Noted)
+    monkeypatch.setattr(processes, "_packed", noted)
     return sent
 
 

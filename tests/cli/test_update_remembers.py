@@ -2,9 +2,14 @@
 
 import json
 import os
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+
+from motionedit.jobs.batch.plan import RunOptions
+from motionedit.jobs.edit_prioritized import job
+from motionedit.spec.load import load_spec
 
 MISSED = {"type": "position", "effector": "LeftForeArm", "points": [{"at": 4, "shift": [0, 900, 0]}], "tolerance": 0.1}
 
@@ -124,3 +129,20 @@ def test_what_was_not_verified_is_made_again_where_it_is_to_be(edit):
     assert edit("--update", "--verify").stdout == "out/a.bvh\nout/b.bvh\n"
     assert edit("--update", "--verify").stdout == ""
     assert edit("--update").stdout == ""
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_a_clip_counts_as_done_when_its_verdict_is_kept(clip, jobs, tmp_path):
+    """A run that is killed then loses no verdict of a clip that its progress told of."""
+    for seed in range(24):
+        clip(f"in/{seed}.bvh", seed=seed)
+    spec = load_spec({"schema": "motionedit/edit-prioritized/v1", "constraints": [MISSED]}, "edit-prioritized")
+    kept = []
+
+    @contextmanager
+    def progress(_clips):
+        yield lambda: kept.append((tmp_path / "out/.motionedit-verdicts.jsonl").read_bytes().count(b"\n"))
+
+    job.run(spec, [tmp_path / "in"], str(tmp_path / "out"), RunOptions(jobs=jobs, progress=progress))
+    assert len(kept) == 24
+    assert all(lines >= done for done, lines in enumerate(kept, start=1))

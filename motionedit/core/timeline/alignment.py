@@ -61,17 +61,18 @@ def align_to(frame: Frame, *, heading: bool, position: bool) -> Alignment:
 
 
 def align_each(frames: Sequence[Frame], *, heading: bool, position: bool) -> list[Alignment]:
-    """Return what `align_to` does of each of some frames: their rotations in one call."""
-    rotations = np.broadcast_to(rot.IDENTITY, (len(frames), 4))
-    if heading and frames:
-        rotations = rot.from_matrix(np.array([reference_axes(frame.up).T @ frame.axes for frame in frames]))
-    return [
-        Alignment(
-            frozen(rotation),
-            frozen(frame.origin - (frame.origin @ frame.up) * frame.up if position else np.zeros(3)),
-        )
-        for frame, rotation in zip(frames, rotations, strict=True)
-    ]
+    """Return what `align_to` does of each of some frames: their arrays in few calls."""
+    if not frames:
+        return []
+    rotations, origins = np.broadcast_to(rot.IDENTITY, (len(frames), 4)), np.zeros((len(frames), 3))
+    axes = np.array([frame.axes for frame in frames])
+    if heading:
+        references = np.array([reference_axes(frame.up) for frame in frames])
+        rotations = rot.from_matrix(references.swapaxes(1, 2) @ axes)
+    if position:
+        origins, ups = np.array([frame.origin for frame in frames]), axes[:, 1]
+        origins = origins - np.sum(origins * ups, axis=-1, keepdims=True) * ups
+    return [Alignment(*each) for each in zip(frozen(rotations), frozen(origins), strict=True)]
 
 
 @dataclass(frozen=True, eq=False)

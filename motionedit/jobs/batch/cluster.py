@@ -57,8 +57,8 @@ def on_cluster(
     items: Sequence[Item],
     address: str,
     is_last: Callable[[Result | WorkerDiedError], bool],
-) -> Generator[Result | WorkerDiedError]:
-    """Yield function(item) for each item, in order; see `results_in_order`.
+) -> Generator[list[Result | WorkerDiedError]]:
+    """Yield what function(item) is for each item, one by one; see `results_as_they_come`.
 
     Raises
     ------
@@ -79,7 +79,7 @@ def on_cluster(
                 taken += 1
                 if isinstance(value, Raised):
                     raise value.error
-                yield value
+                yield [value]
                 if is_last(value):
                     waiting.clear()
             elif cluster.is_busy:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from motionedit.jobs.batch.files import status_of
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
@@ -11,13 +13,8 @@ if TYPE_CHECKING:
 
 def stamp_of(source: Path | None) -> tuple[int, int] | None:
     """Return what is another where a clip's file is another, though it be older: its size and its time (ns)."""
-    if source is None:
-        return None
-    try:
-        status = source.stat()
-    except OSError:  # whoever reads it says so
-        return None
-    return status.st_size, status.st_mtime_ns
+    status = None if source is None else status_of(source)
+    return None if status is None else (status.st_size, status.st_mtime_ns)
 
 
 def nothing_is_newer(outputs: Sequence[Path], made_from: Sequence[Path]) -> bool:

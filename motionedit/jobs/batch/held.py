@@ -8,17 +8,15 @@ from typing import TYPE_CHECKING
 from motionedit.dataclass import replace
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from motionedit.core.bvh import Clip
     from motionedit.jobs.batch.plan import ClipTask
 
 
 class _Held(threading.local):
-    """Clips without their rows, by their files, and how many bytes their motions are: each thread's own."""
+    """Clips without their rows, by their labels, and how many bytes their motions are: each thread's own."""
 
     def __init__(self) -> None:
-        self.clips: dict[Path, Clip] = {}
+        self.clips: dict[str, Clip] = {}
         self.bytes = 0
 
 
@@ -31,12 +29,12 @@ def hold(task: ClipTask, clip: Clip, *, most: int) -> None:
     size = _HELD.bytes + motion.rotations.nbytes + motion.translations.nbytes
     if task.clip is None and task.source is not None and size <= most:
         _HELD.bytes = size
-        _HELD.clips[task.source] = clip.without_rows()
+        _HELD.clips[task.label] = clip.without_rows()
 
 
 def with_held(task: ClipTask) -> ClipTask:
     """Return a task with its clip, which is held no more, if it was."""
-    clip = None if task.source is None else _HELD.clips.pop(task.source, None)
+    clip = _HELD.clips.pop(task.label, None)
     return task if clip is None else replace(task, clip=clip)
 
 

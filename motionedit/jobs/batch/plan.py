@@ -152,7 +152,7 @@ def find_clips(clips: Sequence[Path], *, leave_out: Path | None = None) -> list[
 def folder_clips(folder: Path, *, leave_out: Path | None = None) -> list[ClipTask]:
     """Return the clips of one folder as `find_clips` does, none where it has none."""
     found = sorted(_clips_below(folder, leave_out))
-    if leave_out is not None and not leave_out.is_dir():
+    if leave_out is not None and os.path.lexists(leave_out) and not leave_out.is_dir():
         # An output of an earlier run inside the folder is no clip, unless it is all there is: then it is refused.
         left_out = identity(leave_out)
         found = [(name, clip) for name, clip in found if identity(clip) != left_out] or found

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from contextlib import nullcontext
+from contextlib import closing, nullcontext
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from motionedit.interrupts import clean_up_first
@@ -33,7 +33,25 @@ def results_in_order(
     is_last: Callable[[Result | WorkerDiedError], bool] = lambda _: False,
     crew: Crew | None = None,
 ) -> Generator[Result | WorkerDiedError]:
-    """Yield function(item) for each item, in order.
+    """Yield function(item) for each item, in order; see `results_as_they_come`."""
+    return _each(results_as_they_come(function, items, options=options, is_last=is_last, crew=crew))
+
+
+def _each(results: Generator[list[Result]]) -> Generator[Result]:
+    with closing(results):
+        for come in results:
+            yield from come
+
+
+def results_as_they_come(
+    function: Callable[[Item], Result],
+    items: Sequence[Item],
+    *,
+    options: RunOptions,
+    is_last: Callable[[Result | WorkerDiedError], bool] = lambda _: False,
+    crew: Crew | None = None,
+) -> Generator[list[Result | WorkerDiedError]]:
+    """Yield lists of function(item), in the items' order: in each, all that have come since those before.
 
     Several processes or a cluster need a `function`, items and results that can be pickled. After a result that
     `is_last` no item is begun; those that others had begun by then still come. An item whose worker dies gives a
@@ -83,10 +101,10 @@ def threads_within(items: int, options: RunOptions) -> int:
 
 def _one_by_one(
     function: Callable[[Item], Result], items: Sequence[Item], is_last: Callable[[Result | WorkerDiedError], bool]
-) -> Generator[Result | WorkerDiedError]:
+) -> Generator[list[Result | WorkerDiedError]]:
     for item in items:
         result = function(item)
-        yield result
+        yield [result]
         if is_last(result):
             return
 

@@ -11,14 +11,14 @@ from __future__ import annotations
 import contextlib
 import multiprocessing
 import os
+import pickle
 import signal
 import sys
 import threading
 import time
 from collections import deque
-from itertools import takewhile
+from itertools import islice, takewhile
 from multiprocessing.connection import wait
-from multiprocessing.reduction import ForkingPickler
 from typing import TYPE_CHECKING, Any, NamedTuple, Self, TypeVar
 
 from motionedit.jobs.batch.no_result import Raised, WorkerDiedError
@@ -33,7 +33,7 @@ Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 # Items that are begun, for each worker, before the results of those before are taken: results that wait take memory.
-AHEAD = 32
+AHEAD = 64
 # Messages that a worker has at once: the one it works on, and the next, so that it need not wait for its parent.
 IN_HAND = 2
 # Items of one message, at most. What workers have in hand is half of what may be begun: where one is late with its
@@ -42,7 +42,7 @@ _AT_ONCE = AHEAD // (2 * IN_HAND)
 # Of one message, at most: that both sides of a pipe write at once, and neither reads, must not be. And its items take
 # about so long.
 _MOST_BYTES = 1 << 15
-_SECONDS_A_MESSAGE = 0.02
+_SECONDS_A_MESSAGE = 0.04
 # Windows answers Ctrl-C only between waits.
 SECONDS_WITHOUT_CTRL_C = 0.2
 _SECONDS_TO_END = 5.0
@@ -55,8 +55,8 @@ def in_processes(
     workers: int,
     is_last: Callable[[Result | WorkerDiedError], bool],
     crew: Crew | None = None,
-) -> Generator[Result | WorkerDiedError]:
-    """Yield function(item) for each item, in order; see `results_in_order`. A crew that is given goes on after it."""
+) -> Generator[list[Result | WorkerDiedError]]:
+    """Yield what function(item) is for each item; see `results_as_they_come`. A crew that is given goes on after it."""
     stays = crew is not None
     crew = crew or Crew()
     crew.turn_to(function, workers)
@@ -71,12 +71,14 @@ def in_processes(
                 crew.begin(items, waiting, before=taken + workers * AHEAD)
             if taken not in results:  # it came after the last one that was wanted
                 break
-            value = results.pop(taken)
-            taken += 1
-            if isinstance(value, Raised):
-                raise value.error
-            yield value
-            if is_last(value):
+            come: list[Result | WorkerDiedError] = []
+            while taken in results and not isinstance(results[taken], Raised):
+                come.append(results.pop(taken))
+                taken += 1
+            if not come:
+                raise results[taken].error
+            yield come
+            if any(map(is_last, come)):
                 waiting.clear()
     finally:
         # At the end they are idle; after Ctrl-C or an error, or where nobody listens, what they do is not wanted.
@@ -162,7 +164,7 @@ class Crew:
             most = max(1, min(self._at_once, self._fit, len(waiting) // (IN_HAND * self._count)))
             places = self._take(worker, items, waiting, most=most, before=before)
             worker.in_hand.append(places)
-            message = ForkingPickler.dumps([items[place] for place in places])
+            message = _packed([items[place] for place in places])
             self._fit = _MOST_BYTES * len(places) // len(message)
             # A worker that is gone is seen where its results are awaited.
             with contextlib.suppress(BrokenPipeError, ConnectionError):
@@ -173,8 +175,8 @@ class Crew:
         places = list(takewhile(before.__gt__, waiting))
         name_of, homes = self._name_of, self._homes
         if name_of is not None:
-            own = [place for place in places if homes.get(name_of(items[place])) is worker]
-            places = (own or places)[:most]
+            own = (place for place in places if homes.get(name_of(items[place])) is worker)
+            places = [*islice(own, most)] or places[:most]
             homes.update((name_of(items[place]), worker) for place in places)
         places = places[:most]
         for place in places:
@@ -247,7 +249,12 @@ def _work(function: Callable[[Any], Any], pipe: Connection[Any, Any]) -> None:
             continue
         start = time.perf_counter()
         results = [_result_of(function, one) for one in message]
-        pipe.send(_Answer(results, time.perf_counter() - start))
+        pipe.send_bytes(_packed(_Answer(results, time.perf_counter() - start)))
+
+
+def _packed(message: object) -> bytes:
+    """Return a message for `recv`: a pipe's own `send` takes longer, since it takes open files and sockets, too."""
+    return pickle.dumps(message, pickle.HIGHEST_PROTOCOL)
 
 
 def _result_of(function: Callable[[Any], Any], item: Any) -> Any:  # noqa: ANN401  any function of in_processes

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from contextlib import closing, suppress
 from dataclasses import field
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from motionedit.dataclass import dataclass, replace
 from motionedit.errors import (
@@ -14,7 +14,6 @@ from motionedit.errors import (
     EXIT_OUT_OF_TOLERANCE,
     EXIT_USAGE,
     MISSED,
-    ClipError,
     MotionEditError,
 )
 from motionedit.jobs.batch.arrivals import Arrivals
@@ -22,21 +21,21 @@ from motionedit.jobs.batch.files import clean_leftovers
 from motionedit.jobs.batch.notices import notices_of
 from motionedit.jobs.batch.one_clip import Done, Outcome, RunOne, RunOwn
 from motionedit.jobs.batch.plan import no_progress
-from motionedit.jobs.batch.pool import results_in_order
+from motionedit.jobs.batch.pool import results_as_they_come
 from motionedit.jobs.batch.records import Records
 from motionedit.jobs.batch.verdicts import Verdict
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
+    from motionedit.jobs.batch.no_result import WorkerDiedError
     from motionedit.jobs.batch.notices import Notice
     from motionedit.jobs.batch.one_clip import Work
     from motionedit.jobs.batch.plan import ClipTask, RunOptions
     from motionedit.jobs.batch.processes import Crew
     from motionedit.jobs.batch.verdicts import Verdicts
 
-Item = TypeVar("Item")
-Value = TypeVar("Value")
+    Ended = tuple[ClipTask, Done, dict[str, Any]]
 
 _NANOSECONDS_STALE = 1_000_000_000
 
@@ -146,28 +145,25 @@ def _run(
     from motionedit.core import bvh as _bvh  # noqa: F401  loaded once here, not in every forked worker
 
     waiting = [task for task in tasks if not task.current]
-    folders = [task.output.parent for task in waiting if task.output is not None]
+    folders = {task.output.parent for task in waiting if task.output is not None}
     done: list[Done] = []
     records = Records()
     arrivals = None if options.scheduler is None else Arrivals()
     try:
         if not options.dry_run:
             clean_leftovers(folders)
-        results = results_in_order(
+        results = results_as_they_come(
             run_one, items, options=options, is_last=lambda one: not options.keep_going and _has_failed(one), crew=crew
         )
         with closing(results), options.progress(len(waiting)) as advance:
-            for result in results:
-                one = result if isinstance(result, Done) else Done(errors=(result,))
-                task = waiting[len(done)]
-                one = one if arrivals is None else arrivals.checked(task, one)
-                record = _record(task, one)
-                if verdicts is not None and one.digest is not None and task.output is not None:
-                    verdict = Verdict(record, one.outcome.warnings, bool(options.report_frames))
-                    verdicts.keep(task.output, one.digest, verdict, stamp=task.stamp)
-                records.append(record)
-                done.append(replace(one, outcome=replace(one.outcome, record={})))
-                advance()
+            for ended in _ended(results, waiting, arrivals):
+                # Before any of them counts as done: what is told of a stopped run is kept.
+                if verdicts is not None:
+                    _keep(ended, verdicts, frames=bool(options.report_frames))
+                for _, one, record in ended:
+                    records.append(record)
+                    done.append(replace(one, outcome=replace(one.outcome, record={})))
+                    advance()
     except KeyboardInterrupt:
         if len(tasks) < 2:
             raise
@@ -183,6 +179,31 @@ def _run(
     if options.strict and not options.dry_run:
         _make_stale([task for task, one in pairs if one.outcome.status in MISSED and not one.errors])
     return _collect(pairs, records, options, total=len(tasks), current=len(tasks) - len(waiting))
+
+
+def _ended(
+    results: Iterable[list[Done | WorkerDiedError]], tasks: Sequence[ClipTask], arrivals: Arrivals | None
+) -> Iterator[list[Ended]]:
+    """Yield lists of clips that came together: the task of each, what became of it, its record."""
+    following = iter(tasks)
+    for come in results:
+        ended = []
+        for result, task in zip(come, following, strict=False):
+            one = result if isinstance(result, Done) else Done(errors=(result,))
+            one = one if arrivals is None else arrivals.checked(task, one)
+            ended.append((task, one, _record(task, one)))
+        yield ended
+
+
+def _keep(ended: Sequence[Ended], verdicts: Verdicts, *, frames: bool) -> None:
+    """Keep the verdicts on clips that were written just now; `frames` says whether their records tell of all frames."""
+    verdicts.add(
+        [
+            verdicts.line(task.output, one.digest, Verdict(record, one.outcome.warnings, frames), stamp=task.stamp)
+            for task, one, record in ended
+            if one.digest is not None and task.output is not None
+        ]
+    )
 
 
 def _with_current(tasks: Sequence[ClipTask], done: Sequence[Done]) -> list[tuple[ClipTask, Done]]:
@@ -210,45 +231,6 @@ def _make_stale(tasks: Sequence[ClipTask]) -> None:
                 os.utime(task.output, ns=(before, before))
 
 
-def map_tasks(
-    function: Callable[[Item], Value], items: Sequence[Item], options: RunOptions, *, crew: Crew | None = None
-) -> list[Value | MotionEditError]:
-    """Return function(item) for each item in order, on the workers that `options` asks for.
-
-    A MotionEditError, of one fault or several, or OSError of an item comes back as its value; every item is tried.
-    `function`, items and values are pickled where there are several workers, those of `crew` if it is given.
-    """
-    return list(values_in_order(function, items, options, crew=crew))
-
-
-def values_in_order(
-    function: Callable[[Item], Value], items: Sequence[Item], options: RunOptions, *, crew: Crew | None = None
-) -> Generator[Value | MotionEditError]:
-    """Yield what `map_tasks` returns, one by one: of many large values few are held at a time."""
-    from motionedit.core import bvh as _bvh  # noqa: F401  as above
-
-    results = results_in_order(_Guarded(function), items, options=options, crew=crew)
-    with closing(results), options.progress(len(items)) as advance:
-        for value in results:
-            yield value
-            advance()
-
-
-@dataclass(frozen=True)
-class _Guarded:
-    """A function whose errors are values, as a worker runs it."""
-
-    function: Callable[[Any], Any]
-
-    def __call__(self, item: Any) -> Any:  # noqa: ANN401  any function of map_tasks
-        try:
-            return self.function(item)
-        except MotionEditError as error:
-            return error
-        except OSError as error:
-            return ClipError(error.strerror or str(error), file=error.filename and str(error.filename))
-
-
 def _has_failed(result: Done | MotionEditError) -> bool:
     return not isinstance(result, Done) or bool(result.errors)
 
@@ -270,7 +252,7 @@ def _collect(
         failures=failures,
         exit_code=_exit_code([one for _, one in pairs], total, strict=options.strict),
         seconds=[None if one.current else one.seconds for _, one in pairs],
-        details=[(_heading(task), one.outcome.details) for task, one in made if not one.errors],
+        details=[(_heading(task), one.outcome.details) for task, one in made if options.dry_run and not one.errors],
         contents=[one.outcome.content if isinstance(one.outcome.content, bytes) else None for _, one in made],
         current=current,
     )

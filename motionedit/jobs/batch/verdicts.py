@@ -116,8 +116,8 @@ class Verdicts:
         except (OSError, KeyError, ValueError):
             return None
 
-    def keep(self, output: Path, digest: str, verdict: Verdict, *, stamp: tuple[int, int] | None) -> None:
-        """Add the verdict on an output that was written just now; `digest` is the SHA-256 of what was written."""
+    def line(self, output: Path, digest: str, verdict: Verdict, *, stamp: tuple[int, int] | None) -> bytes:
+        """Return the line of a verdict, for `add`; `digest` is the SHA-256 of the output that was written just now."""
         said = {
             "output": self._name(output),
             "sha256": digest,
@@ -127,14 +127,20 @@ class Verdicts:
             "record": plain({key: value for key, value in verdict.record.items() if key not in _KEPT_ELSEWHERE}),
             "warnings": list(verdict.warnings),
         }
-        line = json.dumps(said).encode() + b"\n"
+        return json.dumps(said).encode() + b"\n"
+
+    def add(self, lines: Sequence[bytes]) -> None:
+        """Add lines: of clips that came together at once, since to open the file takes longer than to make a line."""
+        if not lines:
+            return
+        data = b"".join(lines)
         # Without its verdict a clip is made again: that is all that a full disk does here.
         with contextlib.suppress(OSError), self._opened() as stream:
             at = stream.seek(0, os.SEEK_END)
             if at not in (0, self._end) and stream.seek(-1, os.SEEK_END) and stream.read(1) != b"\n":
                 at += stream.write(b"\n")  # a killed run wrote but half a line
-            self._end = at + stream.write(line)
-            self._added += len(line)
+            self._end = at + stream.write(data)
+            self._added += len(data)
 
     def close(self) -> None:
         """Leave out lines that later ones stand for."""

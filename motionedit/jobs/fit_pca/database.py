@@ -14,7 +14,7 @@ from motionedit.errors import ClipError, ModelError, MotionEditError, UsageError
 from motionedit.jobs.batch.files import Places, bytes_of
 from motionedit.jobs.batch.one_clip import read_task
 from motionedit.jobs.batch.plan import ClipTask
-from motionedit.jobs.batch.run import map_tasks, values_in_order
+from motionedit.jobs.batch.values import map_tasks, values_in_order
 from motionedit.jobs.normalize.normalization_file import NAME, Normalization, NormalizedClip, read_normalization
 
 if TYPE_CHECKING:

@@ -16,7 +16,8 @@ from motionedit.jobs.batch.notices import Notice
 from motionedit.jobs.batch.one_clip import write_file
 from motionedit.jobs.batch.plan import find_clips, plan
 from motionedit.jobs.batch.pool import standing_crew, workers_for
-from motionedit.jobs.batch.run import BatchResult, earlier, failed_record, map_tasks, run_each
+from motionedit.jobs.batch.run import BatchResult, earlier, failed_record, run_each
+from motionedit.jobs.batch.values import map_tasks
 from motionedit.jobs.batch.verdicts import run_key, verdicts_in
 from motionedit.jobs.normalize.common_timeline import common_timeline, events_out_of_order
 from motionedit.jobs.normalize.measures import ClipMeasure, MeasureClip, sound_measures
@@ -109,15 +110,15 @@ def normalize(
         As `run`.
     """
     try:
-        with standing_crew(options, name_of=_source_of) as crew:
+        with standing_crew(options, name_of=_name_of) as crew:
             return _both_phases(loaded, tasks, options, crew, before_writing, verdicts)
     finally:
         let_go()
 
 
-def _source_of(item: ClipTask | tuple[ClipTask, ResampleClip]) -> Path | None:
-    """Return the file of an item of either phase."""
-    return (item[0] if isinstance(item, tuple) else item).source
+def _name_of(item: ClipTask | tuple[ClipTask, ResampleClip]) -> str:
+    """Return what the clip of an item of either phase is called."""
+    return (item[0] if isinstance(item, tuple) else item).label
 
 
 def _both_phases(
@@ -235,6 +236,9 @@ def _with_failures(
     result: BatchResult, tasks: Sequence[ClipTask], failures: dict[str, MotionEditError], warnings: list[str]
 ) -> BatchResult:
     """Return the result with the clips that the first phase left out, in the order of the tasks."""
+    told = replace(result, notices=[*map(Notice, warnings), *result.notices], more={"warnings": warnings})
+    if not failures:
+        return told
     entries = {
         record["clip"]: (record, seconds) for record, seconds in zip(result.records, result.seconds, strict=True)
     }
@@ -243,11 +247,9 @@ def _with_failures(
             entries[task.label] = (_failed_record(task, failures[task.label]), 0.0)
     ordered = [entries[task.label] for task in tasks if task.label in entries]
     return replace(
-        result,
+        told,
         records=[record for record, _ in ordered],
         seconds=[seconds for _, seconds in ordered],
-        notices=[*map(Notice, warnings), *result.notices],
         failures=[*_one_by_one(failures), *result.failures],
-        exit_code=EXIT_CLIP_FAILED if failures else result.exit_code,
-        more={"warnings": warnings},
+        exit_code=EXIT_CLIP_FAILED,
     )
