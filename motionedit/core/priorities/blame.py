@@ -9,14 +9,18 @@ from motionedit.core.priorities.targets import errors_of
 from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable
 
     from motionedit.core.priorities.groups import Asked
     from motionedit.core.priorities.kinds.constraint import ConstraintErrors
 
+    Places = tuple[int, ...]
+
 # Nearer is nearer by this share of the error, and by this many metres or radians: less is rounding, or no help.
 _SHARE = 0.1
 _LEAST = 1e-4
+# So many are tried one by one.
+_ONE_BY_ONE = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,27 +39,46 @@ class Blame:
     left: ConstraintErrors
 
 
-def blame_of(asked: Asked, i: int, frame: int) -> Blame:
-    """Return why constraint `i` of an edit is missed at a frame at which it is active.
+class Blames:
+    """Why constraints of an edit are missed: frames are solved again, each time without some that are active there."""
 
-    The frame is solved again as often as there are constraints of the same or a higher priority that move the same
-    joints there, each time without one of them. Where it takes more than one away to help, all of them are to blame.
-    """
-    here = _at(asked, frame)
-    everything = [k for k, each in enumerate(asked.targets) if each.first <= frame <= each.last]
-    rivals = [k for k in everything if _is_rival(asked, k, i)]
-    left = _left(here, everything, i)
-    with_all = float(left.largest.max())
+    def __init__(self, asked: Asked) -> None:
+        self._asked = asked
+        self._solved: dict[tuple[int, Places], tuple[ConstraintErrors, ...]] = {}
 
-    def helps(gone: Sequence[int]) -> bool:
-        without = float(_left(here, [k for k in everything if k not in gone], i).largest.max())
-        return with_all - without > max(_LEAST, _SHARE * with_all)
+    def of(self, i: int, frame: int) -> Blame:
+        """Return why constraint `i` is missed at a frame at which it is active.
 
-    if not rivals or not helps(rivals):
-        return Blame((), left)
+        The others are those of the same or a higher priority that move the same joints there. Where it takes more than
+        one away to help, all of them are to blame.
+        """
+        everything = tuple(k for k, each in enumerate(self._asked.targets) if each.first <= frame <= each.last)
+        rivals = tuple(k for k in everything if _is_rival(self._asked, k, i))
+        left = self._left(everything, frame, i)
+        with_all = float(left.largest.max())
+
+        def helps(gone: Places) -> bool:
+            left = self._left(tuple(k for k in everything if k not in gone), frame, i)
+            return with_all - float(left.largest.max()) > max(_LEAST, _SHARE * with_all)
+
+        return Blame(_to_blame(rivals, helps) if rivals and helps(rivals) else (), left)
+
+    def _left(self, kept: Places, frame: int, i: int) -> ConstraintErrors:
+        """Return what is left of a constraint at a frame where some alone are asked for."""
+        if (frame, kept) not in self._solved:
+            self._solved[frame, kept] = _errors(_at(self._asked, frame).only(kept))
+        return self._solved[frame, kept][kept.index(i)]
+
+
+def _to_blame(rivals: Places, helps: Callable[[Places], bool]) -> Places:
+    """Return those of some whose absence helps that help by themselves, many tried half by half; else all of them."""
     if len(rivals) == 1:
-        return Blame(tuple(rivals), left)
-    return Blame(tuple(k for k in rivals if helps([k])) or tuple(rivals), left)
+        return rivals
+    middle = len(rivals) // 2
+    halves = (rivals[:middle], rivals[middle:])
+    parts = halves if len(rivals) > _ONE_BY_ONE else tuple((k,) for k in rivals)
+    found = [_to_blame(part, helps) for part in parts if helps(part)]
+    return tuple(k for part in found for k in part) or rivals
 
 
 def _is_rival(asked: Asked, other: int, i: int) -> bool:
@@ -78,8 +101,7 @@ def _at(asked: Asked, frame: int) -> Asked:
     return replace(asked, motion=asked.motion.at(span), targets=targets, arcs=none, ramps=no_ramps)
 
 
-def _left(here: Asked, keep: Sequence[int], i: int) -> ConstraintErrors:
-    """Return what is left of a constraint where some of them are asked for in a motion of one frame."""
-    asked = here.only(keep)
-    solved = solve_frames(run_of(asked), here.motion, reference=here.motion, pull_root=False)
-    return errors_of(asked, solved.motion)[list(keep).index(i)]
+def _errors(asked: Asked) -> tuple[ConstraintErrors, ...]:
+    """Return what is left of constraints in a motion of one frame."""
+    solved = solve_frames(run_of(asked), asked.motion, reference=asked.motion, pull_root=False)
+    return errors_of(asked, solved.motion)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from motionedit.core.arrays import median
+from motionedit.core.priorities.blame import Blames
 from motionedit.core.priorities.solver.problem import order_of_layers
 from motionedit.jobs.clip.edit_record import EditRecord, worst_status
 from motionedit.jobs.clip.effector_record import effector_record
@@ -49,8 +50,9 @@ def edit_record(
     """
     every = [measured(each, errors, scale) for each, errors in zip(constraints, edit.errors, strict=True)]
     records, warnings, missed, statuses = [], [], [], ["rough" if rough else "ok"]
+    blames = Blames(edit.asked)
     for i, one in enumerate(every):
-        found = verdict(i, one, edit, settings, scale=scale)
+        found = verdict(i, one, edit, settings, blames, scale=scale)
         about = _about(one, facts, scale) | {"recruited": recruited_names(edit.recruits[i], facts)}
         records.append(_record(one, found) | about | _frames(one))
         if found.status == "ok":

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motionedit.core.priorities.blame import blame_of
 from motionedit.core.priorities.settings import LayeredSettings, PaperFilter
 from motionedit.core.priorities.solver.problem import order_of_layers
 from motionedit.dataclass import dataclass
@@ -16,6 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from motionedit.core.arrays import FloatArray
+    from motionedit.core.priorities.blame import Blames
     from motionedit.core.priorities.edit import PrioritizedEdit
     from motionedit.core.priorities.kinds.constraint import Constraint, ConstraintErrors
     from motionedit.jobs.edit_prioritized.constraints import ClipConstraint
@@ -86,8 +86,10 @@ def first_worst(excess: FloatArray) -> int:
     return int(excess.round(_DIGITS).argmax())
 
 
-def verdict(i: int, one: Measured, edit: PrioritizedEdit, settings: LayeredSettings, *, scale: float) -> Verdict:
-    """Return whether constraint `i` is met, what it gave way to, and why it is missed.
+def verdict(
+    i: int, one: Measured, edit: PrioritizedEdit, settings: LayeredSettings, blames: Blames, *, scale: float
+) -> Verdict:
+    """Return whether constraint `i` is met, what it gave way to, and why it is missed; `blames` are those of the edit.
 
     Those are named without which it would be nearer; where there are none it is out of reach.
     """
@@ -98,7 +100,7 @@ def verdict(i: int, one: Measured, edit: PrioritizedEdit, settings: LayeredSetti
         # No solve came after the filter, so nobody's priority is to blame.
         reason = _FILTERED
     else:
-        blame = blame_of(edit.asked, i, one.worst)
+        blame = blames.of(i, one.worst)
         priority = edit.asked.constraints[i].priority
         blamed = [edit.asked.constraints[k] for k in blame.by]
         names, above = [each.name for each in blamed], [each for each in blamed if each.priority > priority]

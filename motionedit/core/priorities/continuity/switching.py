@@ -22,8 +22,11 @@ if TYPE_CHECKING:
     from motionedit.core.priorities.groups import Asked, Ramp
     from motionedit.core.priorities.settings import Passes
 
-    Members = tuple[int, ...]
+    Members = frozenset[int]
     Ramps = tuple[tuple[Ramp, ...], ...]
+
+# Sets of others that are solved: so many, or two for each constraint. Of many that overlap there are many more.
+_SETS = 32
 
 
 def eased_from_others(asked: Asked, smoothing: Passes) -> Run:
@@ -32,55 +35,71 @@ def eased_from_others(asked: Asked, smoothing: Passes) -> Run:
     In a ramp the motion that a constraint takes over is what the others make of it, not the input.
     """
     ramps = tuple(ramps_of(asked, i) for i in range(len(asked.targets)))
-    return run_of(_eased(asked, ramps, tuple(range(len(ramps))), _Alone(asked, ramps, smoothing)))
+    return run_of(_eased(asked, ramps, frozenset(range(len(ramps))), _Alone(asked, ramps, smoothing)))
 
 
 class _Alone:
-    """What constraints alone make of the motion, solved once."""
+    """What constraints alone make of the motion, solved once; ramps of theirs are from and to others, too, of a few."""
 
     def __init__(self, asked: Asked, ramps: Ramps, smoothing: Passes) -> None:
         self._asked, self._ramps, self._smoothing = asked, ramps, smoothing
+        self._beside = [[_beside(asked, i, ramp) for ramp in own] for i, own in enumerate(ramps)]
+        self._eased = self._sets_to_ease()
         self._wanted: dict[Members, BoolArray] = {}
         self._found: dict[Members, Motion] = {}
 
-    def within(self, ramp: Ramp, members: Members) -> Motion | None:
-        """Return what they make of it within a ramp; None where that is the motion itself."""
-        if not members:
+    def within(self, i: int, k: int, members: Members) -> Motion | None:
+        """Return what the others of some constraints make of it in the k-th ramp of one; None where that is nothing."""
+        ramp, others = self._ramps[i][k], self._beside[i][k] & members
+        if not others:
             return None
-        if members not in self._wanted:
-            self._wanted[members] = _wanted(self._asked.only(members), self._asked.motion)
-        if not self._wanted[members][ramp.left > 0.0].any():
+        if others not in self._wanted:
+            self._wanted[others] = _wanted(self._asked.only(sorted(others)), self._asked.motion)
+        if not self._wanted[others][ramp.left > 0.0].any():
             return None
-        if members not in self._found:
-            own = _eased(self._asked, self._ramps, members, self)
-            self._found[members] = solve_in_passes(run_of(own), self._smoothing).state.motion
-        return self._found[members]
+        if others not in self._found:
+            own = _eased(self._asked, self._ramps, others, self if others in self._eased else None)
+            self._found[others] = solve_in_passes(run_of(own), self._smoothing).state.motion
+        return self._found[others]
+
+    def _sets_to_ease(self) -> set[Members]:
+        """Return which sets of constraints are eased from others: all, their others, these ones' others, while few."""
+        count = len(self._ramps)
+        eased: set[Members] = set()
+        level = {frozenset(range(count))}
+        while level:
+            others = {beside & members for members in level for i in members for beside in self._beside[i]}
+            others -= eased | level
+            if eased and len(eased) + len(level) + len(others) > max(_SETS, 2 * count):
+                break
+            eased, level = eased | level, others
+        return eased
 
 
-def _eased(asked: Asked, ramps: Ramps, members: Members, alone: _Alone) -> Asked:
-    """Return what some constraints ask for, with ramps from and to where the others of them alone have each one's.
+def _eased(asked: Asked, ramps: Ramps, members: Members, alone: _Alone | None) -> Asked:
+    """Return what some constraints ask for, with ramps from and to where the others of them `alone` have each one's.
 
     Those of the same task agree in their ramps.
     """
     targets, led = list(asked.targets), list(ramps)
-    for i in members:
+    for i in sorted(members):
         own = list(ramps[i])
         for k, ramp in enumerate(own):
-            there = alone.within(ramp, _others(asked, i, ramp, members))
+            there = None if alone is None else alone.within(i, k, members)
             if there is None:
                 continue
             left = ramp.left[targets[i].span]
             targets[i] = moved(targets[i], reached(asked, i, asked.motion), reached(asked, i, there), left)
             own[k] = replace(ramp, end=task_at(asked, i, there, ramp.outside))
         led[i] = tuple(own)
-    found = replace(asked, targets=tuple(targets), ramps=tuple(led)).only(members)
+    found = replace(asked, targets=tuple(targets), ramps=tuple(led)).only(sorted(members))
     return replace(found, targets=agreed(found.constraints, found.targets, len(asked.motion)))
 
 
-def _others(asked: Asked, i: int, ramp: Ramp, members: Members) -> Members:
-    """Return which of some constraints beside one are active where a ramp of it ends."""
-    spans = asked.targets
-    return tuple(k for k in members if k != i and spans[k].first <= ramp.outside <= spans[k].last)
+def _beside(asked: Asked, i: int, ramp: Ramp) -> Members:
+    """Return which constraints beside one are active where a ramp of it ends."""
+    active = (k for k, each in enumerate(asked.targets) if each.first <= ramp.outside <= each.last)
+    return frozenset(active) - {i}
 
 
 def _wanted(asked: Asked, motion: Motion) -> BoolArray:

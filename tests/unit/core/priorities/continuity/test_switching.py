@@ -5,6 +5,7 @@ import pytest
 from person import BODY, edited, end, held, held_feet, path, swaying
 
 from motionedit.core import rotations as rot
+from motionedit.core.priorities.continuity import switching
 from motionedit.core.priorities.continuity.switching import eased_from_others
 from motionedit.core.priorities.edit import prepare
 from motionedit.core.priorities.kinds import Orientation, Position
@@ -129,3 +130,20 @@ def test_the_hand_goes_on_smoothly_beyond_the_end_of_its_ramp(feet):
         assert np.linalg.norm(moved[inside] - moved[outside]) < 0.5 * MM
     assert bends[20] < 0.2 * bends.max()
     assert edit.errors[-1].positions.max() < 0.1 * MM
+
+
+def overlapping(count):
+    """Return windows of all joints of an arm and a leg, each within the ramps of those beside it."""
+    names = ["RightHand", "LeftHand", "Head", "RightForeArm", "LeftForeArm"]
+    return [
+        riding(0.02 * RIDE, 16 + n, 18 + n, priority=4 + n % 3, ease=14, name=names[n % len(names)])
+        for n in range(count)
+    ]
+
+
+@pytest.mark.parametrize("count", [5, 20])
+def test_of_many_that_overlap_few_sets_of_others_are_solved(count, monkeypatch):
+    solved, real = [], switching.solve_in_passes
+    monkeypatch.setattr(switching, "solve_in_passes", lambda *args: solved.append(args) or real(*args))
+    prepare(MOTION, overlapping(count), BODY, SMOOTH)
+    assert count <= len(solved) <= max(32, 2 * count)
