@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -130,19 +131,30 @@ def _gathered(joints: int, lumps: Sequence[tuple[int, float, FloatArray]]) -> La
     return Laid(frozen(mass), frozen(points))
 
 
-def _lumps(parts: Sequence[Part], path: Sequence[Carrier]) -> list[tuple[int, float, FloatArray]]:
+def _lumps(parts: tuple[Part, ...], path: Sequence[Carrier]) -> list[tuple[int, float, FloatArray]]:
     """Return (joint, mass, centre) of a segment's parts spread along a path by length."""
+    if len(path) == 1:
+        joint, entry, leave = path[0]
+        return [(joint, mass, entry + share * (leave - entry)) for mass, share in _spread(parts, 0.0, 1.0)]
     lengths = np.array([np.linalg.norm(piece.leave - piece.entry) for piece in path])
     ends = np.concatenate(([0.0], np.cumsum(lengths))) / lengths.sum()
-    lumps = []
-    for piece, (start, stop) in zip(path, pairwise(ends.tolist()), strict=True):
-        for part in parts:
-            low, high = max(start, part.start), min(stop, part.stop)
-            if high > low:
-                mass, place = _slice(part, low, high)
-                share = (place - start) / (stop - start)
-                lumps.append((piece.joint, mass, piece.entry + share * (piece.leave - piece.entry)))
-    return lumps
+    return [
+        (piece.joint, mass, piece.entry + share * (piece.leave - piece.entry))
+        for piece, (start, stop) in zip(path, pairwise(ends.tolist()), strict=True)
+        for mass, share in _spread(parts, start, stop)
+    ]
+
+
+@lru_cache(maxsize=64)
+def _spread(parts: tuple[Part, ...], start: float, stop: float) -> tuple[tuple[float, float], ...]:
+    """Return the masses of parts between two shares of their path, each with its centre as a share of the way there."""
+    found = []
+    for part in parts:
+        low, high = max(start, part.start), min(stop, part.stop)
+        if high > low:
+            mass, place = _slice(part, low, high)
+            found.append((mass, (place - start) / (stop - start)))
+    return tuple(found)
 
 
 def _slice(part: Part, low: float, high: float) -> tuple[float, float]:

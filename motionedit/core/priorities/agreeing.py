@@ -64,10 +64,10 @@ def led_by_others(constraints: Sequence[Constraint], targets: Sequence[Targets],
     is turned, be it along other axes or in another's frame.
     """
     led = np.zeros((len(constraints), frames), dtype=np.bool_)
-    active = _active(targets, frames)
+    active, subjects = _active(targets, frames), [each.subjects for each in constraints]
     for i, one in enumerate(constraints):
         for k, other in enumerate(constraints):
-            if k != i and other.priority >= one.priority and not one.subjects.isdisjoint(other.subjects):
+            if k != i and other.priority >= one.priority and not subjects[i].isdisjoint(subjects[k]):
                 led[i] |= active[k]
         if led[i].any():
             led[i] &= active[i] & (one.share(frames) < 1.0)
