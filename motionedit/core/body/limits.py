@@ -108,7 +108,7 @@ def _wanted(skeleton: Skeleton, anatomy: Anatomy, travel: int) -> tuple[IntArray
     for region, joints in _regions(skeleton, anatomy, travel):
         # Of a region that n joints share each may do more than its nth part: not all of them are always asked.
         share = math.radians(1.0 / math.sqrt(len(joints)))
-        back = region.swing if region.back is None or left == right else region.back
+        back = region.swing if region.back is None or not anatomy.legs else region.back
         half = share * region.swing, share * region.twist, share * back
         wanted.update({joint: (top, end, *half) for joint, top, end in joints})
     rows = sorted((joint, *its) for joint, its in wanted.items())

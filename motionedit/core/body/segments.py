@@ -133,14 +133,13 @@ def _gathered(joints: int, lumps: Sequence[tuple[int, float, FloatArray]]) -> La
 
 def _lumps(parts: tuple[Part, ...], path: Sequence[Carrier]) -> list[tuple[int, float, FloatArray]]:
     """Return (joint, mass, centre) of a segment's parts spread along a path by length."""
-    if len(path) == 1:
-        joint, entry, leave = path[0]
-        return [(joint, mass, entry + share * (leave - entry)) for mass, share in _spread(parts, 0.0, 1.0)]
-    lengths = np.array([np.linalg.norm(piece.leave - piece.entry) for piece in path])
-    ends = np.concatenate(([0.0], np.cumsum(lengths))) / lengths.sum()
+    ends = [0.0, 1.0]
+    if len(path) > 1:
+        lengths = np.array([np.linalg.norm(piece.leave - piece.entry) for piece in path])
+        ends = (np.concatenate(([0.0], np.cumsum(lengths))) / lengths.sum()).tolist()
     return [
         (piece.joint, mass, piece.entry + share * (piece.leave - piece.entry))
-        for piece, (start, stop) in zip(path, pairwise(ends.tolist()), strict=True)
+        for piece, (start, stop) in zip(path, pairwise(ends), strict=True)
         for mass, share in _spread(parts, start, stop)
     ]
 

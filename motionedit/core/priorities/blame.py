@@ -66,7 +66,7 @@ class Blames:
     def _left(self, kept: Places, frame: int, i: int) -> ConstraintErrors:
         """Return what is left of a constraint at a frame where some alone are asked for."""
         if (frame, kept) not in self._solved:
-            self._solved[frame, kept] = _errors(_at(self._asked, frame).only(kept))
+            self._solved[frame, kept] = _errors(_at(self._asked.only(kept), frame))
         return self._solved[frame, kept][kept.index(i)]
 
 
@@ -91,12 +91,9 @@ def _is_rival(asked: Asked, other: int, i: int) -> bool:
 
 
 def _at(asked: Asked, frame: int) -> Asked:
-    """Return what is asked of a motion that is one of its frames alone."""
+    """Return what is asked of a motion that is one of its frames alone, at which all of it is asked."""
     span = slice(frame, frame + 1)
-    # Targets that do not have the frame are not asked for: they stay as they are.
-    targets = tuple(
-        each.within(span).since(frame) if each.first <= frame <= each.last else each for each in asked.targets
-    )
+    targets = tuple(each.within(span).since(frame) for each in asked.targets)
     none, no_ramps = (None,) * len(targets), ((),) * len(targets)
     return replace(asked, motion=asked.motion.at(span), targets=targets, arcs=none, ramps=no_ramps)
 
