@@ -214,7 +214,7 @@ class Skeleton:
 
     def between(self, start: int, stop: int) -> list[int]:
         """Return the joints below one of a chain down to another, that one in; none where it does not lead there."""
-        chain = list(map(int, self.chain(stop)))
+        chain: list[int] = self.chain(stop).tolist()
         return chain[chain.index(start) + 1 :] if start in chain else []
 
     def indices(self, name: str) -> tuple[int, ...]:

@@ -11,7 +11,7 @@ from motionedit.core import rotations as rot
 from motionedit.core.arrays import frozen
 from motionedit.core.blocks import frame_blocks
 from motionedit.core.body.in_one_loop import carried, read_off
-from motionedit.core.body.segments import Laid, lay_by_length, lay_given, lay_human
+from motionedit.core.body.segments import Laid, Pose, lay_by_length, lay_given, lay_human
 from motionedit.core.kinematics import WorldPoses, forward
 from motionedit.core.motion import Motion
 from motionedit.dataclass import dataclass, replace
@@ -92,28 +92,8 @@ def find_masses(
     ValueError
         When the given masses are negative, not finite, or all zero.
     """
-    by_joint = tuple((given or {}).items())
-    if rotations is None:
-        return _masses(skeleton, anatomy, by_joint)
-    turns = _mean_turns(skeleton, rotations)
-    return _weighed(skeleton, by_joint, _lay_turned(skeleton, anatomy, turns))
-
-
-@lru_cache(maxsize=4)
-def scaled_masses(masses: Masses, skeleton: Skeleton, factor: float) -> Masses:
-    """Return masses on a skeleton whose lengths are a factor times those of theirs."""
-    return replace(masses, skeleton=skeleton, points=frozen(masses.points * factor))
-
-
-@lru_cache(maxsize=8)
-def _masses(skeleton: Skeleton, anatomy: Anatomy, by_joint: tuple[tuple[int, float], ...]) -> Masses:
-    """Return `find_masses` of a zero pose: once for all that share a skeleton."""
-    return _weighed(skeleton, by_joint, lay_human(skeleton, anatomy))
-
-
-def _weighed(skeleton: Skeleton, by_joint: tuple[tuple[int, float], ...], human: Laid | None) -> Masses:
-    """Return the masses of a skeleton on which a `human` is laid, None where it is none."""
-    given = dict(by_joint)
+    posed = np.tile(rot.IDENTITY, (len(skeleton), 1)) if rotations is None else _mean_rotations(rotations)
+    human = _lay_posed(skeleton, anatomy, posed)
     laid = lay_by_length(skeleton) if human is None else human
     if given:
         weights = np.array(list(given.values()))
@@ -129,22 +109,30 @@ def _weighed(skeleton: Skeleton, by_joint: tuple[tuple[int, float], ...], human:
     )
 
 
-def _mean_turns(skeleton: Skeleton, rotations: FloatArray) -> FloatArray:
-    """Return how each joint's frame is turned in the mean pose of some frames, shape (J, 4)."""
+@lru_cache(maxsize=4)
+def scaled_masses(masses: Masses, skeleton: Skeleton, factor: float) -> Masses:
+    """Return masses on a skeleton whose lengths are a factor times those of theirs."""
+    return replace(masses, skeleton=skeleton, points=frozen(masses.points * factor))
+
+
+def _mean_rotations(rotations: FloatArray) -> FloatArray:
+    """Return the mean of each joint's rotations over some frames, (F, J, 4), shape (J, 4)."""
     shown = rotations[:: max(1, -(-len(rotations) // _FRAMES))]
-    means = rot.mean_of_products(shown.transpose(1, 2, 0) @ shown.transpose(1, 0, 2))
-    still = np.zeros((1, len(skeleton.translated), 3))
-    turns: FloatArray = forward(Motion(skeleton, means[None], still, 1.0)).rotations[0]
-    return turns
+    return rot.mean_of_products(shown.transpose(1, 2, 0) @ shown.transpose(1, 0, 2))
 
 
-def _lay_turned(skeleton: Skeleton, anatomy: Anatomy, turns: FloatArray) -> Laid | None:
-    """Return what `lay_human` does with the pose in which joints' frames are turned, (J, 4), for the zero pose."""
-    parents = np.maximum(skeleton.parents, 0)
-    offsets = rot.rotate(turns[parents], skeleton.offsets)
-    sites = tuple(replace(site, offset=rot.rotate(turns[site.joint], site.offset)) for site in skeleton.end_sites)
-    laid = lay_human(replace(skeleton, offsets=offsets, end_sites=sites), anatomy)
-    return None if laid is None else Laid(laid.mass, frozen(rot.unrotate(turns, laid.points)))
+def _lay_posed(skeleton: Skeleton, anatomy: Anatomy, rotations: FloatArray) -> Laid | None:
+    """Return what `lay_human` has in the pose of joints' rotations, (J, 4), with the centres in the joints' frames."""
+    still = skeleton.offsets[skeleton.translated]
+    world = forward(Motion(skeleton, rotations[None], still[None], 1.0))
+    places, turns = world.positions[0], world.rotations[0]
+    joints = [site.joint for site in skeleton.end_sites]
+    ends = rot.rotate(turns[joints], np.reshape([site.offset for site in skeleton.end_sites], (-1, 3)))
+    laid = lay_human(Pose(skeleton, list(places), list(places[joints] + ends)), anatomy)
+    if laid is None:
+        return None
+    points = np.where(laid.mass[:, None] > 0.0, rot.unrotate(turns, laid.points - places), 0.0)
+    return Laid(laid.mass, frozen(points))
 
 
 def center_of_mass(poses: WorldPoses, masses: Masses) -> FloatArray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
@@ -71,33 +72,54 @@ class Laid:
     points: FloatArray
 
 
+class Pose(NamedTuple):
+    """A body in one pose: the `places` of its J joints and of its skeleton's end sites, each shape (3,), clip units."""
+
+    skeleton: Skeleton
+    places: Sequence[FloatArray]
+    ends: Sequence[FloatArray]
+
+    def ends_below(self, joint: int) -> list[FloatArray]:
+        """Return the places of a joint's children and end sites."""
+        sites = zip(self.skeleton.end_sites, self.ends, strict=True)
+        return [self.places[c] for c in self.skeleton.children[joint]] + [e for site, e in sites if site.joint == joint]
+
+
 class Carrier(NamedTuple):
-    """A straight piece of a path that moves with a joint: from `entry` to `leave`, shape (3,), in its frame."""
+    """A straight piece of a path that moves with a joint: from `entry` to `leave`, shape (3,), in the world."""
 
     joint: int
     entry: FloatArray
     leave: FloatArray
 
 
-def lay_human(skeleton: Skeleton, anatomy: Anatomy) -> Laid | None:
-    """Return the body's segments laid on a human skeleton, in percent; None where it is none.
+class Lump(NamedTuple):
+    """A mass that moves with a joint, any unit, with its centre, shape (3,)."""
+
+    joint: int
+    mass: float
+    point: FloatArray
+
+
+def lay_human(pose: Pose, anatomy: Anatomy) -> Laid | None:
+    """Return the body's segments laid on a human in a pose, in percent, centres in the world; None where it is none.
 
     Where a segment has several joints (twist joints, a spine), each carries the part between it and the next one.
     """
-    trunk = _trunk(skeleton, anatomy)
-    if anatomy.legs is None or anatomy.arms is None or trunk is None or not _is_human(skeleton, anatomy, trunk):
+    trunk = _trunk(pose, anatomy)
+    if anatomy.legs is None or anatomy.arms is None or trunk is None or not _is_human(pose, anatomy, trunk):
         return None
-    lumps: list[tuple[int, float, FloatArray]] = _lumps(TRUNK, trunk)
-    lumps.append(_head(skeleton, anatomy, trunk))
+    lumps = _lumps(TRUNK, trunk)
+    lumps.append(_head(pose, anatomy, trunk))
     for leg in anatomy.legs:
-        lumps += _lumps(THIGH, _limb(skeleton, leg.thigh, leg.knee))
-        lumps += _lumps(SHANK, _limb(skeleton, leg.knee, leg.ankle))
-        lumps.append(_foot(skeleton, leg))
+        lumps += _lumps(THIGH, _limb(pose, leg.thigh, leg.knee))
+        lumps += _lumps(SHANK, _limb(pose, leg.knee, leg.ankle))
+        lumps.append(_foot(pose, leg))
     for arm in anatomy.arms:
-        lumps += _lumps(UPPER_ARM, _limb(skeleton, arm.shoulder, arm.elbow))
-        lumps += _lumps(FOREARM, _limb(skeleton, arm.elbow, arm.wrist))
-        lumps.append(_hand(skeleton, arm, anatomy.leg_length))
-    return _gathered(len(skeleton), lumps)
+        lumps += _lumps(UPPER_ARM, _limb(pose, arm.shoulder, arm.elbow))
+        lumps += _lumps(FOREARM, _limb(pose, arm.elbow, arm.wrist))
+        lumps.append(_hand(pose, arm, anatomy.leg_length))
+    return _gathered(len(pose.skeleton), lumps)
 
 
 def lay_by_length(skeleton: Skeleton) -> Laid:
@@ -108,9 +130,9 @@ def lay_by_length(skeleton: Skeleton) -> Laid:
     moved = set(skeleton.translated.tolist())
     bones = [(int(skeleton.parents[j]), skeleton.offsets[j]) for j in range(1, len(skeleton)) if j not in moved]
     bones += [(site.joint, site.offset) for site in skeleton.end_sites]
-    lumps = [(joint, float(np.linalg.norm(offset)), 0.5 * offset) for joint, offset in bones]
-    if sum(mass for _, mass, _ in lumps) <= 0.0:
-        lumps = [(0, 1.0, np.zeros(3))]
+    lumps = [Lump(joint, float(np.linalg.norm(offset)), 0.5 * offset) for joint, offset in bones]
+    if sum(lump.mass for lump in lumps) <= 0.0:
+        lumps = [Lump(0, 1.0, np.zeros(3))]
     return _gathered(len(skeleton), lumps)
 
 
@@ -122,23 +144,24 @@ def lay_given(laid: Laid, given: Mapping[int, float], *, elsewhere: Laid) -> Lai
     return Laid(frozen(mass), frozen(points))
 
 
-def _gathered(joints: int, lumps: Sequence[tuple[int, float, FloatArray]]) -> Laid:
+def _gathered(joints: int, lumps: Sequence[Lump]) -> Laid:
+    """Return the masses of joints that carry lumps, with the centre of each joint's; 0 where it carries none."""
+    carriers, weights, points = (np.array(column) for column in zip(*lumps, strict=True))
     mass, moments = np.zeros(joints), np.zeros((joints, 3))
-    for joint, weight, point in lumps:
-        mass[joint] += weight
-        moments[joint] += weight * point
-    points = np.divide(moments, mass[:, None], out=np.zeros_like(moments), where=mass[:, None] > 0.0)
-    return Laid(frozen(mass), frozen(points))
+    np.add.at(mass, carriers, weights)
+    np.add.at(moments, carriers, weights[:, None] * points)
+    centers = np.divide(moments, mass[:, None], out=np.zeros_like(moments), where=mass[:, None] > 0.0)
+    return Laid(frozen(mass), frozen(centers))
 
 
-def _lumps(parts: tuple[Part, ...], path: Sequence[Carrier]) -> list[tuple[int, float, FloatArray]]:
-    """Return (joint, mass, centre) of a segment's parts spread along a path by length."""
+def _lumps(parts: tuple[Part, ...], path: Sequence[Carrier]) -> list[Lump]:
+    """Return a segment's parts spread along a path by length."""
     ends = [0.0, 1.0]
     if len(path) > 1:
-        lengths = np.array([np.linalg.norm(piece.leave - piece.entry) for piece in path])
+        lengths = np.array([math.dist(piece.entry, piece.leave) for piece in path])
         ends = (np.concatenate(([0.0], np.cumsum(lengths))) / lengths.sum()).tolist()
     return [
-        (piece.joint, mass, piece.entry + share * (piece.leave - piece.entry))
+        Lump(piece.joint, mass, piece.entry + share * (piece.leave - piece.entry))
         for piece, (start, stop) in zip(path, pairwise(ends), strict=True)
         for mass, share in _spread(parts, start, stop)
     ]
@@ -170,103 +193,95 @@ def _slice(part: Part, low: float, high: float) -> tuple[float, float]:
     return part.mass * mass, part.start + width * moment / mass
 
 
-def _limb(skeleton: Skeleton, top: int, end: int) -> list[Carrier]:
+def _limb(pose: Pose, top: int, end: int) -> list[Carrier]:
     """Return the path from one joint of a limb down to another."""
-    way = pairwise((top, *skeleton.between(top, end)))
-    return [Carrier(joint, np.zeros(3), skeleton.offsets[below]) for joint, below in way]
+    way = pairwise((top, *pose.skeleton.between(top, end)))
+    return [Carrier(joint, pose.places[joint], pose.places[below]) for joint, below in way]
 
 
-def _trunk(skeleton: Skeleton, anatomy: Anatomy) -> list[Carrier] | None:
+def _trunk(pose: Pose, anatomy: Anatomy) -> list[Carrier] | None:
     """Return the path from the middle of the hips to the base of the neck, whichever way the tree goes."""
     if anatomy.pelvis is None or anatomy.chest is None or anatomy.legs is None or anatomy.arms is None:
         return None
-    hips = [_place_below(skeleton, anatomy.pelvis, leg.thigh) for leg in anatomy.legs]
-    entry = 0.5 * (hips[0] + hips[1])
-    last, neck = _neck_base(skeleton, anatomy, anatomy.chest)
-    up = skeleton.chain(anatomy.pelvis).tolist()
-    down = skeleton.chain(last).tolist()
+    entry = _middle(pose, [leg.thigh for leg in anatomy.legs])
+    last, neck = _neck_base(pose, anatomy, anatomy.chest)
+    up = pose.skeleton.chain(anatomy.pelvis).tolist()
+    down = pose.skeleton.chain(last).tolist()
     fork = max(j for j in up if j in set(down))
-    path = []
-    for joint in reversed(up[up.index(fork) + 1 :]):
-        path.append(Carrier(joint, entry, np.zeros(3)))
-        entry = skeleton.offsets[joint]
-    below = down[down.index(fork) + 1 :]
-    for joint, child in zip([fork, *below], [*below, None], strict=True):
-        path.append(Carrier(joint, entry, neck if child is None else skeleton.offsets[child]))
-        entry = np.zeros(3)
-    return path
+    rising = up[up.index(fork) + 1 :][::-1]
+    falling = down[down.index(fork) :]
+    joints, leaves = rising + falling, [pose.places[joint] for joint in rising + falling[1:]] + [neck]
+    return list(map(Carrier, joints, [entry, *leaves], leaves))
 
 
-def _neck_base(skeleton: Skeleton, anatomy: Anatomy, chest: int) -> tuple[int, FloatArray]:
-    """Return the joint that carries the base of the neck, and its place in that joint's frame.
+def _neck_base(pose: Pose, anatomy: Anatomy, chest: int) -> tuple[int, FloatArray]:
+    """Return the joint that carries the base of the neck, and where that is.
 
     Of the joints between chest and head the one that is a neck's length from the head; where there is none, a point
     beside the shoulders on the way to the head.
     """
-    shoulders = [_place_below(skeleton, chest, arm.shoulder) for arm in anatomy.arms or ()]
-    beside: FloatArray = np.mean(shoulders, axis=0)
+    skeleton, places = pose.skeleton, pose.places
+    beside = _middle(pose, [arm.shoulder for arm in anatomy.arms or ()])
     if anatomy.head is None or chest not in skeleton.chain(anatomy.head):
         return chest, beside
     between = skeleton.between(chest, anatomy.head)[:-1]
     if between:
-        lengths = [_length(_limb(skeleton, joint, anatomy.head)) for joint in between]
+        lengths = [_length(_limb(pose, joint, anatomy.head)) for joint in between]
         errors = np.abs(np.array(lengths) - _NECK_LENGTH * anatomy.leg_length)
         base = between[int(np.argmin(errors))]
-        return int(skeleton.parents[base]), skeleton.offsets[base]
-    head = skeleton.offsets[anatomy.head]
-    along = float(beside @ head) / max(float(head @ head), np.finfo(float).tiny)
-    place: FloatArray = min(max(along, 0.0), 1.0) * head
-    return chest, place
+        return int(skeleton.parents[base]), places[base]
+    head = places[anatomy.head] - places[chest]
+    along = float((beside - places[chest]) @ head) / max(float(head @ head), np.finfo(float).tiny)
+    return chest, places[chest] + min(max(along, 0.0), 1.0) * head
 
 
-def _head(skeleton: Skeleton, anatomy: Anatomy, trunk: Sequence[Carrier]) -> tuple[int, float, FloatArray]:
+def _head(pose: Pose, anatomy: Anatomy, trunk: Sequence[Carrier]) -> Lump:
     """Return the head with the neck: a lump on the head's joint, on the chest where there is none."""
     last, entry, neck = trunk[-1]
     center = (_HEAD_LENGTH - _HEAD_CENTER) * anatomy.leg_length
-    if anatomy.head is None or last not in skeleton.chain(anatomy.head):
-        return last, HEAD_MASS, neck + center * _unit(neck - entry)
-    up = _place_below(skeleton, last, anatomy.head) - neck
-    return anatomy.head, HEAD_MASS, max(center - float(np.linalg.norm(up)), 0.0) * _unit(up)
+    if anatomy.head is None or last not in pose.skeleton.chain(anatomy.head):
+        return Lump(last, HEAD_MASS, neck + center * _unit(neck - entry))
+    head = pose.places[anatomy.head]
+    beyond = max(center - math.dist(neck, head), 0.0)
+    return Lump(anatomy.head, HEAD_MASS, head + beyond * _unit(head - neck))
 
 
-def _hand(skeleton: Skeleton, arm: Arm, leg_length: float) -> tuple[int, float, FloatArray]:
+def _hand(pose: Pose, arm: Arm, leg_length: float) -> Lump:
     """Return the hand: on the wrist, towards the mean direction of what hangs there, else as the forearm goes."""
-    ahead = sum((_unit(bone) for bone in _bones(skeleton, arm.wrist)), np.zeros(3))
+    wrist = pose.places[arm.wrist]
+    ahead = sum((_unit(end - wrist) for end in pose.ends_below(arm.wrist)), np.zeros(3))
     if not np.any(ahead):
-        ahead = _place_below(skeleton, arm.elbow, arm.wrist)
-    return arm.wrist, HAND_MASS, _HAND_CENTER * leg_length * _unit(ahead)
+        ahead = wrist - pose.places[arm.elbow]
+    return Lump(arm.wrist, HAND_MASS, wrist + _HAND_CENTER * leg_length * _unit(ahead))
 
 
-def _foot(skeleton: Skeleton, leg: Leg) -> tuple[int, float, FloatArray]:
+def _foot(pose: Pose, leg: Leg) -> Lump:
     """Return the foot: on the ankle, on the way to the toe joint, else to the farthest end, else at the ankle."""
+    ankle = pose.places[leg.ankle]
     if leg.toe is not None:
-        return leg.ankle, FOOT_MASS, _FOOT_CENTER_TO_TOE * _place_below(skeleton, leg.ankle, leg.toe)
-    tip = max(_bones(skeleton, leg.ankle), key=lambda bone: float(np.linalg.norm(bone)), default=np.zeros(3))
-    return leg.ankle, FOOT_MASS, _FOOT_CENTER_TO_TIP * tip
+        tip, share = pose.places[leg.toe], _FOOT_CENTER_TO_TOE
+    else:
+        ends = pose.ends_below(leg.ankle)
+        tip, share = max(ends, key=lambda end: math.dist(ankle, end), default=ankle), _FOOT_CENTER_TO_TIP
+    return Lump(leg.ankle, FOOT_MASS, ankle + share * (tip - ankle))
 
 
-def _bones(skeleton: Skeleton, joint: int) -> list[FloatArray]:
-    """Return the offsets of a joint's children and end sites."""
-    sites = [site.offset for site in skeleton.end_sites if site.joint == joint]
-    return [skeleton.offsets[c] for c in skeleton.children[joint]] + sites
-
-
-def _place_below(skeleton: Skeleton, joint: int, descendant: int) -> FloatArray:
-    """Return a descendant's place in a joint's frame with all between them at rest."""
-    place: FloatArray = skeleton.offsets[skeleton.between(joint, descendant)].sum(axis=0)
-    return place
+def _middle(pose: Pose, joints: Sequence[int]) -> FloatArray:
+    """Return the mean place of some joints."""
+    middle: FloatArray = np.mean([pose.places[joint] for joint in joints], axis=0)
+    return middle
 
 
 def _unit(vector: FloatArray) -> FloatArray:
-    length = float(np.linalg.norm(vector))
+    length = math.hypot(*vector)
     return vector / length if length > 0.0 else np.zeros(3)
 
 
-def _is_human(skeleton: Skeleton, anatomy: Anatomy, trunk: Sequence[Carrier]) -> bool:
-    arms = [_length(_limb(skeleton, arm.shoulder, arm.wrist)) for arm in anatomy.arms or ()]
+def _is_human(pose: Pose, anatomy: Anatomy, trunk: Sequence[Carrier]) -> bool:
+    arms = [_length(_limb(pose, arm.shoulder, arm.wrist)) for arm in anatomy.arms or ()]
     ratios = ((_length(trunk), _TRUNK_TO_LEG), (sum(arms) / 2.0, _ARM_TO_LEG))
     return all(low * anatomy.leg_length <= length <= high * anatomy.leg_length for length, (low, high) in ratios)
 
 
 def _length(path: Sequence[Carrier]) -> float:
-    return float(sum(np.linalg.norm(piece.leave - piece.entry) for piece in path))
+    return sum(math.dist(piece.entry, piece.leave) for piece in path)
