@@ -31,7 +31,7 @@ _COST_ABOVE = 0.1  # per mean bone of length from the chain's first joint to the
 _COST_BELOW = 0.2  # per mean bone from the limb to the farthest end
 _COST_OF_ONE_PLACE = 1.0  # where both limbs would start at the same place, as CMU's hip joints and collars do
 # Mean bones between the tops of two limbs in the zero pose: collars start at one place, and hips are 0.35 apart.
-_AT_ONE_PLACE, _APART = 0.25, 0.32
+_AT_ONE_PLACE, _APART = 0.25, 0.38
 _LONGEST_ABOVE = 1.5  # mean bones: a collar may be in two pieces
 _LONGEST_BELOW = 1.2  # mean bones: a hand is 0.85 forearms
 _COST_OF_ANOTHER_END = 1.0  # where the limb would not end at the joint that is called hand or foot

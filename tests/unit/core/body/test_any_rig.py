@@ -94,6 +94,7 @@ def test_names_without_meaning_do_not_hide_a_body(take, rig):
 @given(rig=rigs(), take=st.sampled_from(UPRIGHT), stretch=st.integers(1, 10_000))
 @example(rig=Rig(axes="T-pose"), take="stands", stretch=697)  # long collars, a little farther apart than at one place
 @example(rig=Rig(axes="T-pose"), take="stands", stretch=1382)
+@example(rig=Rig(axes="T-pose", hips="joints", neck="below"), take="stands", stretch=490)
 def test_a_body_of_any_proportions_is_found(take, rig, stretch):
     rig = replace(rig, stretch=stretch)
     assert_same_body(found_in(rig, TAKES[take](RATE)), plainly_found(take, RATE), rig)
