@@ -86,6 +86,7 @@ def test_with_v_what_earlier_runs_warned_of_is_said_again_and_once(edit):
     assert len(edit(3, "--update")[0]) == 3
 
 
+@pytest.mark.compiled
 def test_each_clip_that_misses_its_goal_has_a_line_with_its_reason_however_many_they_are(edit):
     warnings, _ = edit(45, "-j", "2", goals=[{**FAR, "name": "far"}])
     reasons = [line.split(": ")[0] for line in warnings if ": far: " in line and "from its goal at frame 4" in line]

@@ -91,6 +91,7 @@ def test_the_report_has_the_fixed_keys(edit):
     assert (wrist["first_frame"], wrist["last_frame"]) == (47, 91)
 
 
+@pytest.mark.compiled
 def test_a_dry_run_lists_the_layers_in_solving_order_and_writes_nothing(edit):
     feet = {**FEET_AS_CAPTURED, "effector": ["LeftFoot", "RightFoot"], "recruit": {"levels": 1}}
     wrist = {**RAISED, "recruit": {"joints": ["Hips", "LeftForeArm", "Hips.position"]}}

@@ -129,6 +129,7 @@ def test_every_real_file_is_read_and_written_back_byte_for_byte_or_refused_for_a
     assert unedited_bytes(clip) == path.read_bytes()
 
 
+@pytest.mark.compiled
 def test_a_reach_out_of_the_range_of_joints_in_some_frames_is_as_smooth_as_elsewhere(tmp_path):
     clip, edited, report = FOLDER / "strokes/smash_mrios/mrios_Remate_03.bvh", tmp_path / "e.bvh", tmp_path / "r.json"
     hand = {"name": "hand", "type": "position", "effector": "LeftWrist", "priority": 5}

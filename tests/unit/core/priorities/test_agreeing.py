@@ -141,6 +141,7 @@ def test_the_less_important_asks_for_the_way_of_the_other_in_its_ramp():
     assert left.positions[stop + 1 - left.first :].max() < 1e-4
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("priorities", [(2, 1), (1, 1)])
 def test_what_is_missed_of_one_is_no_error_of_another_that_has_its_ramp_there(priorities):
     high, near = with_priorities(*priorities)

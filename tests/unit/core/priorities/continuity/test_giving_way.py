@@ -64,6 +64,7 @@ def going_out(shift):
     return Position(name="hand", priority=4, effector=end("RightHand"), points=points)
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("shift", SHIFTS)
 @pytest.mark.parametrize(
     "below",
@@ -129,6 +130,7 @@ def test_what_has_a_path_is_kept_to_it_and_what_has_none_stays_soft():
     assert lefts_of(asked, smooth.motion)[last - 1][43] < 0.1 * MM < lefts_of(run.asked, smooth.motion)[last - 1][43]
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("threads", [2, 5])
 def test_the_number_of_threads_changes_no_byte(threads):
     motion = Motion(
@@ -146,6 +148,7 @@ def test_the_number_of_threads_changes_no_byte(threads):
 
 
 # Not the first of SHIFTS: there some frames swing to and fro until their iterations run out, and roundings grow.
+@pytest.mark.compiled
 @pytest.mark.parametrize("shift", [SHIFTS[1], (0.6, 0.9, 0.5)])
 def test_both_solvers_give_way_alike(shift, monkeypatch):
     asked = [*held_feet(FRAMES), reaching(shift), CenterOfMass(name="com", priority=2)]

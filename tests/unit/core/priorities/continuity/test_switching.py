@@ -141,7 +141,7 @@ def overlapping(count):
     ]
 
 
-@pytest.mark.parametrize("count", [5, 20])
+@pytest.mark.parametrize("count", [5, pytest.param(20, marks=pytest.mark.compiled)])
 def test_of_many_that_overlap_few_sets_of_others_are_solved(count, monkeypatch):
     solved, real = [], switching.solve_in_passes
     monkeypatch.setattr(switching, "solve_in_passes", lambda *args: solved.append(args) or real(*args))
