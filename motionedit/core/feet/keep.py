@@ -117,9 +117,8 @@ def onto_stances(
     ]
     stood = legs_onto(motion, poses, wanted, shift=shift)
     done = shifted(stood, shift, travel, poses=poses) if lowered.any() else stood
-    rotations = done.rotations.copy()
-    rotations[:first] = motion.rotations[:first]
-    found = Motion(done.skeleton, frozen(rotations), done.translations, done.frame_time)
+    stood.rotations[:first] = motion.rotations[:first]
+    found = Motion(motion.skeleton, frozen(stood.rotations), done.translations, motion.frame_time)
     return Kept(found, goals, lowered)
 
 

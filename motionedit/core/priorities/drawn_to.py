@@ -32,18 +32,24 @@ if TYPE_CHECKING:
 _LITTLE = 0.03
 
 
-def drawn_to(asked: Asked) -> Motion:
-    """Return the motion for which all freedom is used that constraints leave.
+def drawn_to(asked: Asked) -> tuple[tuple[IntArray, Turned], ...]:
+    """Return where the motion for which all freedom is used that constraints leave is another than the input.
 
-    It is the input, but for what `Constraint.by_itself` makes of it where nothing overrules the constraint, and for
+    At frames, shape (n,), that is what `Constraint.by_itself` makes of it where nothing overrules the constraint, then
     legs: they bend where the trunk shall go down on feet that are held, or a foot up. The least change would lean the
     body, back or forth as it leans a little already, or carry it up with its foot: straight legs hardly begin to bend.
     """
-    rotations = asked.motion.rotations
-    for frames, turned in chain(_by_itself(asked), _with_legs(asked)):
-        rotations = rotations.copy() if rotations is asked.motion.rotations else rotations
+    return tuple(part for part in chain(_by_itself(asked), _with_legs(asked)) if len(part[0]))
+
+
+def turned_at(motion: Motion, parts: Sequence[tuple[IntArray, Turned]]) -> Motion:
+    """Return a motion whose joints are turned as given at some frames; where there are none, the motion itself."""
+    if not parts:
+        return motion
+    rotations = motion.rotations.copy()
+    for frames, turned in parts:
         rotations[frames[:, None], turned.joints] = turned.rotations
-    return asked.motion if rotations is asked.motion.rotations else replace(asked.motion, rotations=rotations)
+    return replace(motion, rotations=rotations)
 
 
 def _by_itself(asked: Asked) -> Iterator[tuple[IntArray, Turned]]:

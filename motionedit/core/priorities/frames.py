@@ -10,7 +10,7 @@ import numpy as np
 
 from motionedit.core.blocks import frame_blocks
 from motionedit.core.compiled import compiled
-from motionedit.core.priorities.drawn_to import drawn_to
+from motionedit.core.priorities.drawn_to import drawn_to, turned_at
 from motionedit.core.priorities.far_floors import lifted
 from motionedit.core.priorities.far_turns import parts_of
 from motionedit.core.priorities.groups import Asked, Group, groups_of, part_of, retargeted, spans_of
@@ -19,9 +19,12 @@ from motionedit.core.priorities.solver.problem import LayeredSolution, Reference
 from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.kinematics import WorldPoses
     from motionedit.core.motion import Motion
+    from motionedit.core.priorities.kinds.constraint import Turned
     from motionedit.core.priorities.ramps import Ends
     from motionedit.core.priorities.task_targets import Targets
 
@@ -51,9 +54,13 @@ class Run:
         """The input."""
         return self.asked.motion
 
-    @cached_property
+    @property
     def drawn_to(self) -> Motion:
-        """The input as all freedom that is left has it: see `drawn_to`."""
+        """The input as all freedom that is left has it: see `drawn_to`; of a long one no copy is kept."""
+        return turned_at(self.motion, self._drawn_to)
+
+    @cached_property
+    def _drawn_to(self) -> Sequence[tuple[IntArray, Turned]]:
         return drawn_to(self.asked)
 
 

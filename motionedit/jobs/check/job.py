@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from motionedit.core.arrays import median
-from motionedit.core.blocks import blocks_of
 from motionedit.core.body import ground
 from motionedit.core.body.anatomy import NOTHING_GIVEN
 from motionedit.core.body.quality import find_defects
@@ -228,7 +227,7 @@ def _facts(clip: Clip, task: ClipTask, check: SpecCheck | None, lacking: Faults,
 
 def _measures(facts: ClipFacts) -> dict[str, float]:
     motion = facts.clip.motion
-    measured = clip_metrics(facts, feet_of(facts, blocks_of(facts.poses)), facts.phases, facts.steps)
+    measured = clip_metrics(facts, feet_of(facts, facts.world.blocks()), facts.phases, facts.steps)
     defects = find_defects(motion, first=facts.first)
     counted = {
         "jumps": sum(len(defect.frames) for defect in defects),

@@ -9,7 +9,7 @@ import numpy as np
 
 from motionedit.core import kinematics
 from motionedit.core.arrays import frozen
-from motionedit.core.blocks import BLOCK_FRAMES, frame_blocks
+from motionedit.core.blocks import BLOCK_FRAMES, blocks_of, frame_blocks
 from motionedit.core.body import ground
 from motionedit.core.body.anatomy import NOTHING_GIVEN, Anatomy, GivenBody
 from motionedit.core.body.bends import find_bends
@@ -25,7 +25,7 @@ from motionedit.dataclass import dataclass
 from motionedit.errors import ClipError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from motionedit.core.arrays import FloatArray
     from motionedit.core.body.bends import Bend
@@ -78,9 +78,20 @@ class Poses:
                 array[block] = part
         return whole
 
+    def blocks(self) -> Iterator[WorldPoses]:
+        """Yield them in blocks of frames; those of a long motion are made one by one where they are not held."""
+        if self._made is not None or len(self._motion) <= BLOCK_FRAMES:
+            return blocks_of(self.get())
+        return (kinematics.forward(self._motion.at(block)) for block in frame_blocks(len(self._motion)))
+
     def forget(self) -> None:
         """Give back their memory: for a long clip twice that of its file."""
         self._made = None
+
+    def forget_long(self) -> None:
+        """Give it back where that is much."""
+        if len(self._motion) > BLOCK_FRAMES:
+            self.forget()
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,10 +116,6 @@ class ClipFacts:
     def poses(self) -> WorldPoses:
         """World transforms of all frames."""
         return self.world.get()
-
-    def forget_poses(self) -> None:
-        """Give back the memory of `poses` until they are asked for again."""
-        self.world.forget()
 
     @cached_property
     def tracks(self) -> FloatArray:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from motionedit.core.blocks import BLOCK_FRAMES, blocks_of, frame_blocks
+from motionedit.core.blocks import frame_blocks
 from motionedit.core.body.steps import change_steps
 from motionedit.core.bvh import edited_pieces, unedited_bytes
 from motionedit.core.kinematics import forward
@@ -119,13 +119,12 @@ class EditByPriorities:
         if not constraints:
             return self._unedited(clip, sized)
         settings = self.settings(clip)
-        before = feet_of(sized.facts, blocks_of(sized.facts.poses), masses=sized.masses)
+        before = feet_of(sized.facts, sized.facts.world.blocks(), masses=sized.masses)
         grips = grips_in(sized)
         # What is read off the input has been read, its phases with it: an edit of a long clip needs the room.
-        if len(sized.motion) > BLOCK_FRAMES:
-            sized.facts.forget_poses()
+        sized.facts.world.forget_long()
         _ = sized.facts.phases
-        sized.facts.forget_poses()
+        sized.facts.world.forget()
         edit = edit_by_priorities(
             sized.motion,
             [c.constraint for c in constraints],
@@ -137,7 +136,7 @@ class EditByPriorities:
 
     def _unedited(self, clip: Clip, sized: SizedClip) -> Outcome:
         """Return a clip of which nothing is asked, or nothing that is in it."""
-        feet = feet_of(sized.facts, blocks_of(sized.facts.poses), masses=sized.masses)
+        feet = feet_of(sized.facts, sized.facts.world.blocks(), masses=sized.masses)
         still = change_steps(sized.motion, sized.motion, first=sized.facts.first)
         record = {**self._about(sized, feet, feet, still), "constraints": []}
         return Outcome(

@@ -79,6 +79,9 @@ def on_feet(
         first=facts.first,
         calms=CALMS_OWN if reference.clip is facts.clip else CALMS_ANOTHER,
     )
+    # Of a long clip there is no room for the world transforms of both.
+    del poses
+    facts.world.forget_long()
     stood = replace(facts, clip=replace(facts.clip, motion=kept.motion), world=Poses(kept.motion))
     found = replace(
         sized,

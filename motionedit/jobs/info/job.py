@@ -6,7 +6,6 @@ import math
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
-from motionedit.core.blocks import blocks_of
 from motionedit.core.body import ground
 from motionedit.core.body.contacts import foot_plants
 from motionedit.core.body.hinges import find_hinges
@@ -185,7 +184,7 @@ def _defects(facts: ClipFacts) -> list[dict[str, Any]]:
 
 
 def _metrics(facts: ClipFacts) -> dict[str, Any]:
-    trace = feet_of(facts, blocks_of(facts.poses))
+    trace = feet_of(facts, facts.world.blocks())
     return clip_metrics(facts, trace, facts.phases, facts.steps)
 
 

@@ -10,7 +10,7 @@ from motionedit.core.body.find_anatomy import find_anatomy
 from motionedit.core.body.gaze import gaze_of
 from motionedit.core.body.stiffness import human_mobility
 from motionedit.core.kinematics import forward
-from motionedit.core.priorities.drawn_to import drawn_to
+from motionedit.core.priorities.drawn_to import drawn_to, turned_at
 from motionedit.core.priorities.edit import edit_by_priorities, prepare
 from motionedit.core.priorities.kinds import Aim, Position
 from motionedit.core.priorities.recruiting import RecruitRule
@@ -39,7 +39,7 @@ def roll(motion):
 
 
 def referred(*constraints, body=LOOKING):
-    return drawn_to(prepare(MOTION, constraints, body, ONCE)[0].asked)
+    return turned_at(MOTION, drawn_to(prepare(MOTION, constraints, body, ONCE)[0].asked))
 
 
 def test_a_head_that_looks_aside_and_up_stays_level_and_the_feet_stand():

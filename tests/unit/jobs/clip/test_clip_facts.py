@@ -41,8 +41,8 @@ def test_the_world_transforms_of_a_clip_are_computed_once(counted):
 def test_world_transforms_that_were_given_back_come_anew(counted):
     found = facts.facts_of(parse_clip(bvh_text().encode(), label="mannequin.bvh"))
     before = found.poses
-    found.forget_poses()
-    found.forget_poses()
+    found.world.forget()
+    found.world.forget()
     assert found.poses is not before
     assert (found.poses.positions == before.positions).all()
     assert len(counted) == 2
@@ -51,11 +51,24 @@ def test_world_transforms_that_were_given_back_come_anew(counted):
 def test_plants_and_phases_of_a_long_motion_whose_transforms_were_given_back_are_found_block_by_block(counted):
     clip = parse_clip(new_bytes(standing(skeleton_of(), 2 * BLOCK_FRAMES + 10)), label="person.bvh")
     held, given_back = facts.facts_of(clip, up="y"), facts.facts_of(clip, up="y")
-    given_back.forget_poses()
+    given_back.world.forget()
     del counted[:]
     assert given_back.phases == held.phases != ()
     assert given_back.plants == held.plants
     assert max(map(len, counted)) == BLOCK_FRAMES
+
+
+@pytest.mark.parametrize("frames", [10, 2 * BLOCK_FRAMES + 10])
+def test_transforms_come_in_blocks_and_those_of_a_long_motion_are_held_no_more_than_they_were(frames, counted):
+    clip = parse_clip(new_bytes(standing(skeleton_of(), frames)), label="person.bvh")
+    found = facts.facts_of(clip, up="y")
+    whole = found.poses.positions.copy()
+    found.world.forget_long()
+    del counted[:]
+    blocks = [block.positions for block in found.world.blocks()]
+    np.testing.assert_array_equal(np.concatenate(blocks), whole)
+    assert max(map(len, blocks)) <= BLOCK_FRAMES
+    assert max(map(len, counted), default=0) == (BLOCK_FRAMES if frames > BLOCK_FRAMES else 0)
 
 
 def test_a_body_with_a_thousand_branches_is_looked_at_within_seconds():
