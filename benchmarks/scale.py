@@ -144,20 +144,23 @@ def _share(seconds: float, reading: str, read: float) -> tuple[str, str, str]:
 
 
 def longest(folder: Path) -> list[Row]:
-    """Return the row of the memory that an edit of the longest clip takes."""
+    """Return the rows of the memory that edits of the longest clip take."""
     path = tiled(folder / "longest.bvh", LONGEST)
-    seconds, peak = peak_of(_edit(path, folder), folder)
-    size = path.stat().st_size
-    return [
-        Row(
-            f"edit-prioritized, reach.yaml, {LONGEST:,} frames, {size / MEGABYTE:.0f} MB, peak memory",
-            f"{peak / MEGABYTE:.0f} MB, {duration(seconds)}",
-            "its file",
-            f"{peak / size:.2f} x",
-            f"<= {MOST_TIMES_FILE:g} x",
-            "met" if peak <= MOST_TIMES_FILE * size else "MISSED",
+    size, rows = path.stat().st_size, []
+    # Feet that stand are found before the edit; constraints that end one after the other are solved one by one.
+    for spec, most in (("reach", MOST_TIMES_FILE), ("footplants", None), ("stairs", None)):
+        seconds, peak = peak_of(_edit(path, folder, spec), folder)
+        aim = () if most is None else (f"<= {most:g} x", "met" if peak <= most * size else "MISSED")
+        rows.append(
+            Row(
+                f"edit-prioritized, {spec}.yaml, {LONGEST:,} frames, {size / MEGABYTE:.0f} MB, peak memory",
+                f"{peak / MEGABYTE:.0f} MB, {duration(seconds)}",
+                "its file",
+                f"{peak / size:.2f} x",
+                *aim,
+            )
         )
-    ]
+    return rows
 
 
 def flat(folder: Path) -> list[Row]:
@@ -183,8 +186,8 @@ def flat(folder: Path) -> list[Row]:
     ]
 
 
-def _edit(clip: Path, folder: Path) -> tuple[str | Path, ...]:
-    return PROGRAM, "edit-prioritized", clip, "-s", CONFIGS / "reach.yaml", "-o", folder / "edited.bvh", "-j", "1"
+def _edit(clip: Path, folder: Path, spec: str = "reach") -> tuple[str | Path, ...]:
+    return PROGRAM, "edit-prioritized", clip, "-s", CONFIGS / f"{spec}.yaml", "-o", folder / "edited.bvh", "-j", "1"
 
 
 def tiled(path: Path, frames: int, clip: Path = WALK) -> Path:
