@@ -175,7 +175,7 @@ def _nothing_is_wanted(asked: Asked) -> BoolArray:
 
     They are not solved: limbs that stand straight there, as they never do in the motion, would be bent to their limits.
     """
-    first = asked.body.first
+    first = min(asked.body.first, len(asked.motion))
     wanted = np.zeros(first, dtype=np.bool_)
     if not first:
         return ~wanted
