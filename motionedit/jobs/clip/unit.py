@@ -1,4 +1,4 @@
-"""Which unit makes a leg of a clip as long as legs are, and whether the one that a spec gives does."""
+"""Which unit makes a leg of a clip as long as legs are, and whether what a spec gives is in it."""
 
 from __future__ import annotations
 
@@ -9,12 +9,17 @@ from motionedit.core.units import STANDARD_LEG
 from motionedit.spec.values import UNITS
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from motionedit.spec.values import Unit
 
 # Metres of a grown human's leg; outside of them the unit is a guess, and that is said.
 _SHORTEST_HUMAN, _LONGEST_HUMAN = 0.6, 1.15
 # Metres between which a leg is a person's, small or large, or a creature's: else the unit is a slip.
 _SHORTEST_LEG, _LONGEST_LEG = 0.3, 1.5
+
+# Legs: nothing is meant to be missed by more.
+_FAR = 3.0
 
 
 def likely_unit(leg_length: float) -> dict[str, Any] | None:
@@ -34,3 +39,12 @@ def unit_doubts(leg_length: float, unit: Unit | None) -> list[str]:
     if unit is None or leg_length <= 0.0 or _SHORTEST_LEG <= leg_length * unit.metres <= _LONGEST_LEG:
         return []
     return [f"a leg is {leg_length * unit.metres:.3g} m long where the unit is {unit.name}: is that the clip's unit?"]
+
+
+def far_miss_doubts(misses: Mapping[str, float], leg_length: float) -> list[str]:
+    """Return a line for the user where the worst of the misses, by name, is many legs long, else none; clip units."""
+    name = max(misses, key=lambda each: misses[each], default=None)
+    if name is None or leg_length <= 0.0 or misses[name] <= _FAR * leg_length:
+        return []
+    legs = f"{misses[name] / leg_length:.3g} legs, and a leg of this clip is {leg_length:.4g} long"
+    return [f"{name}: {misses[name]:.4g} is {legs}: is its goal in the clip's unit?"]

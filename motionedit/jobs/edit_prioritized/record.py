@@ -12,6 +12,7 @@ from motionedit.core.priorities.blame import Blames
 from motionedit.core.priorities.solver.problem import order_of_layers
 from motionedit.jobs.clip.edit_record import EditRecord, worst_status
 from motionedit.jobs.clip.effector_record import effector_record
+from motionedit.jobs.clip.unit import far_miss_doubts
 from motionedit.jobs.edit_prioritized.recruits import recruited_names
 from motionedit.jobs.edit_prioritized.verdicts import Measured, Verdict, first_worst, measured, verdict
 
@@ -50,6 +51,7 @@ def edit_record(
     """
     every = [measured(each, errors, scale) for each, errors in zip(constraints, edit.errors, strict=True)]
     records, warnings, missed, statuses = [], [], [], ["rough" if rough else "ok"]
+    misses: dict[str, float] = {}
     blames = Blames(edit.asked)
     for i, one in enumerate(every):
         found = verdict(i, one, edit, settings, blames, scale=scale)
@@ -63,6 +65,7 @@ def edit_record(
             missed.append(line)
         if one.each.counts or one.each.constraint.points or one.largest > FAR_OFF:
             warnings.append(line)
+            misses[one.each.constraint.name] = 0.0 if one.lengths is None else float(one.lengths.max())
     solved = edit.iterations[edit.iterations > 0]
     record = {
         "constraints": records,
@@ -76,7 +79,8 @@ def edit_record(
         "frames": {"iterations": edit.iterations, "stopped": _why_each_stopped(edit)},
     }
     message = "; ".join(missed or rough) or None
-    return EditRecord(worst_status(*statuses), message, (*warnings, *rough), record)
+    doubts = far_miss_doubts(misses, facts.anatomy.leg_length)
+    return EditRecord(worst_status(*statuses), message, (*warnings, *doubts, *rough), record)
 
 
 def _why_each_stopped(edit: PrioritizedEdit) -> list[str]:
