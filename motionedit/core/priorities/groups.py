@@ -219,7 +219,8 @@ def _group(asked: Asked, members: Sequence[int], frames: IntArray) -> Group:
     softness = np.zeros((len(frames), len(layers)))
     for k, layer in enumerate(layers):
         if layer[0] in soft:
-            softness[:, k] = soft[layer[0]]
+            # Whichever stands first in a spec, all are as soft as the softest of them.
+            softness[:, k] = np.max([soft[i] for i in layer if i in soft], axis=0)
     hinges, limits, mobility = held_columns(body, plan.columns)
     problem = Problem(
         columns=plan.columns,
