@@ -28,7 +28,7 @@ def test_a_leg_of_an_odd_length_questions_the_unit(edit):
 @pytest.mark.parametrize(("up", "asks"), [(400.0, 1), (200.0, 0)])
 def test_a_goal_that_is_many_legs_away_asks_for_its_unit(edit, up, asks):
     lines = edit([FEET_AS_CAPTURED, hand({"hold": [60, 70], "shift": [0, up, 0]})]).warnings
-    assert sum("is its goal in the clip's unit?" in line for line in lines) == asks
+    assert sum("is it in the clip's unit?" in line for line in lines) == asks
 
 
 def test_a_rest_pose_in_front_keeps_its_text(edit, tmp_path):

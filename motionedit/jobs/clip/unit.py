@@ -9,8 +9,6 @@ from motionedit.core.units import STANDARD_LEG
 from motionedit.spec.values import UNITS
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from motionedit.spec.values import Unit
 
 # Metres of a grown human's leg; outside of them the unit is a guess, and that is said.
@@ -41,10 +39,8 @@ def unit_doubts(leg_length: float, unit: Unit | None) -> list[str]:
     return [f"a leg is {leg_length * unit.metres:.3g} m long where the unit is {unit.name}: is that the clip's unit?"]
 
 
-def far_miss_doubts(misses: Mapping[str, float], leg_length: float) -> list[str]:
-    """Return a line for the user where the worst of the misses, by name, is many legs long, else none; clip units."""
-    name = max(misses, key=lambda each: misses[each], default=None)
-    if name is None or leg_length <= 0.0 or misses[name] <= _FAR * leg_length:
-        return []
-    legs = f"{misses[name] / leg_length:.3g} legs, and a leg of this clip is {leg_length:.4g} long"
-    return [f"{name}: {misses[name]:.4g} is {legs}: is its goal in the clip's unit?"]
+def far_miss_words(off: float, leg_length: float) -> str:
+    """Return what to add to a goal that is missed by many legs, else an empty text; clip units."""
+    if leg_length <= 0.0 or off <= _FAR * leg_length:
+        return ""
+    return f"; {off / leg_length:.3g} legs, and a leg of this clip is {leg_length:.4g} long: is it in the clip's unit?"

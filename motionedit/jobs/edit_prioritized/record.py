@@ -12,7 +12,7 @@ from motionedit.core.priorities.blame import Blames
 from motionedit.core.priorities.solver.problem import order_of_layers
 from motionedit.jobs.clip.edit_record import EditRecord, worst_status
 from motionedit.jobs.clip.effector_record import effector_record
-from motionedit.jobs.clip.unit import far_miss_doubts
+from motionedit.jobs.clip.unit import far_miss_words
 from motionedit.jobs.edit_prioritized.recruits import recruited_names
 from motionedit.jobs.edit_prioritized.verdicts import Measured, Verdict, first_worst, measured, verdict
 
@@ -51,7 +51,6 @@ def edit_record(
     """
     every = [measured(each, errors, scale) for each, errors in zip(constraints, edit.errors, strict=True)]
     records, warnings, missed, statuses = [], [], [], ["rough" if rough else "ok"]
-    misses: dict[str, float] = {}
     blames = Blames(edit.asked)
     for i, one in enumerate(every):
         found = verdict(i, one, edit, settings, blames, scale=scale)
@@ -59,13 +58,13 @@ def edit_record(
         records.append(_record(one, found) | about | _frames(one))
         if found.status == "ok":
             continue
-        line = f"{_missed_by(one)}: {found.reason}"
+        off = 0.0 if one.lengths is None else float(one.lengths.max())
+        line = f"{_missed_by(one)}: {found.reason}{far_miss_words(off, facts.anatomy.leg_length)}"
         if one.each.counts:
             statuses.append(found.status)
             missed.append(line)
         if one.each.counts or one.each.constraint.points or one.largest > FAR_OFF:
             warnings.append(line)
-            misses[one.each.constraint.name] = 0.0 if one.lengths is None else float(one.lengths.max())
     solved = edit.iterations[edit.iterations > 0]
     record = {
         "constraints": records,
@@ -79,8 +78,7 @@ def edit_record(
         "frames": {"iterations": edit.iterations, "stopped": _why_each_stopped(edit)},
     }
     message = "; ".join(missed or rough) or None
-    doubts = far_miss_doubts(misses, facts.anatomy.leg_length)
-    return EditRecord(worst_status(*statuses), message, (*warnings, *doubts, *rough), record)
+    return EditRecord(worst_status(*statuses), message, (*warnings, *rough), record)
 
 
 def _why_each_stopped(edit: PrioritizedEdit) -> list[str]:
