@@ -211,9 +211,11 @@ def _tree(path: Path, command: str) -> tuple[Node, list[Fault]]:
     text, fault = read_text(path)
     faults = [fault] if fault is not None else []
     tree: Node | None = None
+    begin = f"a spec begins with schema: {schema_name(command)}"
+    if text.lstrip().startswith("HIERARCHY"):
+        faults = [Fault(f"is a BVH clip; {begin}")]
     if not faults:
         tree, faults = read_tree(text)
-        begin = f"a spec begins with schema: {schema_name(command)}"
         if not faults and (tree is None or tree.value is None):
             faults = [Fault(f"is empty; {begin}")]
         elif tree is not None and not isinstance(tree.value, dict):

@@ -72,6 +72,8 @@ def test_a_leg_of_an_odd_length_questions_the_unit(run):
     edit = ("edit-pc", f"golf/{NAMES[0]}", "-m", "golf.npz", "-s", "golf-edit.yaml", "-o", "edited")
     assert doubt in run(*edit, *slip).stderr
     assert doubt not in run(*edit).stderr
+    far = run(*edit, "--set", "goals.ball.shift=[0, 0, 1000]").stderr
+    assert "legs, and a leg of this clip is 86.5 long: is it in the clip's unit?" in far
 
 
 @pytest.fixture

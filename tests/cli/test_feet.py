@@ -69,6 +69,19 @@ def test_a_foot_in_the_air_goes_where_another_constraint_puts_it(edit):
     assert [each["name"] for each in record["constraints"]] == ["feet", "feet-stretch-2", "feet-2", "LeftFoot"]
 
 
+@pytest.mark.parametrize("frames", [1, 2, 3])
+def test_a_clip_of_few_frames_stands_as_it_is_told_to(edit, tmp_path, frames):
+    walk = motionedit.read(WALK)
+    short = motionedit.write(walk.with_motion(walk.motion.at(slice(frames))), tmp_path / "short.bvh")
+    lower = {"type": "position", "effector": "Hips", "points": [{"during": [0, "100%"], "shift": [0, -8, 0]}]}
+    after, record = edit([FEET | {"plants": {"LeftFoot": [[0, 0]]}}, lower], clip=short)
+    assert record["constraints"][0]["status"] == "ok"
+    before, now = (forward(each.motion).positions[0] for each in (walk, after.clip))
+    ankle, hips = (walk.motion.skeleton.names.index(name) for name in ("LeftFoot", "Hips"))
+    assert np.linalg.norm(now[ankle] - before[ankle]) < 0.001
+    assert now[hips][1] == pytest.approx(before[hips][1] - 8.0, abs=0.001)
+
+
 def test_plants_stand_where_the_reference_has_them(edit):
     after, _ = edit([FEET], "--reference", WALK)
     truth = facts_of(motionedit.read(WALK))

@@ -25,6 +25,12 @@ def test_a_leg_of_an_odd_length_questions_the_unit(edit):
     ]
 
 
+@pytest.mark.parametrize(("up", "asks"), [(400.0, 1), (200.0, 0)])
+def test_a_goal_that_is_many_legs_away_asks_for_its_unit(edit, up, asks):
+    lines = edit([FEET_AS_CAPTURED, hand({"hold": [60, 70], "shift": [0, up, 0]})]).warnings
+    assert sum("is it in the clip's unit?" in line for line in lines) == asks
+
+
 def test_a_rest_pose_in_front_keeps_its_text(edit, tmp_path):
     motion = read_clip(WALK).motion
     rest = np.tile(rot.IDENTITY, (2, len(motion.skeleton), 1))

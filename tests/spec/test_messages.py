@@ -33,6 +33,7 @@ FIRST = "the first line is schema: motionedit/edit-pc/v1"
 FILES = {
     "empty": (b"", [f"spec.yaml: is empty; {BEGIN}"]),
     "remarks alone": (b"# nothing\n", [f"spec.yaml: is empty; {BEGIN}"]),
+    "a clip": (b"\nHIERARCHY\nROOT Hips\n{\n", [f"spec.yaml: is a BVH clip; {BEGIN}"]),
     "one word": (b"\n\nhello", [f"spec.yaml:3: is not a mapping of keys; {BEGIN}"]),
     "a list": (b"- 1", [f"spec.yaml:1: is not a mapping of keys; {BEGIN}"]),
     "no schema": (b"goals: []", [f"spec.yaml:1: schema: is missing; {FIRST}"]),

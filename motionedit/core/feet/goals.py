@@ -81,7 +81,10 @@ def foot_goal(
     places = _standing(stance, path, turns)
     back, roll = np.zeros(len(down), dtype=np.bool_), np.zeros_like(places)
     if knee is not None and on_toe.any():
-        ways, back = eased_ways(knee, hip, path.ankle, places, known=stance.heel, back=back, frame_time=frame_time)
+        # In the air a leg counts as straight: beside it one that rolls over its toe eases, however bent it is.
+        straight = hip - knee.way(np.zeros(len(hip)))[:, None] * ground.up
+        there = np.where(down[:, None], places, straight)
+        ways, back = eased_ways(knee, hip, path.ankle, there, known=stance.heel, back=back, frame_time=frame_time)
         back &= on_toe
         onto = _roll_onto(stance.toe_place, rot.rotate(turns, -path.toe), hip, ways, ground)
         roll = np.where(on_toe[:, None], onto, roll)

@@ -79,9 +79,9 @@ def reach_calm(
     off = rot.length(stance.heel_place - poses.positions[:, foot.leg.ankle])
     stands = stance.heel[1:] & stance.heel[:-1] & (stance.whole[1:] == stance.whole[:-1])
     closing = _of_both_sides(np.abs(np.diff(far)), stands)
-    curving = np.pad(np.where(stands[1:] & stands[:-1], np.maximum(-np.diff(far, n=2), 0.0), 0.0), 1)
+    curving = _all_frames(np.where(stands[1:] & stands[:-1], np.maximum(-np.diff(far, n=2), 0.0), 0.0), len(far))
     own = _of_both_sides(np.abs(np.diff(knee.angle)), np.ones(len(far) - 1, dtype=np.bool_))
-    own_curving = np.pad(np.abs(np.diff(knee.angle, n=2)), 1)
+    own_curving = _all_frames(np.abs(np.diff(knee.angle, n=2)), len(far))
     fastest = np.maximum(_FASTER * _about_then(own, frame_time), _CALM * frame_time)
     sharpest = np.maximum(_FASTER * _about_then(own_curving, frame_time), _SHARP * frame_time**2)
     most = np.maximum(closing / fastest, curving / sharpest)
@@ -90,6 +90,11 @@ def reach_calm(
     calm = np.maximum(calm, np.maximum(far - calms * length, way - off))
     reach: FloatArray = np.minimum(reach_bent(poses, foot, knee, stance.heel_place), calm)
     return reach
+
+
+def _all_frames(inner: FloatArray, count: int) -> FloatArray:
+    """Return what is told of all frames but the first and the last as of all, shape (count,): 0 at these."""
+    return np.pad(inner, 1)[:count]
 
 
 def _about_then(values: FloatArray, frame_time: float) -> FloatArray:

@@ -175,7 +175,7 @@ def _nothing_is_wanted(asked: Asked) -> BoolArray:
 
     They are not solved: limbs that stand straight there, as they never do in the motion, would be bent to their limits.
     """
-    first = asked.body.first
+    first = min(asked.body.first, len(asked.motion))
     wanted = np.zeros(first, dtype=np.bool_)
     if not first:
         return ~wanted
@@ -219,7 +219,8 @@ def _group(asked: Asked, members: Sequence[int], frames: IntArray) -> Group:
     softness = np.zeros((len(frames), len(layers)))
     for k, layer in enumerate(layers):
         if layer[0] in soft:
-            softness[:, k] = soft[layer[0]]
+            # Whichever stands first in a spec, all are as soft as the softest of them.
+            softness[:, k] = np.max([soft[i] for i in layer if i in soft], axis=0)
     hinges, limits, mobility = held_columns(body, plan.columns)
     problem = Problem(
         columns=plan.columns,

@@ -6,9 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from motionedit.core.units import STANDARD_LEG
 from motionedit.dataclass import dataclass
 from motionedit.jobs.clip.edit_record import EditRecord, worst_status
 from motionedit.jobs.clip.effector_record import effector_record
+from motionedit.jobs.clip.unit import far_miss_words
 from motionedit.jobs.edit_pc.goals import ClipGoal, goal_place, goal_record, is_met, numbers_of
 from motionedit.jobs.edit_pc.solver import largest_norm, usual_change
 
@@ -91,7 +93,12 @@ def edit_record(
             "after": _nearest(model, edit.coefficients),
         },
     }
-    missed = [_missed(each, edit.reasons[i], records) for i, each in enumerate(records) if each["status"] != "ok"]
+    leg = STANDARD_LEG / model.space.scale
+    missed = [
+        _missed(each, edit.reasons[i], records) + far_miss_words(each["error_max"] or 0.0, leg)
+        for i, each in enumerate(records)
+        if each["status"] != "ok"
+    ]
     far = [_FAR] if met == "ok" and records and is_far else []
     message = "; ".join(missed or (*rough, *far)) or None
     return EditRecord(status, message, (*missed, *far, *rough, *odd, *_crowding(model, goals, edit)), record)

@@ -12,6 +12,7 @@ from motionedit.core.priorities.blame import Blames
 from motionedit.core.priorities.solver.problem import order_of_layers
 from motionedit.jobs.clip.edit_record import EditRecord, worst_status
 from motionedit.jobs.clip.effector_record import effector_record
+from motionedit.jobs.clip.unit import far_miss_words
 from motionedit.jobs.edit_prioritized.recruits import recruited_names
 from motionedit.jobs.edit_prioritized.verdicts import Measured, Verdict, first_worst, measured, verdict
 
@@ -57,7 +58,8 @@ def edit_record(
         records.append(_record(one, found) | about | _frames(one))
         if found.status == "ok":
             continue
-        line = f"{_missed_by(one)}: {found.reason}"
+        off = 0.0 if one.lengths is None else float(one.lengths.max())
+        line = f"{_missed_by(one)}: {found.reason}{far_miss_words(off, facts.anatomy.leg_length)}"
         if one.each.counts:
             statuses.append(found.status)
             missed.append(line)

@@ -72,6 +72,17 @@ def test_every_plant_is_one_place_and_the_motion_stays_smooth(name):
     assert jerks[0] < 1.1 * jerks[1]
 
 
+@pytest.mark.parametrize("frame", [24, 60, 96, 132])
+def test_feet_are_kept_alike_wherever_in_the_room_they_go(frame):
+    name = "walk-skating.bvh"
+    clip = facts(name)
+    hips = clip.poses.positions[frame, clip.travel] - 0.5 * clip.anatomy.leg_length * clip.up
+    motion = shifted(clip.clip.motion, np.tile(-hips, (len(clip.clip.motion), 1)), clip.travel, poses=clip.poses)
+    there = facts_of(clip.clip.with_motion(motion))
+    moved = keep_feet(motion, there, there).motion
+    np.testing.assert_allclose(moved.rotations, kept(name).motion.rotations, atol=1e-9)
+
+
 def test_nothing_but_legs_moves():
     clip, found = facts("walk-skating.bvh"), kept("walk-skating.bvh")
     legs = [j for leg in clip.anatomy.legs for j in (leg.thigh, leg.knee, leg.ankle)]

@@ -1,8 +1,10 @@
 """Which constraints a missed one gave way to, and how seldom that takes a solve."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from person import edited, end, held, swaying
+from person import BODY, edited, end, held, swaying
 
 from motionedit.core.priorities import blame
 from motionedit.core.priorities.blame import Blames
@@ -61,3 +63,10 @@ def test_those_that_stand_in_the_way_together_are_all_to_blame():
 def test_nobody_is_to_blame_for_what_is_out_of_reach():
     far = reach([0.0, 9.0, 0.0])
     assert blames_of([held("RightHand", FRAMES, (0.0, 0.0, 0.0), priority=2), far]).of(1, FRAME).by == ()
+
+
+@pytest.mark.parametrize("rest", [1, 3])
+def test_who_is_to_blame_is_found_behind_a_rest_pose_of_any_length(rest):
+    held_hand = held("LeftHand", FRAMES, (0.0, 0.0, 0.0), priority=9)
+    edit = edited(MOTION, [held_hand, reach([0.0, 0.2, 0.0])], body=replace(BODY, first=rest))
+    assert Blames(edit.asked).of(1, FRAME).by == (0,)

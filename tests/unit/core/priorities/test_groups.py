@@ -106,6 +106,15 @@ def test_what_is_asked_of_one_clip_makes_no_plan_for_another():
         assert frozenset(group.problem.columns.joints.tolist()) == joints
 
 
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)])
+def test_constraints_that_share_a_layer_are_as_soft_as_the_softest_whichever_stands_first(order):
+    some, others = np.linspace(0.1, 0.3, FRAMES), np.linspace(0.3, 0.1, FRAMES)
+    asked = asked_of(held("LeftHand", FRAMES), held("RightHand", FRAMES)).only(order)
+    soft = replace(asked, softness=tuple((some, others)[i] for i in order))
+    (group,) = groups_of(soft)
+    np.testing.assert_array_equal(group.problem.softness[:, 0], np.maximum(some, others))
+
+
 def test_a_rest_pose_that_does_what_is_asked_is_not_solved_and_one_that_does_not_is():
     rest = MOTION.rotations.copy()
     rest[:2] = rot.IDENTITY
