@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from functools import cached_property
 from itertools import chain
+from math import hypot
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from motionedit.core.priorities.agreeing import overruled
+from motionedit.core.priorities.as_one import mean_task, tasks_among
 from motionedit.core.priorities.held_columns import held_columns
 from motionedit.core.priorities.kinds.constraint import Stage
 from motionedit.core.priorities.plans import frames_together, plan_of
@@ -19,7 +21,7 @@ from motionedit.core.priorities.solver.problem import Problem, WeightedTask, ord
 from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.kinematics import WorldPoses
@@ -119,15 +121,15 @@ class Group:
     frames : shape (n,)
     levels : shape (L,)
         Where the problem's layers stand among those of the whole edit.
-    members : tuple of tuples of int
-        The constraints of each layer.
+    members : tuple of tuples of tuples of int
+        The constraints of each task of each layer: several where they are solved as one.
     prepared : Prepared
         The problem, ready to be solved.
     """
 
     frames: IntArray
     levels: IntArray
-    members: tuple[tuple[int, ...], ...]
+    members: tuple[tuple[tuple[int, ...], ...], ...]
     prepared: Prepared
 
     @cached_property
@@ -135,6 +137,11 @@ class Group:
         """Its frames as an index: a slice, which is quicker, where they follow each other."""
         first, count = int(self.frames[0]), len(self.frames)
         return slice(first, first + count) if int(self.frames[-1]) == first + count - 1 else self.frames
+
+    @property
+    def constraints(self) -> list[int]:
+        """All constraints that are active there, in order."""
+        return sorted(chain.from_iterable(chain.from_iterable(self.members)))
 
     @property
     def problem(self) -> Problem:
@@ -196,7 +203,7 @@ def part_of(asked: Asked, group: Group, frames: IntArray) -> Group:
     """Return a group of some of a group's frames."""
     if len(frames) == len(group.frames):
         return group
-    return _group(asked, sorted(chain(*group.members)), frames)
+    return _group(asked, group.constraints, frames)
 
 
 def spans_of(frames: IntArray) -> list[IntArray]:
@@ -222,19 +229,13 @@ def _group(asked: Asked, members: Sequence[int], frames: IntArray) -> Group:
             # Whichever stands first in a spec, all are as soft as the softest of them.
             softness[:, k] = np.max([soft[i] for i in layer if i in soft], axis=0)
     hinges, limits, mobility = held_columns(body, plan.columns)
+    weight_of = dict(zip(chain(*layers), chain(*plan.weights), strict=True))
+    together = tuple([tasks_among(layer, constraints, recruits) for layer in layers])
     problem = Problem(
         columns=plan.columns,
         moves_root=plan.moves_root,
         layers=tuple(
-            [
-                tuple(
-                    [
-                        WeightedTask(_task(asked, i, frames, plan.columns), weight, constraints[i].one_sided)
-                        for i, weight in zip(layer, weights, strict=True)
-                    ]
-                )
-                for layer, weights in zip(layers, plan.weights, strict=True)
-            ]
+            [tuple([_weighted(asked, which, weight_of, frames, plan.columns) for which in tasks]) for tasks in together]
         ),
         hinges=hinges,
         limits=limits,
@@ -244,24 +245,42 @@ def _group(asked: Asked, members: Sequence[int], frames: IntArray) -> Group:
         softness=softness,
         ends_early=asked.settings.gives_way,
     )
-    return Group(frames, plan.levels, layers, prepare_problem(problem))
+    return Group(frames, plan.levels, together, prepare_problem(problem))
 
 
 def retargeted(asked: Asked, group: Group, changed: frozenset[int]) -> Group:
     """Return a group with what is asked now of the same constraints, of which some have `changed`."""
-    if changed.isdisjoint(chain(*group.members)):
+    if changed.isdisjoint(group.constraints):
         return group
     problem = group.problem
     layers = tuple(
         tuple(
-            replace(old, task=_task(asked, i, group.frames, problem.columns)) if i in changed else old
-            for i, old in zip(members, tasks, strict=True)
+            old if changed.isdisjoint(which) else _retargeted(asked, which, group.frames, problem.columns, old)
+            for which, old in zip(members, tasks, strict=True)
         )
         for members, tasks in zip(group.members, problem.layers, strict=True)
     )
     return replace(group, prepared=group.prepared.with_targets_of(replace(problem, layers=layers)))
 
 
-def _task(asked: Asked, i: int, frames: IntArray, columns: Columns) -> Task:
-    stage = Stage(frames, columns, asked.recruits[i], asked.body.masses, asked.motion)
-    return asked.constraints[i].task(asked.targets[i], stage)
+def _weighted(
+    asked: Asked, which: tuple[int, ...], weight_of: Mapping[int, float], frames: IntArray, columns: Columns
+) -> WeightedTask:
+    task, apart = _task(asked, which, frames, columns)
+    return WeightedTask(task, hypot(*[weight_of[i] for i in which]), asked.constraints[which[0]].one_sided, apart)
+
+
+def _retargeted(
+    asked: Asked, which: tuple[int, ...], frames: IntArray, columns: Columns, old: WeightedTask
+) -> WeightedTask:
+    task, apart = _task(asked, which, frames, columns)
+    return replace(old, task=task, apart=apart)
+
+
+def _task(asked: Asked, which: tuple[int, ...], frames: IntArray, columns: Columns) -> tuple[Task, FloatArray | None]:
+    """Return the task of constraints that are solved as one, and how far their targets are from its, shape (N,)."""
+    tasks = []
+    for i in which:
+        stage = Stage(frames, columns, asked.recruits[i], asked.body.masses, asked.motion)
+        tasks.append(asked.constraints[i].task(asked.targets[i], stage))
+    return (tasks[0], None) if len(tasks) == 1 else mean_task(tasks, [asked.constraints[i].weight for i in which])

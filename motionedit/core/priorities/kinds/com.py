@@ -44,6 +44,7 @@ class CenterOfMass(Constraint):
     type: ClassVar[str] = "com"
     waits_for_others: ClassVar[bool] = True
     weighs: ClassVar[bool] = True
+    averages: ClassVar[bool] = True
     symbol: ClassVar[Symbol] = "ball"
 
     support: tuple[int, ...] = ()

@@ -180,6 +180,8 @@ class Constraint(ABC):
     places_effector: ClassVar[bool] = False
     # It is about how its effector is turned, too: by the effector's own joint, wherever in it that is.
     turns: ClassVar[bool] = False
+    # Its error is where it shall be less where it is: of several that are about the same, their mean will do.
+    averages: ClassVar[bool] = False
     # Its place is the body's center of mass, which needs masses.
     weighs: ClassVar[bool] = False
     # Its goals come from where feet stand, which is found before the edit.

@@ -27,6 +27,7 @@ class Position(EffectorConstraint):
 
     type: ClassVar[str] = "position"
     places_effector: ClassVar[bool] = True
+    averages: ClassVar[bool] = True
 
     def targets(self, scene: Scene) -> Targets:
         """Return the trajectory, over the input's own."""

@@ -75,19 +75,24 @@ def solve_layers(
     threads : int
         Frames are shared out among so many threads where the compiled solver runs; the result does not depend on it.
     """
+    unsolved = ~solution.converged[frames]
     if prepared.layout is None or compiled() is None:
         from motionedit.core.priorities.solver import numpy_solver
 
         numpy_solver.solve(prepared.problem, solution, reference, frames, levels=levels, in_order=in_order)
-        return
-    softness = prepared.problem.softness
-    compiled_solver.solve(
-        prepared.layout,
-        solution,
-        reference,
-        frames,
-        softness=softness,
-        levels=levels,
-        in_order=in_order,
-        threads=threads,
-    )
+    else:
+        softness = prepared.problem.softness
+        compiled_solver.solve(
+            prepared.layout,
+            solution,
+            reference,
+            frames,
+            softness=softness,
+            levels=levels,
+            in_order=in_order,
+            threads=threads,
+        )
+    for level, layer in zip(levels, prepared.problem.layers, strict=True):
+        for each in layer:
+            if each.apart is not None:
+                solution.left[frames, level] += unsolved * each.apart

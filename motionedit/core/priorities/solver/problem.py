@@ -81,11 +81,13 @@ class WeightedTask:
     """A task and its weight in its layer.
 
     Rows that are `one_sided` ask for J w >= e: they count only where e > 0, or where a step would take them there.
+    `apart`, shape (N,), is how far the targets are at most of which the task's are the mean; None: of one alone.
     """
 
     task: Task
     weight: float
     one_sided: bool = False
+    apart: FloatArray | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -95,12 +95,12 @@ def test_what_is_asked_of_one_clip_makes_no_plan_for_another():
         asked = asked_of(*constraints)
         group = next(group for group in groups_of(asked) if len(group.members) and len(group.frames) == 4)
         order = sorted({each.priority for each in constraints}, reverse=True)
-        assert [[constraints[i].priority for i in layer] for layer in group.members] == [
+        assert [[constraints[i].priority for (i,) in layer] for layer in group.members] == [
             [priority] * sum(each.priority == priority for each in constraints) for priority in order
         ]
         most = max(each.weight for each in constraints if each.priority == order[0])
         assert [each.weight for each in group.problem.layers[0]] == [
-            constraints[i].weight / most for i in group.members[0]
+            constraints[i].weight / most for (i,) in group.members[0]
         ]
         joints = frozenset().union(*(each.joints for each in asked.recruits))
         assert frozenset(group.problem.columns.joints.tolist()) == joints

@@ -141,9 +141,19 @@ def overlapping(count):
     ]
 
 
-@pytest.mark.parametrize("count", [5, pytest.param(20, marks=pytest.mark.compiled)])
+@pytest.mark.parametrize("count", [5, 10, pytest.param(40, marks=pytest.mark.compiled)])
 def test_of_many_that_overlap_few_sets_of_others_are_solved(count, monkeypatch):
-    solved, real = [], switching.solve_in_passes
-    monkeypatch.setattr(switching, "solve_in_passes", lambda *args: solved.append(args) or real(*args))
+    whole, at_ramps = [], []
+
+    def watch(name, runs):
+        real = getattr(switching, name)
+        monkeypatch.setattr(switching, name, lambda run, *more: runs.append(run) or real(run, *more))
+
+    watch("solve_in_passes", whole)
+    watch("solve_from_input", at_ramps)
     prepare(MOTION, overlapping(count), BODY, SMOOTH)
-    assert count <= len(solved) <= max(32, 2 * count)
+    assert count <= len(whole) + len(at_ramps) <= max(32, 2 * count)
+    # Many together that are many all in all: at the 14 frames of a ramp, and the one outside.
+    sizes = [len(run.asked.constraints) for run in whole]
+    assert max(sizes) <= 8 if count == 40 else not at_ramps
+    assert all(np.count_nonzero(~run.idle) <= 15 < FRAMES for run in at_ramps)
