@@ -21,7 +21,7 @@ from motionedit.core.priorities.solver.problem import Problem, WeightedTask, ord
 from motionedit.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from motionedit.core.arrays import BoolArray, FloatArray, IntArray
     from motionedit.core.kinematics import WorldPoses
@@ -229,14 +229,16 @@ def _group(asked: Asked, members: Sequence[int], frames: IntArray) -> Group:
             # Whichever stands first in a spec, all are as soft as the softest of them.
             softness[:, k] = np.max([soft[i] for i in layer if i in soft], axis=0)
     hinges, limits, mobility = held_columns(body, plan.columns)
-    weight_of = dict(zip(chain(*layers), chain(*plan.weights), strict=True))
+    weights = dict(zip(chain(*layers), chain(*plan.weights), strict=True))
     together = tuple([tasks_among(layer, constraints, recruits) for layer in layers])
+
+    def weighted(which: tuple[int, ...]) -> WeightedTask:
+        return _weighted(asked, which, hypot(*[weights[i] for i in which]), frames, plan.columns)
+
     problem = Problem(
         columns=plan.columns,
         moves_root=plan.moves_root,
-        layers=tuple(
-            [tuple([_weighted(asked, which, weight_of, frames, plan.columns) for which in tasks]) for tasks in together]
-        ),
+        layers=tuple([tuple(map(weighted, tasks)) for tasks in together]),
         hinges=hinges,
         limits=limits,
         attraction=asked.settings.attraction,
@@ -255,7 +257,7 @@ def retargeted(asked: Asked, group: Group, changed: frozenset[int]) -> Group:
     problem = group.problem
     layers = tuple(
         tuple(
-            old if changed.isdisjoint(which) else _retargeted(asked, which, group.frames, problem.columns, old)
+            old if changed.isdisjoint(which) else _weighted(asked, which, old.weight, group.frames, problem.columns)
             for which, old in zip(members, tasks, strict=True)
         )
         for members, tasks in zip(group.members, problem.layers, strict=True)
@@ -263,18 +265,10 @@ def retargeted(asked: Asked, group: Group, changed: frozenset[int]) -> Group:
     return replace(group, prepared=group.prepared.with_targets_of(replace(problem, layers=layers)))
 
 
-def _weighted(
-    asked: Asked, which: tuple[int, ...], weight_of: Mapping[int, float], frames: IntArray, columns: Columns
-) -> WeightedTask:
+def _weighted(asked: Asked, which: tuple[int, ...], weight: float, frames: IntArray, columns: Columns) -> WeightedTask:
+    """Return the task of constraints that are solved as one, of a weight in its layer."""
     task, apart = _task(asked, which, frames, columns)
-    return WeightedTask(task, hypot(*[weight_of[i] for i in which]), asked.constraints[which[0]].one_sided, apart)
-
-
-def _retargeted(
-    asked: Asked, which: tuple[int, ...], frames: IntArray, columns: Columns, old: WeightedTask
-) -> WeightedTask:
-    task, apart = _task(asked, which, frames, columns)
-    return replace(old, task=task, apart=apart)
+    return WeightedTask(task, weight, asked.constraints[which[0]].one_sided, apart)
 
 
 def _task(asked: Asked, which: tuple[int, ...], frames: IntArray, columns: Columns) -> tuple[Task, FloatArray | None]:
